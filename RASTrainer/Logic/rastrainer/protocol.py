@@ -1,0 +1,295 @@
+"""The contract between the simulator and its clients: device names, commands, phases, limits.
+
+Both sides import this one file, so that neither can drift from the other. It says what may travel;
+`rastrainer.igtl` says how the bytes look.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import uuid
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from rastrainer.errors import InputError
+
+PROTOCOL_VERSION = 1
+DEFAULT_HOST = "127.0.0.1"
+DEFAULT_PORT = 18944
+FIDUCIAL_COUNT = 15
+TRIAL_RUN = "trial-run"
+
+
+class Device:
+    """OpenIGTLink device names of what the server sends; each becomes the name of a MRML node."""
+
+    TOOL_TIP_TO_WORLD = "ToolTipToWorld"
+    LINK_TO_WORLD = tuple(f"Link{i}ToWorld" for i in range(8))
+    SIM_STATE = "SimState"
+    CAPTURED_POINTS = "CapturedPoints"
+    SIM_SERVER = "SimServer"
+    COMMAND = "command"
+
+
+class Rate:
+    """How often each device is sent, in Hz of simulated time; the heartbeat and offers in wall time."""
+
+    TOOL_TIP_HZ = 60.0
+    LINKS_HZ = 30.0
+    STATE_HZ = 30.0
+    HEARTBEAT_HZ = 1.0
+    OFFER_PERIOD_S = 2.0
+
+
+class Phase(str, Enum):
+    """Where a trial stands."""
+
+    IDLE = "idle"
+    RUNNING = "running"
+    PAUSED = "paused"
+    COMPLETE = "complete"
+    REGISTERED = "registered"
+    SCORED = "scored"
+
+
+class Mode(str, Enum):
+    """How the trainee sees the scene; the study compares them."""
+
+    DESKTOP = "desktop"
+    HMD = "hmd"
+
+
+class Proximity(str, Enum):
+    """How near the tool is to the head; `proximity` means within the 20 mm sphere."""
+
+    FREE = "free"
+    PROXIMITY = "proximity"
+    CONTACT = "contact"
+
+
+class CommandName:
+    """Names of the commands. `TRIAL_COMPLETED` goes from server to clients, the others the other way."""
+
+    HELLO = "Hello"
+    LIST_TASKS = "ListTasks"
+    LOAD_SCENARIO = "LoadScenario"
+    START_TASK = "StartTask"
+    JOG = "Jog"
+    MOVE_TIP_TO = "MoveTipTo"
+    CAPTURE = "Capture"
+    UNDO = "Undo"
+    REGISTER = "Register"
+    ABORT = "Abort"
+    PAUSE = "Pause"
+    RESUME = "Resume"
+    SET_CAMERA = "SetCamera"
+    TRIAL_SCORED = "TrialScored"
+    PLAN_TARGET = "PlanTarget"
+    GET_TRIAL = "GetTrial"
+    ACKNOWLEDGE_TRIAL = "AcknowledgeTrial"
+    TRIAL_COMPLETED = "TrialCompleted"
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One argument of a command: how it is checked, and what it is when left out.
+
+    `check` returns the accepted value or raises `ValueError` with the words that follow
+    "argument NAME must be". An argument without `default` is required.
+    """
+
+    check: Callable[[Any], Any]
+    default: Any = ...
+
+
+def text(longest: int = 64) -> Callable[[Any], str]:
+    """Accept printable text of 1 to `longest` characters."""
+
+    def check(value: Any) -> str:
+        if not isinstance(value, str) or not 1 <= len(value) <= longest or not value.isprintable():
+            raise ValueError(f"printable text of 1 to {longest} characters")
+        return value
+
+    return check
+
+
+def number(lowest: float, highest: float, unit: str = "") -> Callable[[Any], float]:
+    """Accept a finite number from `lowest` to `highest`."""
+
+    def check(value: Any) -> float:
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not is_number or not lowest <= value <= highest:
+            raise ValueError(f"a number from {lowest:g} to {highest:g} {unit}".rstrip())
+        return float(value)
+
+    return check
+
+
+def whole_number(lowest: int, highest: int) -> Callable[[Any], int]:
+    """Accept an integer from `lowest` to `highest`."""
+
+    def check(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
+            raise ValueError(f"a whole number from {lowest} to {highest}")
+        return value
+
+    return check
+
+
+def numbers(count: int, limit: float, unit: str = "") -> Callable[[Any], tuple[float, ...]]:
+    """Accept a list of `count` finite numbers, each within ±`limit`."""
+    check_one = number(-limit, limit)
+
+    def check(value: Any) -> tuple[float, ...]:
+        sentence = f"a list of {count} numbers within ±{limit:g} {unit}".rstrip()
+        if not isinstance(value, (list, tuple)) or len(value) != count:
+            raise ValueError(sentence)
+        try:
+            return tuple(check_one(item) for item in value)
+        except ValueError:
+            raise ValueError(sentence) from None
+
+    return check
+
+
+def one_of(*choices: str) -> Callable[[Any], str]:
+    """Accept one of the given words."""
+
+    def check(value: Any) -> str:
+        if not isinstance(value, str) or value not in choices:
+            raise ValueError("one of " + ", ".join(choices))
+        return value
+
+    return check
+
+
+def trial_id(value: Any) -> str:
+    """Accept the UUID of a trial in its canonical spelling."""
+    try:
+        return str(uuid.UUID(value))
+    except (ValueError, AttributeError, TypeError):
+        raise ValueError("the UUID of a trial") from None
+
+
+def plain_object(value: Any) -> dict[str, Any]:
+    """Accept a JSON object as it is."""
+    if not isinstance(value, dict):
+        raise ValueError("a JSON object")
+    return value
+
+
+SPEED_LIMIT_MM_S = 500.0
+WORLD_LIMIT_MM = 5000.0
+
+COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
+    CommandName.HELLO: {
+        "protocolVersion": Argument(whole_number(0, 1_000_000)),
+        "client": Argument(text()),
+        "toolTipHz": Argument(number(0, 250, "Hz"), Rate.TOOL_TIP_HZ),
+        "linksHz": Argument(number(0, 250, "Hz"), Rate.LINKS_HZ),
+    },
+    CommandName.LIST_TASKS: {},
+    CommandName.LOAD_SCENARIO: {"folder": Argument(text(1024))},
+    CommandName.START_TASK: {
+        "task": Argument(text()),
+        "trainee": Argument(text()),
+        "mode": Argument(one_of(*(mode.value for mode in Mode)), Mode.DESKTOP.value),
+        "seed": Argument(whole_number(0, 2**63 - 1), None),
+    },
+    CommandName.JOG: {
+        "velocityMmS": Argument(numbers(3, SPEED_LIMIT_MM_S, "mm/s")),
+        "frame": Argument(one_of("world", "camera", "tool"), "world"),
+        "durationS": Argument(number(0, 2, "s"), 0.1),
+    },
+    CommandName.MOVE_TIP_TO: {
+        "positionMm": Argument(numbers(3, WORLD_LIMIT_MM, "mm")),
+        "direction": Argument(numbers(3, 1), None),
+        "speedMmS": Argument(number(0, SPEED_LIMIT_MM_S, "mm/s"), 100.0),
+    },
+    CommandName.CAPTURE: {},
+    CommandName.UNDO: {},
+    CommandName.REGISTER: {},
+    CommandName.ABORT: {},
+    CommandName.PAUSE: {},
+    CommandName.RESUME: {},
+    CommandName.SET_CAMERA: {"camera": Argument(one_of("close-up", "far"))},
+    CommandName.TRIAL_SCORED: {
+        "trialId": Argument(trial_id),
+        "matrix": Argument(numbers(16, 1e6)),
+        "freMm": Argument(number(0, 1e6, "mm")),
+        "expectedTreMm": Argument(number(0, 1e6, "mm")),
+        "score": Argument(number(0, 100)),
+        "details": Argument(plain_object, {}),
+    },
+    CommandName.PLAN_TARGET: {
+        "positionMm": Argument(numbers(3, WORLD_LIMIT_MM, "mm")),
+        "name": Argument(text(), "target"),
+    },
+    CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
+    CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},
+}
+"""Every command a client may send, with its arguments; `MoveTipTo`'s direction is that of the tool."""
+
+
+def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the checked arguments of a command, defaults filled in.
+
+    Raises:
+        InputError: the command or an argument is unknown, missing or out of range; the sentence
+            says what would be right.
+    """
+    if command not in COMMAND_ARGUMENTS:
+        known = ", ".join(COMMAND_ARGUMENTS)
+        raise InputError(f"The command {_quoted(command)} is unknown; known are {known}.")
+    expected = COMMAND_ARGUMENTS[command]
+    for name in arguments:
+        if name not in expected:
+            takes = ", ".join(expected) or "none"
+            raise InputError(f"{command} has no argument {_quoted(name)}; it takes {takes}.")
+    return {name: _checked(command, name, arguments, expected[name]) for name in expected}
+
+
+def _checked(command: str, name: str, arguments: Mapping[str, Any], argument: Argument) -> Any:
+    if name not in arguments:
+        if argument.default is ...:
+            raise InputError(f"{command} needs the argument {name}.")
+        return argument.default
+    try:
+        return argument.check(arguments[name])
+    except ValueError as error:
+        raise InputError(f"{command}: the argument {name} must be {error}.") from None
+
+
+def _quoted(word: object) -> str:
+    return json.dumps(str(word)[:40])
+
+
+def decode_json_object(body: str) -> dict[str, Any]:
+    """Return the JSON object that a command's body holds; an empty body is an empty object.
+
+    Raises:
+        InputError: not JSON, not an object, too deeply nested, or with a number that is not finite.
+    """
+    try:
+        value = json.loads(body or "{}", parse_constant=_refuse_constant, parse_float=_finite)
+    except (ValueError, RecursionError):
+        raise InputError(
+            "The command's body must be one JSON object with finite numbers."
+        ) from None
+    if not isinstance(value, dict):
+        raise InputError("The command's body must be one JSON object with finite numbers.")
+    return value
+
+
+def _refuse_constant(_word: str) -> float:
+    raise ValueError
+
+
+def _finite(digits: str) -> float:
+    value = float(digits)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
