@@ -35,7 +35,7 @@ class Device:
 
 
 class Rate:
-    """How often each device is sent, in Hz of simulated time; the heartbeat and offers in wall time."""
+    """How often each device is sent: poses and state in simulated time, the rest in wall time."""
 
     TOOL_TIP_HZ = 60.0
     LINKS_HZ = 30.0
@@ -71,7 +71,7 @@ class Proximity(str, Enum):
 
 
 class CommandName:
-    """Names of the commands. `TRIAL_COMPLETED` goes from server to clients, the others the other way."""
+    """Names of the commands; `TRIAL_COMPLETED` alone goes from the server to its clients."""
 
     HELLO = "Hello"
     LIST_TASKS = "ListTasks"
@@ -231,7 +231,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},
 }
-"""Every command a client may send, with its arguments; `MoveTipTo`'s direction is that of the tool."""
+"""Every command a client may send; `MoveTipTo`'s direction is that of the tool, from A7 to tip."""
 
 
 def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
