@@ -1,0 +1,143 @@
+"""What the simulation says after each tick: values, frozen, in metres, radians and seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from rastrainer.protocol import Phase, Proximity
+
+Vector = tuple[float, float, float]
+
+
+class EventKind(str, Enum):
+    """What happened in a tick; sounds, vibration and the journal follow from these."""
+
+    PHASE = "phase"
+    TOUCH = "touch"
+    UNDO = "undo"
+    REJECTED = "rejected"
+    PROXIMITY = "proximity"
+    MOTION = "motion"
+    CAMERA = "camera"
+    PLAN = "plan"
+    ACKNOWLEDGED = "acknowledged"
+
+
+class Motion(str, Enum):
+    """What moves the tool's tip."""
+
+    NONE = "none"
+    STICK = "stick"
+    JOG = "jog"
+    MOVE = "move"
+
+
+@dataclass(frozen=True)
+class Event:
+    """One thing that happened; `data` is ready for JSON, lengths in it are in mm."""
+
+    kind: EventKind
+    sim_time: float
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The answer to one command: `message` says what would have been right when it is not `ok`."""
+
+    ticket: int
+    ok: bool
+    message: str = ""
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Touch:
+    """One touched fiducial: where the tip was (World, m) and when.
+
+    `elapsed` is the trial's time in s, pauses excluded.
+    """
+
+    label: str
+    position: Vector
+    sim_time: float
+    elapsed: float
+
+
+@dataclass(frozen=True)
+class PlannedTarget:
+    """A point planned on the MRI, mapped to World (m) by the client's registration."""
+
+    name: str
+    position: Vector
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """What the trainee is told once the client has registered and scored the trial (mm)."""
+
+    fre_mm: float
+    expected_tre_mm: float
+    true_tre_mm: float
+    score: float
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class TrainingState:
+    """Where the trial stands. The same object is handed out until something changes.
+
+    `next_point` is the label of the fiducial to touch, None when there is none. `record` is what
+    `rastrainer.trial_record` says of a registered trial, ready for JSON.
+    """
+
+    phase: Phase = Phase.IDLE
+    trainee: str = ""
+    task: str = ""
+    mode: str = ""
+    trial_id: str = ""
+    next_point: str | None = None
+    instruction: str = ""
+    touches: tuple[Touch, ...] = ()
+    record: Mapping[str, Any] | None = None
+    result: TrialResult | None = None
+    acknowledged: bool = False
+
+
+@dataclass(frozen=True)
+class SimulationState:
+    """Everything a view needs after a tick (World, m, rad, s).
+
+    `q` are the seven joint angles; `tool_tip_to_world` and each of `link_to_world` (links 0 to 7)
+    are (4, 4) float arrays that are never written again. `clearance` is the signed distance of the
+    tool to the head. `elapsed` is the running trial's time, pauses excluded. `operator` is
+    who moved the arm last.
+    """
+
+    tick: int
+    sim_time: float
+    q: tuple[float, ...]
+    tool_tip_to_world: np.ndarray
+    link_to_world: tuple[np.ndarray, ...]
+    proximity: Proximity
+    clearance: float
+    training: TrainingState
+    elapsed: float
+    motion: Motion
+    operator: str
+    camera: str
+    planned_target: PlannedTarget | None
+
+
+@dataclass(frozen=True)
+class StepResult:
+    """What one step gives: the state, what happened, and the answers to the tick's commands."""
+
+    state: SimulationState
+    events: tuple[Event, ...] = ()
+    answers: tuple[Answer, ...] = ()
