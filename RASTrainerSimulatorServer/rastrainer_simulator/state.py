@@ -1,4 +1,4 @@
-"""What the simulation says after each tick: values, frozen, in metres, radians and seconds."""
+"""What the simulation says after each tick: values, frozen, in m, rad and s."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from enum import Enum
 from typing import Any
 
 import numpy as np
-
 from rastrainer.protocol import Phase, Proximity
 
 Vector = tuple[float, float, float]
