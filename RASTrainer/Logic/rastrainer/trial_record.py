@@ -1,0 +1,231 @@
+"""The record of a finished trial, as the simulator delivers it and the study keeps it.
+
+Both sides import this one file: what a record must hold is said here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+import numpy as np
+
+from rastrainer import protocol
+from rastrainer.errors import InputError
+from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM, Argument, Mode
+
+TIME_LIMIT_S = 1e6
+TOUCH_LIMIT = 1_000_000
+VERSIONS_LIMIT = 32
+
+
+@dataclass(frozen=True)
+class TouchedPoint:
+    """One fiducial as it was touched.
+
+    Attributes:
+        label: The fiducial's label, `1` to `15` in the shipped tasks.
+        position_mm: Position of the tool tip in `World`, in mm.
+        sim_time_s: Simulated time of the touch, in s.
+        utc: Wall time of the touch, ISO 8601 in UTC.
+    """
+
+    label: str
+    position_mm: tuple[float, float, float]
+    sim_time_s: float
+    utc: str
+
+
+@dataclass(frozen=True)
+class TrialRecord:
+    """A finished trial: who, what, when, and the fifteen touches that were kept, in their order.
+
+    Attributes:
+        trial_id: UUID in its canonical spelling.
+        trainee: Pseudonym of the trainee.
+        task: Name of the task, such as `task-1`.
+        mode: `desktop` or `hmd`.
+        scenario: Name of the scenario.
+        started_utc: ISO 8601 in UTC; the wall clock may jump, so no duration is taken from it.
+        completed_utc: ISO 8601 in UTC.
+        completion_time_s: Simulated time from the start to the last kept touch, without pauses.
+        points: The kept touches; their labels differ and their times do not fall.
+        rejected_touches: Number of touches that were refused (too far, wrong fiducial).
+        undone_touches: Number of touches that the trainee took back.
+        versions: Name and version of each program and format that made the record.
+        seed: Seed of the trial, where the simulator tells it.
+    """
+
+    trial_id: str
+    trainee: str
+    task: str
+    mode: str
+    scenario: str
+    started_utc: str
+    completed_utc: str
+    completion_time_s: float
+    points: tuple[TouchedPoint, ...]
+    rejected_touches: int
+    undone_touches: int
+    versions: Mapping[str, str]
+    seed: int | None = None
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Labels of the touched fiducials, in the order of touching."""
+        return tuple(point.label for point in self.points)
+
+    @property
+    def positions_mm(self) -> np.ndarray:
+        """Touched points in `World`, (n, 3) float, in mm."""
+        return np.array([point.position_mm for point in self.points], dtype=float)
+
+    @property
+    def touch_times_s(self) -> np.ndarray:
+        """Simulated time of each touch, (n,) float, in s."""
+        return np.array([point.sim_time_s for point in self.points], dtype=float)
+
+    @classmethod
+    def from_json(cls, value: object) -> TrialRecord:
+        """Return the record that a decoded JSON object holds.
+
+        Keys that this version does not know are ignored, so that a newer simulator may add some.
+
+        Raises:
+            InputError: a key is missing or holds something else than it should.
+        """
+        fields = _checked(value, _RECORD_KEYS, "The trial record")
+        record = cls(**{_PYTHON_NAMES[key]: fields[key] for key in fields})
+        _check_points(record.points)
+        return record
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `from_json` reads."""
+        json_object = {key: getattr(self, name) for key, name in _PYTHON_NAMES.items()}
+        json_object["versions"] = dict(self.versions)
+        json_object["points"] = [
+            {
+                "label": point.label,
+                "positionMm": list(point.position_mm),
+                "simTime": point.sim_time_s,
+                "utc": point.utc,
+            }
+            for point in self.points
+        ]
+        return json_object
+
+
+def utc_time(value: Any) -> str:
+    """Accept an ISO 8601 date and time in UTC, such as `2024-05-17T09:30:00.250Z`.
+
+    Raises:
+        ValueError: anything else; the words follow "must be".
+    """
+    try:
+        # `fromisoformat` reads the letter Z only from Python 3.11 on.
+        moment = datetime.fromisoformat(value.replace("Z", "+00:00"))
+    except (AttributeError, TypeError, ValueError):
+        moment = None
+    if moment is None or moment.utcoffset() != timedelta(0):
+        raise ValueError("an ISO 8601 date and time in UTC, such as 2024-05-17T09:30:00Z")
+    return value
+
+
+def _touched_point(value: Any) -> TouchedPoint:
+    fields = _checked(value, _POINT_KEYS, "Each point of the trial record")
+    return TouchedPoint(fields["label"], fields["positionMm"], fields["simTime"], fields["utc"])
+
+
+def _touched_points(value: Any) -> tuple[TouchedPoint, ...]:
+    if not isinstance(value, (list, tuple)) or len(value) != FIDUCIAL_COUNT:
+        raise ValueError(f"a list of {FIDUCIAL_COUNT} points")
+    return tuple(_touched_point(item) for item in value)
+
+
+def _versions(value: Any) -> dict[str, str]:
+    words = "an object of at most 32 names with their versions as text"
+    if not isinstance(value, dict) or len(value) > VERSIONS_LIMIT:
+        raise ValueError(words)
+    check = protocol.text()
+    try:
+        return {check(name): check(version) for name, version in value.items()}
+    except ValueError:
+        raise ValueError(words) from None
+
+
+def _optional(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    return lambda value: None if value is None else check(value)
+
+
+def _checked(value: object, keys: Mapping[str, Argument], what: str) -> dict[str, Any]:
+    if not isinstance(value, Mapping):
+        raise InputError(f"{what} must be a JSON object.")
+    fields = {}
+    for key, argument in keys.items():
+        if key not in value and argument.default is ...:
+            raise InputError(f"{what} needs the key {json.dumps(key)}.")
+        try:
+            fields[key] = argument.check(value[key]) if key in value else argument.default
+        except InputError:
+            raise
+        except ValueError as error:
+            raise InputError(f"{what}: {key} must be {error}.") from None
+    return fields
+
+
+def _check_points(points: tuple[TouchedPoint, ...]) -> None:
+    seen: set[str] = set()
+    for point in points:
+        if point.label in seen:
+            raise InputError(f"The trial record holds the label {json.dumps(point.label)} twice.")
+        seen.add(point.label)
+    for earlier, later in itertools.pairwise(points):
+        if later.sim_time_s < earlier.sim_time_s:
+            raise InputError(
+                f"The trial record's points must be in the order of touching: "
+                f"{later.label} was touched before {earlier.label}."
+            )
+
+
+_POINT_KEYS = {
+    "label": Argument(protocol.text()),
+    "positionMm": Argument(protocol.numbers(3, WORLD_LIMIT_MM, "mm")),
+    "simTime": Argument(protocol.number(0, TIME_LIMIT_S, "s")),
+    "utc": Argument(utc_time),
+}
+
+_RECORD_KEYS = {
+    "trialId": Argument(protocol.trial_id),
+    "trainee": Argument(protocol.text()),
+    "task": Argument(protocol.text()),
+    "mode": Argument(protocol.one_of(*(mode.value for mode in Mode))),
+    "scenario": Argument(protocol.text()),
+    "startedUtc": Argument(utc_time),
+    "completedUtc": Argument(utc_time),
+    "completionTimeS": Argument(protocol.number(0, TIME_LIMIT_S, "s")),
+    "points": Argument(_touched_points),
+    "rejectedTouches": Argument(protocol.whole_number(0, TOUCH_LIMIT)),
+    "undoneTouches": Argument(protocol.whole_number(0, TOUCH_LIMIT)),
+    "versions": Argument(_versions),
+    "seed": Argument(_optional(protocol.whole_number(0, 2**63 - 1)), None),
+}
+
+_PYTHON_NAMES = {
+    "trialId": "trial_id",
+    "trainee": "trainee",
+    "task": "task",
+    "mode": "mode",
+    "scenario": "scenario",
+    "startedUtc": "started_utc",
+    "completedUtc": "completed_utc",
+    "completionTimeS": "completion_time_s",
+    "points": "points",
+    "rejectedTouches": "rejected_touches",
+    "undoneTouches": "undone_touches",
+    "versions": "versions",
+    "seed": "seed",
+}
