@@ -1,6 +1,7 @@
 """Install the system packages that a make target needs, or say in one sentence which are missing.
 
-Debian and Ubuntu only: elsewhere what is missing is named. Nothing is installed that is there.
+Only Linux needs any: the wheels for Windows and macOS bring all. Nothing is installed that is
+there; where the machine is not Debian's or the user not root, what is missing is named.
 """
 
 from __future__ import annotations
@@ -12,31 +13,29 @@ import subprocess
 import sys
 from pathlib import Path
 
-EGL = ("libEGL.so.1", ["libegl1", "libegl-mesa0", "libgl1", "libgl1-mesa-dri"])
-LIBRARIES = {
-    "demo": [EGL, ("libGL.so.1", ["libgl1"]), ("libXrender.so.1", ["libxrender1"])],
-    "test": [EGL, ("libGL.so.1", ["libgl1"]), ("libXrender.so.1", ["libxrender1"])],
-}
-PROGRAMS = {"demo": [], "test": [("g++", ["g++"])]}
-FILES = {
-    "demo": [],
-    "test": [("/usr/include/igtl/igtlMessageHeader.h", ["libopenigtlink-dev"])],
-}
+RENDER_ONE_PICTURE = """
+import vtk
+window = vtk.vtkRenderWindow()
+window.SetOffScreenRendering(1)
+window.AddRenderer(vtk.vtkRenderer())
+window.Render()
+"""
+OPENIGTLINK_HEADER = Path("/usr/include/igtl/igtlMessageHeader.h")
 
 
 def missing_packages(target: str) -> list[str]:
-    """Return the Debian packages that `target` needs and that are not there, in order."""
-    wanted: list[str] = []
-    for library, packages in LIBRARIES[target]:
-        if not _loads(library):
-            wanted += packages
-    for program, packages in PROGRAMS[target]:
-        if shutil.which(program) is None:
-            wanted += packages
-    for file, packages in FILES[target]:
-        if not Path(file).exists():
-            wanted += packages
-    return list(dict.fromkeys(wanted))
+    """Return the Debian packages that `target` needs and that are not there."""
+    wanted = []
+    if not _loads("libgomp.so.1"):
+        wanted += ["libgomp1"]
+    if not _renders():
+        wanted += ["libegl1", "libgl1-mesa-dri", "libxcursor1"]
+    if target == "test":
+        if shutil.which("g++") is None:
+            wanted += ["g++", "libc6-dev"]
+        if not OPENIGTLINK_HEADER.exists():
+            wanted += ["libopenigtlink-dev"]
+    return wanted
 
 
 def _loads(library: str) -> bool:
@@ -47,20 +46,26 @@ def _loads(library: str) -> bool:
     return True
 
 
+def _renders() -> bool:
+    """Tell by trying: which libraries a picture needs depends on the machine's graphics."""
+    attempt = subprocess.run([sys.executable, "-c", RENDER_ONE_PICTURE], capture_output=True)
+    return attempt.returncode == 0
+
+
 def main() -> int:
     """Install what the target named on the command line misses; 0 where all is there."""
-    if not sys.platform.startswith("linux"):
-        return 0
-    wanted = missing_packages(sys.argv[1])
+    wanted = missing_packages(sys.argv[1]) if sys.platform.startswith("linux") else []
     if not wanted:
         return 0
     command = ["apt-get", "install", "-y", "--no-install-recommends", *wanted]
     if os.geteuid() != 0 or shutil.which("apt-get") is None:
-        print(f"System packages are missing; install them with: sudo {' '.join(command)}")
+        print(f"System packages are missing; please run: sudo {' '.join(command)}", file=sys.stderr)
         return 1
-    subprocess.run(["apt-get", "update", "-qq"], check=True)
+    print(f"Installing {', '.join(wanted)} ...", flush=True)
     environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-    subprocess.run(command, check=True, env=environment, stdout=subprocess.DEVNULL)
+    quiet = {"check": True, "env": environment, "stdout": subprocess.DEVNULL}
+    subprocess.run(["apt-get", "update", "-qq"], **quiet)
+    subprocess.run(command, **quiet)
     return 0
 
 
