@@ -1,0 +1,51 @@
+"""The axes that "right, forward, up" mean: those of the camera, or those of the robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from rastrainer_simulator.vectors import Vector, cross, length, reject, unit
+
+WORLD_UP: Vector = (0.0, 0.0, 1.0)
+
+
+class AxesChoice(str, Enum):
+    """Whose right, forward and up the sticks follow."""
+
+    CAMERA = "camera"
+    ROBOT = "robot"
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Three perpendicular unit vectors in World: where right, forward and up point."""
+
+    right: Vector
+    forward: Vector
+    up: Vector
+
+    def to_world(self, amounts: tuple[float, float, float]) -> Vector:
+        """Return the World vector of so much to the right, forward and up."""
+        sideways, ahead, above = amounts
+        return tuple(
+            sideways * r + ahead * f + above * u
+            for r, f, u in zip(self.right, self.forward, self.up, strict=True)
+        )
+
+
+ROBOT_AXES = Axes(right=(0.0, -1.0, 0.0), forward=(1.0, 0.0, 0.0), up=WORLD_UP)
+"""Seen from behind the robot's base: forward is World's x."""
+
+
+def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
+    """Return a camera's axes, leveled: up is World's up and forward the horizontal view direction.
+
+    A camera that looks straight down or up has no horizontal view direction: its own up in the
+    picture takes that part (its down, where it looks up).
+    """
+    ahead = reject(unit(view_direction), WORLD_UP)
+    if length(ahead) < 1e-3:
+        ahead = reject(view_up if view_direction[2] < 0.0 else tuple(-v for v in view_up), WORLD_UP)
+    forward = unit(ahead)
+    return Axes(right=cross(forward, WORLD_UP), forward=forward, up=WORLD_UP)

@@ -1,0 +1,130 @@
+"""Motions that a command starts and that go on by themselves: a jog, and a move to a position."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from rastrainer_simulator.state import Motion
+from rastrainer_simulator.vectors import (
+    ZERO,
+    Vector,
+    angle,
+    distance,
+    length,
+    scale,
+    shortened,
+    subtract,
+    unit,
+)
+
+ARRIVED = 1e-6
+"""A position (m) or direction (rad) this near counts as reached."""
+BLOCKED_AFTER = 0.5
+"""s without getting nearer after which a move gives up."""
+PROGRESS = 1e-5
+"""m or rad that count as getting nearer."""
+
+
+class Outcome(str, Enum):
+    """How a commanded motion ended."""
+
+    REACHED = "reached"
+    BLOCKED = "blocked"
+    OVERRIDDEN = "overridden"
+    STOPPED = "stopped"
+
+
+@dataclass(frozen=True)
+class JogCommand:
+    """Move the tip with `velocity` (m/s, World) for `duration` (s)."""
+
+    velocity: Vector
+    duration: float
+
+
+@dataclass(frozen=True)
+class MoveCommand:
+    """Move the tip to `position` (m, World) at `speed` (m/s), the tool turned to `direction`.
+
+    `direction` is the unit vector from A7 to the tip, in World; None leaves it as it is.
+    """
+
+    position: Vector
+    speed: float
+    direction: Vector | None = None
+
+
+class Jogging:
+    """A jog on its way."""
+
+    motion = Motion.JOG
+    direction = None
+
+    def __init__(self, command: JogCommand) -> None:
+        self._velocity = command.velocity
+        self._remaining = command.duration
+
+    def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
+        """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
+        del tip
+        time = min(dt, self._remaining)
+        self._remaining -= dt
+        return scale(accelerated(velocity, self._velocity, acceleration * dt), time)
+
+    def outcome(self, dt: float, tip: Vector, direction: Vector) -> Outcome | None:
+        """Return how the jog has ended, None while it goes on."""
+        del tip, direction
+        return Outcome.REACHED if self._remaining <= 1e-3 * dt else None
+
+
+class Moving:
+    """A move on its way; it slows down before the target so as to stop on it."""
+
+    motion = Motion.MOVE
+
+    def __init__(self, command: MoveCommand) -> None:
+        self.direction = command.direction
+        self._position = command.position
+        self._speed = command.speed
+        self._nearest = math.inf
+        self._stalled = 0.0
+
+    def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
+        """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
+        remaining = subtract(self._position, tip)
+        braking_speed = math.sqrt(2.0 * acceleration * length(remaining))
+        wanted = scale(unit(remaining), min(self._speed, braking_speed))
+        step = scale(accelerated(velocity, wanted, acceleration * dt), dt)
+        return shortened(remaining, length(step)) if braking_speed < self._speed else step
+
+    def outcome(self, dt: float, tip: Vector, direction: Vector) -> Outcome | None:
+        """Return how the move has ended, None while it goes on."""
+        remaining = distance(tip, self._position)
+        turn = angle(direction, self.direction) if self.direction else 0.0
+        if remaining <= ARRIVED and turn <= ARRIVED:
+            return Outcome.REACHED
+        if remaining + turn < self._nearest - PROGRESS:
+            self._nearest = remaining + turn
+            self._stalled = 0.0
+        else:
+            self._stalled += dt
+        return Outcome.BLOCKED if self._stalled >= BLOCKED_AFTER else None
+
+
+CommandedMotion = JogCommand | MoveCommand
+
+
+def started(command: CommandedMotion) -> Jogging | Moving:
+    """Return the motion that carries out a command."""
+    return Jogging(command) if isinstance(command, JogCommand) else Moving(command)
+
+
+def accelerated(velocity: Vector, wanted: Vector, most: float) -> Vector:
+    """Return the velocity changed toward `wanted` by at most `most` (m/s)."""
+    change = subtract(wanted, velocity)
+    if change == ZERO:
+        return wanted
+    limited = shortened(change, most)
+    return (velocity[0] + limited[0], velocity[1] + limited[1], velocity[2] + limited[2])

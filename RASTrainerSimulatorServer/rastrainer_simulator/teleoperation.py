@@ -1,0 +1,158 @@
+"""From the operator's hands and commands to where the tool's tip shall be after this tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from rastrainer_simulator.axes import Axes
+from rastrainer_simulator.commanded_motion import (
+    CommandedMotion,
+    Jogging,
+    Moving,
+    Outcome,
+    accelerated,
+    started,
+)
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.state import Motion
+from rastrainer_simulator.stick import StickResponse
+from rastrainer_simulator.tool_steering import SteeringSettings, Surface, ToolSteering
+from rastrainer_simulator.vectors import ZERO, Vector, scale
+
+STRAIGHT = (0.0, 0.0)
+"""The steering stick at rest."""
+
+
+@dataclass(frozen=True)
+class TeleoperationSettings:
+    """How the arm answers to the operator.
+
+    Attributes:
+        response: dead zone and response curve of the sticks.
+        coarse_speed: of the tip at full deflection, m/s.
+        fine_speed: the same while the trigger for fine speed is held, m/s.
+        acceleration: most change of the tip's velocity, m/s²; a released stick stops at once.
+        steering: who decides the tool's direction, and how fast it turns.
+    """
+
+    response: StickResponse = field(default_factory=StickResponse)
+    coarse_speed: float = 0.15
+    fine_speed: float = 0.02
+    acceleration: float = 2.0
+    steering: SteeringSettings = field(default_factory=SteeringSettings)
+
+
+@dataclass(frozen=True)
+class Tip:
+    """The tool's tip in World: position (m) and direction (unit vector from A7 to the tip)."""
+
+    position: Vector
+    direction: Vector
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What the operator wants of this tick.
+
+    Attributes:
+        motion: what asks for it; NONE means that the arm shall stand still.
+        displacement: of the tip, m, World.
+        direction: of the tool, unit vector; None where it is free.
+        ended: how a commanded motion has just ended, None while none has.
+    """
+
+    motion: Motion
+    displacement: Vector = ZERO
+    direction: Vector | None = None
+    ended: Outcome | None = None
+
+
+class Teleoperation:
+    """Turns sticks and commanded motions into the tip's displacement, tick by tick.
+
+    The wish always starts from where the tip is, not from where it should have been: nothing
+    builds up while the tool is stopped by the head or by a joint's speed limit, and the arm stops
+    in the tick in which the stick is released.
+    """
+
+    def __init__(self, settings: TeleoperationSettings) -> None:
+        self._settings = settings
+        self._steering = ToolSteering(settings.steering)
+        self._velocity = ZERO
+        self._running: Jogging | Moving | None = None
+
+    def start(self, command: CommandedMotion) -> None:
+        """Carry out a commanded motion in place of the one that is running."""
+        self._running = started(command)
+
+    def stop(self) -> bool:
+        """Stand still and forget held directions; return whether a commanded motion ended by it."""
+        was_running = self._running is not None
+        self._running = None
+        self._velocity = ZERO
+        self._steering.reset()
+        return was_running
+
+    def step(
+        self,
+        dt: float,
+        operator_input: OperatorInput,
+        tip: Tip,
+        axes: Axes,
+        surface: Surface | None = None,
+    ) -> Wish:
+        """Return what the operator wants of the next `dt` seconds.
+
+        The sticks override a commanded motion. `surface` is the head near the tip, for a tool that
+        comes down along the surface normal.
+        """
+        response = self._settings.response
+        push = response(operator_input.translation)
+        turn = response(operator_input.rotation) if self._steering.is_steered else STRAIGHT
+        if push != ZERO or turn != STRAIGHT:
+            ended = Outcome.OVERRIDDEN if self._running else None
+            self._running = None
+            return self._by_stick(dt, push, turn, operator_input.fine, tip, axes, surface, ended)
+        if self._running is None:
+            self._velocity = ZERO
+            return Wish(Motion.NONE)
+        outcome = self._running.outcome(dt, tip.position, tip.direction)
+        if outcome is not None:
+            self._running = None
+            self._velocity = ZERO
+            return Wish(Motion.NONE, ended=outcome)
+        return self._by_command(dt, tip, axes, surface)
+
+    def _by_stick(
+        self,
+        dt: float,
+        push: Vector,
+        turn: tuple[float, float],
+        fine: bool,
+        tip: Tip,
+        axes: Axes,
+        surface: Surface | None,
+        ended: Outcome | None,
+    ) -> Wish:
+        settings = self._settings
+        fastest = settings.fine_speed if fine else settings.coarse_speed
+        wanted = axes.to_world(scale(push, fastest))
+        self._velocity = (
+            ZERO
+            if push == ZERO
+            else accelerated(self._velocity, wanted, settings.acceleration * dt)
+        )
+        direction = self._steering.steer(dt, turn, fine, axes, tip.direction, surface)
+        return Wish(Motion.STICK, scale(self._velocity, dt), direction, ended)
+
+    def _by_command(self, dt: float, tip: Tip, axes: Axes, surface: Surface | None) -> Wish:
+        running = self._running
+        displacement = running.displacement(
+            dt, tip.position, self._velocity, self._settings.acceleration
+        )
+        self._velocity = scale(displacement, 1.0 / dt)
+        if running.direction is not None:
+            direction = self._steering.turn_to(tip.direction, running.direction, dt)
+        else:
+            direction = self._steering.steer(dt, STRAIGHT, False, axes, tip.direction, surface)
+        return Wish(running.motion, displacement, direction)

@@ -1,0 +1,219 @@
+"""The sticks and commanded motions as the trainee feels them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from rastrainer_simulator.axes import ROBOT_AXES, camera_axes
+from rastrainer_simulator.commanded_motion import ARRIVED, JogCommand, MoveCommand, Outcome
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
+from rastrainer_simulator.state import Motion
+from rastrainer_simulator.stick import StickResponse
+from rastrainer_simulator.teleoperation import Teleoperation, TeleoperationSettings, Tip
+from rastrainer_simulator.tool_steering import SteeringSettings, Surface, ToolDirection
+from rastrainer_simulator.vectors import ZERO, add, angle, distance, length, unit
+
+DT = 0.004
+DOWN = (0.0, 0.0, -1.0)
+FRONT_CAMERA = camera_axes((0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+SETTINGS = TeleoperationSettings()
+
+
+class Hand:
+    """A tip that goes exactly where it is wished: teleoperation without a robot."""
+
+    def __init__(self, settings=SETTINGS, axes=FRONT_CAMERA, surface=None):
+        self.teleoperation = Teleoperation(settings)
+        self.axes = axes
+        self.surface = surface
+        self.tip = Tip((0.5, 0.0, 0.5), DOWN)
+        self.blocked = False
+
+    def step(self, operator_input=HANDS_OFF):
+        wish = self.teleoperation.step(DT, operator_input, self.tip, self.axes, self.surface)
+        if not self.blocked:
+            position = add(self.tip.position, wish.displacement)
+            self.tip = Tip(position, wish.direction or self.tip.direction)
+        return wish
+
+    def run_until_end(self, most_ticks=5000):
+        for _ in range(most_ticks):
+            wish = self.step()
+            if wish.ended:
+                return wish.ended
+        raise AssertionError("the motion never ended")
+
+
+def push(*translation, **others):
+    return OperatorInput(translation=translation, **others)
+
+
+def steered(choice):
+    return TeleoperationSettings(steering=SteeringSettings(choice=choice))
+
+
+def speed_after(hand, operator_input, ticks=100):
+    for _ in range(ticks):
+        wish = hand.step(operator_input)
+    return length(wish.displacement) / DT
+
+
+def test_a_stick_inside_the_round_dead_zone_moves_nothing():
+    response = StickResponse(dead_zone=0.12)
+    assert response((0.08, 0.08, 0.0)) == ZERO
+    assert response((0.1, 0.1, 0.0)) != ZERO
+
+
+def test_the_response_curve_starts_at_zero_rises_and_ends_at_full_speed():
+    response = StickResponse(dead_zone=0.1, exponent=2.0)
+    shares = [response((x, 0.0, 0.0))[0] for x in (0.1001, 0.3, 0.55, 0.8, 1.0)]
+    assert shares[0] == pytest.approx(0.0, abs=1e-6)
+    assert shares == sorted(shares)
+    assert shares[2] == pytest.approx(0.25)
+    assert shares[-1] == 1.0
+
+
+def test_a_diagonal_stick_keeps_its_direction_and_is_not_faster():
+    shares = StickResponse()((1.0, 1.0, 0.0))
+    assert shares[0] == pytest.approx(shares[1])
+    assert length(shares) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("broken", [math.nan, math.inf, -math.inf])
+def test_a_stick_that_reports_no_number_counts_as_released(broken):
+    assert StickResponse()((broken, 0.0, 0.0)) == ZERO
+
+
+def test_full_deflection_reaches_the_coarse_and_with_the_trigger_the_fine_speed():
+    assert speed_after(Hand(), push(1.0, 0.0, 0.0)) == pytest.approx(SETTINGS.coarse_speed)
+    assert speed_after(Hand(), push(1.0, 0.0, 0.0, fine=True)) == pytest.approx(SETTINGS.fine_speed)
+
+
+def test_speed_never_changes_faster_than_the_acceleration_limit_while_the_stick_is_held():
+    hand = Hand()
+    last = ZERO
+    for stick in [(1.0, 0.0, 0.0)] * 50 + [(-1.0, 0.5, 0.0)] * 80 + [(0.0, 0.0, 1.0)] * 50:
+        velocity = tuple(d / DT for d in hand.step(push(*stick)).displacement)
+        assert distance(velocity, last) <= SETTINGS.acceleration * DT * (1 + 1e-9)
+        last = velocity
+
+
+def test_the_arm_stops_in_the_tick_in_which_the_stick_is_released():
+    hand = Hand()
+    speed_after(hand, push(0.0, 1.0, 0.0))
+    wish = hand.step()
+    assert wish.motion is Motion.NONE
+    assert wish.displacement == ZERO
+
+
+def test_right_forward_and_up_are_those_of_the_camera_in_front_of_the_face():
+    for stick in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
+        assert unit(Hand().step(push(*stick)).displacement) == pytest.approx(stick)
+
+
+def test_right_forward_and_up_are_those_of_the_robot_where_chosen():
+    ahead = Hand(axes=ROBOT_AXES).step(push(0.0, 1.0, 0.0)).displacement
+    right = Hand(axes=ROBOT_AXES).step(push(1.0, 0.0, 0.0)).displacement
+    assert unit(ahead) == pytest.approx((1.0, 0.0, 0.0))
+    assert unit(right) == pytest.approx((0.0, -1.0, 0.0))
+
+
+def test_a_camera_that_looks_down_still_pushes_away_level_and_up_upward():
+    tilted = camera_axes((0.0, 0.8, -0.6), (0.0, 0.6, 0.8))
+    overhead = camera_axes((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+    assert tilted == overhead == FRONT_CAMERA
+
+
+def test_a_jog_moves_for_its_duration_and_then_stops():
+    hand = Hand(TeleoperationSettings(acceleration=1e6))
+    hand.teleoperation.start(JogCommand(velocity=(0.0, 0.1, 0.0), duration=0.1))
+    start = hand.tip.position
+    assert hand.run_until_end() is Outcome.REACHED
+    assert hand.tip.position == pytest.approx(add(start, (0.0, 0.01, 0.0)), abs=1e-9)
+    assert hand.step().motion is Motion.NONE
+
+
+def test_a_jog_replaced_by_another_goes_on_without_a_stop():
+    hand = Hand()
+    for _ in range(20):
+        hand.teleoperation.start(JogCommand(velocity=(0.1, 0.0, 0.0), duration=0.1))
+        for _ in range(12):
+            wish = hand.step()
+    assert wish.motion is Motion.JOG
+    assert length(wish.displacement) == pytest.approx(0.1 * DT)
+
+
+def test_a_move_ends_on_its_target_and_never_exceeds_its_speed():
+    hand = Hand()
+    target = (0.42, 0.13, 0.41)
+    hand.teleoperation.start(MoveCommand(position=target, speed=0.1))
+    fastest = 0.0
+    while (wish := hand.step()).ended is None:
+        fastest = max(fastest, length(wish.displacement) / DT)
+    assert wish.ended is Outcome.REACHED
+    assert distance(hand.tip.position, target) <= ARRIVED
+    assert fastest <= 0.1 * (1 + 1e-9)
+
+
+def test_a_move_turns_the_tool_as_told_even_where_its_direction_is_free():
+    hand = Hand()
+    goal = unit((0.0, 1.0, -1.0))
+    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.45), speed=0.1, direction=goal))
+    assert hand.run_until_end() is Outcome.REACHED
+    assert angle(hand.tip.direction, goal) < 1e-9
+
+
+def test_a_move_that_gets_no_nearer_gives_up_and_says_that_it_was_blocked():
+    hand = Hand()
+    hand.blocked = True
+    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.3), speed=0.1))
+    assert hand.run_until_end(most_ticks=200) is Outcome.BLOCKED
+
+
+def test_a_stick_overrides_a_commanded_motion():
+    hand = Hand()
+    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.3), speed=0.1))
+    hand.step()
+    wish = hand.step(push(1.0, 0.0, 0.0))
+    assert wish.ended is Outcome.OVERRIDDEN
+    assert wish.motion is Motion.STICK
+    assert hand.step().motion is Motion.NONE
+
+
+def test_in_position_mode_the_tool_direction_is_free_and_the_second_stick_does_nothing():
+    hand = Hand()
+    assert hand.step(push(1.0, 0.0, 0.0)).direction is None
+    assert hand.step(OperatorInput(rotation=(1.0, 0.0))).motion is Motion.NONE
+
+
+def test_a_held_direction_stays_until_the_second_stick_turns_it():
+    hand = Hand(steered(ToolDirection.HELD))
+    for _ in range(50):
+        assert hand.step(push(1.0, 0.0, 0.0)).direction == DOWN
+    for _ in range(50):
+        wish = hand.step(OperatorInput(rotation=(1.0, 0.0)))
+    assert wish.displacement == ZERO
+    turned = hand.tip.direction
+    assert turned[0] > 0.1
+    assert turned[1] == pytest.approx(0.0)
+    assert angle(turned, DOWN) == pytest.approx(50 * DT * SteeringSettings().coarse_turn)
+
+
+def test_steering_up_pitches_a_tool_that_points_down_away_from_the_viewer():
+    hand = Hand(steered(ToolDirection.HELD))
+    for _ in range(50):
+        hand.step(OperatorInput(rotation=(0.0, 1.0)))
+    assert hand.tip.direction[1] > 0.1
+    assert hand.tip.direction[0] == pytest.approx(0.0)
+
+
+def test_near_the_head_the_tool_turns_along_the_surface_normal_where_chosen():
+    normal = unit((0.0, -1.0, 0.3))
+    near = Hand(steered(ToolDirection.NORMAL), surface=Surface(clearance=0.03, normal=normal))
+    far = Hand(steered(ToolDirection.NORMAL), surface=Surface(clearance=0.2, normal=normal))
+    for _ in range(600):
+        near.step(push(0.2, 0.0, 0.0))
+        far.step(push(0.2, 0.0, 0.0))
+    assert near.tip.direction == pytest.approx(tuple(-v for v in normal))
+    assert far.tip.direction == DOWN
