@@ -1,0 +1,1 @@
+"""Slicer's side: what works on MRML nodes, in desktop Slicer and without it, and needs no Qt."""

@@ -1,0 +1,4 @@
+"""From a volume of a patient's head to a closed surface that the simulator can train on.
+
+Needs VTK, numpy and scipy, which Slicer brings along; `volume.volume_from_node` alone knows MRML.
+"""

@@ -1,0 +1,108 @@
+"""Make a voxel body free of tunnels, by filling as little as possible.
+
+The body is carved out of a larger one that has no tunnel, one voxel at a time, and only where that
+cannot change the topology ("simple points", Bertrand and Malandain 1994): what is left differs from
+the wanted body by thin membranes that close its tunnels.
+"""
+
+from __future__ import annotations
+
+import heapq
+from functools import lru_cache
+
+import numpy as np
+from scipy import ndimage
+
+_OFFSETS = [
+    (x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) != (0, 0, 0)
+]
+
+
+def _bits(chosen) -> int:
+    return sum(1 << index for index, offset in enumerate(_OFFSETS) if chosen(offset))
+
+
+def _touching(offset, reach: int) -> int:
+    """Return the neighbors, as bits, that share a face (reach 1) or at least a corner (3)."""
+
+    def touches(other) -> bool:
+        steps = [abs(a - b) for a, b in zip(offset, other, strict=True)]
+        return max(steps) == 1 and sum(steps) <= reach
+
+    return _bits(touches)
+
+
+_FACES = _bits(lambda offset: sum(map(abs, offset)) == 1)
+_FACES_AND_EDGES = _bits(lambda offset: sum(map(abs, offset)) <= 2)
+_ALL = (1 << 26) - 1
+_BY_FACE = [_touching(offset, 1) for offset in _OFFSETS]
+_BY_CORNER = [_touching(offset, 3) for offset in _OFFSETS]
+
+
+@lru_cache(maxsize=1 << 20)
+def is_simple(neighbors: int) -> bool:
+    """Tell whether the middle voxel of 3×3×3 may be removed without a change of topology.
+
+    Args:
+        neighbors: the 26 neighbors that are set, one bit each; the body is connected through faces,
+            its outside through faces, edges and corners.
+    """
+    inside = neighbors & _FACES_AND_EDGES
+    outside = _ALL & ~neighbors
+    if not inside & _FACES or not outside & _FACES:
+        return False
+    return _is_one(inside, inside & _FACES, _BY_FACE) and _is_one(outside, outside, _BY_CORNER)
+
+
+def _is_one(members: int, wanted: int, touching: list[int]) -> bool:
+    """Tell whether all `wanted` bits are connected with each other through `members`."""
+    reached = frontier = wanted & -wanted
+    while frontier:
+        lowest = frontier & -frontier
+        new = touching[lowest.bit_length() - 1] & members & ~reached
+        reached |= new
+        frontier = (frontier ^ lowest) | new
+    return not wanted & ~reached
+
+
+def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return `body` carved towards `wanted`, with the topology of `body`.
+
+    Args:
+        body: (i, j, k) bool, contains `wanted`.
+        wanted: (i, j, k) bool.
+    """
+    # A border of one voxel lets every voxel have 26 neighbors; the neck goes on below.
+    sides = [(1, 1), (1, 1), (0, 1)]
+    below = [(0, 0), (0, 0), (1, 0)]
+    result = np.pad(np.pad(body, sides), below, mode="edge")
+    keep = np.pad(np.pad(wanted, sides), below, mode="edge")
+    keep[:, :, 0] = True
+    _carve(result, keep)
+    return result[1:-1, 1:-1, 1:-1]
+
+
+def _carve(result: np.ndarray, keep: np.ndarray) -> None:
+    """Remove simple voxels of `result` that are not in `keep`, the farthest from `keep` first."""
+    flat, kept = result.ravel(), keep.ravel()
+    distance = ndimage.distance_transform_edt(~keep).ravel()
+    steps = [int(np.ravel_multi_index(np.add(o, 1), result.shape)) for o in _OFFSETS]
+    middle = int(np.ravel_multi_index((1, 1, 1), result.shape))
+    steps = [step - middle for step in steps]
+    near = [
+        step for step, offset in zip(steps, _OFFSETS, strict=True) if sum(map(abs, offset)) == 1
+    ]
+    border = result & ~keep & ~ndimage.binary_erosion(result, border_value=True)
+    queue = [(-float(distance[index]), int(index)) for index in np.flatnonzero(border.ravel())]
+    heapq.heapify(queue)
+    waiting = {index for _, index in queue}
+    while queue:
+        _, index = heapq.heappop(queue)
+        waiting.discard(index)
+        if not is_simple(sum(1 << bit for bit, step in enumerate(steps) if flat[index + step])):
+            continue
+        flat[index] = False
+        for neighbor in (index + step for step in near):
+            if flat[neighbor] and not kept[neighbor] and neighbor not in waiting:
+                waiting.add(neighbor)
+                heapq.heappush(queue, (-float(distance[neighbor]), neighbor))

@@ -1,0 +1,70 @@
+"""A volume as the head's extraction wants it: an array and where it lies in the patient."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import slicer
+import vtk
+from scipy import ndimage
+from vtk.util.numpy_support import vtk_to_numpy
+
+from rastrainer.errors import InputError
+
+
+@dataclass(frozen=True)
+class Volume:
+    """A scalar image.
+
+    Attributes:
+        values: (i, j, k) float.
+        ijk_to_ras: (4, 4) float, maps voxel indices to patient coordinates, mm.
+    """
+
+    values: np.ndarray
+    ijk_to_ras: np.ndarray
+
+
+def volume_from_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
+    """Return the image of a volume node."""
+    image = node.GetImageData()
+    matrix = vtk.vtkMatrix4x4()
+    node.GetIJKToRASMatrix(matrix)
+    scalars = vtk_to_numpy(image.GetPointData().GetScalars())
+    values = scalars.reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
+    ijk_to_ras = [[matrix.GetElement(row, column) for column in range(4)] for row in range(4)]
+    return Volume(values.astype(np.float32), np.array(ijk_to_ras))
+
+
+def read_volume(path: Path) -> Volume:
+    """Read a volume of any format that Slicer's volume reader knows.
+
+    Raises:
+        InputError: the file is missing or is no such volume.
+    """
+    if not Path(path).is_file():
+        raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
+    scene = slicer.vtkMRMLScene()
+    node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
+    storage = slicer.vtkMRMLVolumeArchetypeStorageNode()
+    storage.SetFileName(str(path))
+    if not storage.ReadData(node) or node.GetImageData() is None:
+        raise InputError(f"{path} could not be read as a volume such as NIfTI or NRRD.")
+    return volume_from_node(node)
+
+
+def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
+    """Return the volume on a cubic grid whose axes run to the right, anterior and superior."""
+    corners = np.array(np.meshgrid(*[(0, n - 1) for n in volume.values.shape])).reshape(3, -1).T
+    corners = corners @ volume.ijk_to_ras[:3, :3].T + volume.ijk_to_ras[:3, 3]
+    origin, extent = corners.min(axis=0), np.ptp(corners, axis=0)
+    grid_to_ras = np.diag([spacing_mm] * 3 + [1.0])
+    grid_to_ras[:3, 3] = origin
+    grid_to_ijk = np.linalg.inv(volume.ijk_to_ras) @ grid_to_ras
+    shape = tuple(int(n) for n in np.floor(extent / spacing_mm + 1e-6) + 1)
+    values = ndimage.affine_transform(
+        volume.values, grid_to_ijk[:3, :3], grid_to_ijk[:3, 3], shape, order=1
+    )
+    return Volume(values, grid_to_ras)

@@ -1,0 +1,42 @@
+"""Finds and creates our nodes in the scene, whatever users have renamed, deleted or reloaded."""
+
+from __future__ import annotations
+
+from typing import Any
+
+ROLE_ATTRIBUTE = "RASTrainer.role"
+
+
+class Role:
+    """What a node of ours is for. It stays when the node is renamed, saved and loaded again."""
+
+    HEAD_MODEL = "head model"
+    FIXED_FIDUCIALS = "fixed fiducials"
+    TARGET = "target"
+    CAPTURED_POINTS = "captured points"
+    WORLD_TO_HEAD = "world to head"
+    RESIDUALS = "residuals"
+    RESIDUAL_ARROWS = "residual arrows"
+    FITS = "fits"
+
+
+def findNode(scene: Any, className: str, role: str) -> Any | None:
+    """Return the first node of the class with the role, or None."""
+    nodes = scene.GetNodesByClass(className)
+    nodes.UnRegister(None)
+    for index in range(nodes.GetNumberOfItems()):
+        node = nodes.GetItemAsObject(index)
+        if node.GetAttribute(ROLE_ATTRIBUTE) == role:
+            return node
+    return None
+
+
+def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
+    """Return the node of the class with the role, added under `name` where there is none."""
+    node = findNode(scene, className, role)
+    if node is None:
+        node = scene.AddNewNodeByClass(className, name)
+        node.SetAttribute(ROLE_ATTRIBUTE, role)
+        if node.IsA("vtkMRMLDisplayableNode"):
+            node.CreateDefaultDisplayNodes()
+    return node

@@ -1,0 +1,107 @@
+"""A small OpenIGTLink server for the tests of Slicer's side: real sockets, scripted answers."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import queue
+import socket
+import threading
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rastrainer.igtl.command import ERROR_KEY, FAIL, STATUS_KEY, SUCCESS, Command, CommandReply
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.stream import MessageReader
+from rastrainer.protocol import Device
+
+Refusal = str
+Responder = Callable[[str, dict[str, Any]], "Mapping[str, Any] | Refusal | None"]
+
+
+class SimulatorDouble:
+    """Listens on a free port of the loopback; `port` may be given to come back on the same one.
+
+    `responder(name, arguments)` gives each command's answer: data, a sentence of refusal, or None
+    for no answer at all. Everything received stands in `commands`.
+    """
+
+    def __init__(self, responder: Responder | None = None, port: int = 0) -> None:
+        self._responder = responder or (lambda _name, _arguments: {})
+        self._listener = socket.create_server(("127.0.0.1", port))
+        self.port = self._listener.getsockname()[1]
+        self._peers: list[socket.socket] = []
+        self._lock = threading.Lock()
+        self._nextNumber = 1
+        self.received: queue.Queue[Message] = queue.Queue()
+        self.commands: list[tuple[str, dict[str, Any]]] = []
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def __enter__(self) -> SimulatorDouble:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        # Shutting down wakes the thread in accept; closing alone leaves it there.
+        for open_socket in (self._listener, *self._peers):
+            with contextlib.suppress(OSError):
+                open_socket.shutdown(socket.SHUT_RDWR)
+            open_socket.close()
+
+    def send(self, device: str, content: Any, metadata: Mapping[str, str] | None = None) -> None:
+        self.send_bytes(pack(Message(device, content, metadata or {})))
+
+    def send_bytes(self, data: bytes) -> None:
+        with self._lock:
+            for peer in self._peers:
+                peer.sendall(data)
+
+    def send_command(self, name: str, arguments: Mapping[str, Any]) -> None:
+        command = Command(self._nextNumber, name, json.dumps(arguments))
+        self._nextNumber += 1
+        self.send(Device.COMMAND, command)
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                peer = self._listener.accept()[0]
+            except OSError:
+                return
+            with self._lock:
+                self._peers.append(peer)
+            threading.Thread(target=self._receive, args=(peer,), daemon=True).start()
+
+    def _receive(self, peer: socket.socket) -> None:
+        # The odd greeting of Slicer has no device name; our reader accepts it.
+        reader = MessageReader()
+        try:
+            while data := peer.recv(65536):
+                for message in reader.feed(data):
+                    self.received.put(message)
+                    if type(message.content) is Command:
+                        self._answer(message.content)
+        except OSError:
+            pass
+
+    def _answer(self, command: Command) -> None:
+        arguments = json.loads(command.body or "{}")
+        self.commands.append((command.name, arguments))
+        answer = self._responder(command.name, arguments)
+        if answer is None:
+            return
+        is_refusal = isinstance(answer, str)
+        metadata = {STATUS_KEY: FAIL, ERROR_KEY: answer} if is_refusal else {STATUS_KEY: SUCCESS}
+        body = "{}" if is_refusal else json.dumps(answer)
+        self.send(Device.COMMAND, CommandReply(command.command_id, command.name, body), metadata)
+
+
+def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 5.0):
+    """Call `process` every few ms until `condition()`; the host's timer, in a test."""
+    end = time.monotonic() + timeout
+    while not condition():
+        assert time.monotonic() < end, "the awaited did not happen in time"
+        process()
+        time.sleep(0.002)

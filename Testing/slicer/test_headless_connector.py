@@ -1,0 +1,280 @@
+"""The stand-in of the connector behaves as `vtkMRMLIGTLConnectorNode` was measured to behave."""
+
+import struct
+import time
+
+import pytest
+import slicer
+import vtk
+
+from rastrainer.igtl.checksum import crc64
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.points import Point, Points
+from rastrainer.slicer.headless_command import HeadlessCommand
+from rastrainer.slicer.headless_connector import HeadlessConnector
+from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+
+SHIFT = ((1, 0, 0, 10), (0, 1, 0, 20), (0, 0, 1, 30), (0, 0, 0, 1))
+
+
+@pytest.fixture
+def connector(scene, simulator):
+    connector = started_connector(scene, simulator.port)
+    yield connector
+    connector.Stop()
+
+
+def started_connector(scene, port):
+    connector = HeadlessConnector()
+    scene.AddNode(connector)
+    connector.SetTypeClient("127.0.0.1", port)
+    assert connector.Start() == 1
+    wait_until(lambda: connector.GetState() == connector.StateConnected, lambda: None)
+    return connector
+
+
+def wait_for(connector, condition):
+    wait_until(condition, connector.PeriodicProcess)
+
+
+def sent(connector, name, content="{}", timeout=5.0):
+    command = HeadlessCommand()
+    command.SetName(name)
+    command.SetCommandContent(content)
+    command.SetTimeoutSec(timeout)
+    connector.SendCommand(command)
+    return command
+
+
+def incoming(connector, name):
+    nodes = map(connector.GetIncomingMRMLNode, range(connector.GetNumberOfIncomingMRMLNodes()))
+    return next((node for node in nodes if node is not None and node.GetName() == name), None)
+
+
+def point_list(count):
+    return Points(tuple(Point(str(i + 1), (float(i), 0.0, 0.0)) for i in range(count)))
+
+
+def empty_list_without_metadata(device):
+    """Our own codec refuses to write this."""
+    header = pack(Message(device, Points(()), {"a": "b"}))[:42]
+    body = bytes.fromhex("000c 0000 00000000 00000000")
+    return header + struct.pack(">QQ", len(body), crc64(body)) + body
+
+
+def count_events(node, event):
+    events = []
+    node.AddObserver(event, lambda *_: events.append(event))
+    return events
+
+
+def received_commands(connector):
+    names = []
+
+    def keep(_caller, _event, command):
+        names.append((command.GetName(), command.GetCommandContent()))
+
+    keep.CallDataType = vtk.VTK_OBJECT
+    connector.AddObserver(connector.CommandReceivedEvent, keep)
+    return names
+
+
+def test_a_transform_becomes_a_linear_transform_to_parent(connector, simulator, scene):
+    simulator.send("ToolTipToWorld", Transform.from_matrix(SHIFT), {"seq": "7"})
+    wait_for(connector, lambda: incoming(connector, "ToolTipToWorld"))
+    node = scene.GetFirstNode("ToolTipToWorld", "vtkMRMLLinearTransformNode")
+    assert slicer.util.arrayFromTransformMatrix(node).tolist() == [list(row) for row in SHIFT]
+    assert node.GetAttribute("OpenIGTLink.seq") == "7"
+
+
+def test_metadata_stays_on_the_node_and_status_keys_also_stand_bare(connector, simulator):
+    simulator.send("T", Transform.from_matrix(SHIFT), {"seq": "1", "TransformStatus": "OK"})
+    wait_for(connector, lambda: incoming(connector, "T"))
+    simulator.send("T", Transform.from_matrix(SHIFT), {"other": "2"})
+    node = incoming(connector, "T")
+    wait_for(connector, lambda: node.GetAttribute("OpenIGTLink.other") == "2")
+    assert node.GetAttribute("OpenIGTLink.seq") == "1"
+    assert node.GetAttribute("TransformStatus") == "OK"
+
+
+def test_points_always_replace_the_whole_list_and_keep_their_labels(connector, simulator):
+    simulator.send("CapturedPoints", point_list(3))
+    wait_for(connector, lambda: incoming(connector, "CapturedPoints"))
+    node = incoming(connector, "CapturedPoints")
+    assert [node.GetNthControlPointLabel(i) for i in range(3)] == ["1", "2", "3"]
+    simulator.send("CapturedPoints", point_list(2))
+    wait_for(connector, lambda: node.GetNumberOfControlPoints() == 2)
+
+
+def test_an_empty_list_clears_the_points_only_with_metadata(connector, simulator):
+    simulator.send("CapturedPoints", point_list(3))
+    wait_for(connector, lambda: incoming(connector, "CapturedPoints"))
+    node = incoming(connector, "CapturedPoints")
+    simulator.send_bytes(empty_list_without_metadata("CapturedPoints"))
+    simulator.send("Later", String("x"))
+    wait_for(connector, lambda: incoming(connector, "Later"))
+    assert node.GetNumberOfControlPoints() == 3
+    simulator.send("CapturedPoints", Points(()), {"seq": "2"})
+    wait_for(connector, lambda: node.GetNumberOfControlPoints() == 0)
+
+
+def test_a_node_of_that_name_and_class_is_adopted_with_its_display(connector, simulator, scene):
+    ours = scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "CapturedPoints")
+    ours.CreateDefaultDisplayNodes()
+    ours.GetDisplayNode().SetGlyphScale(7.0)
+    simulator.send("CapturedPoints", point_list(1))
+    wait_for(connector, lambda: incoming(connector, "CapturedPoints"))
+    assert incoming(connector, "CapturedPoints") is ours
+    assert ours.GetDisplayNode().GetGlyphScale() == 7.0
+
+
+def test_a_node_that_was_deleted_comes_again_with_the_next_message(connector, simulator, scene):
+    simulator.send("SimState", String("one"))
+    wait_for(connector, lambda: incoming(connector, "SimState"))
+    scene.RemoveNode(incoming(connector, "SimState"))
+    simulator.send("SimState", String("two"))
+    wait_for(connector, lambda: incoming(connector, "SimState"))
+    assert scene.GetFirstNode("SimState", "vtkMRMLTextNode").GetText() == "two"
+
+
+def test_of_a_burst_the_latest_of_each_device_wins(connector, simulator, scene):
+    node = scene.AddNewNodeByClass("vtkMRMLTextNode", "SimState")
+    changes = count_events(node, node.TextModifiedEvent)
+    for number in range(100):
+        simulator.send("SimState", String(str(number)))
+    simulator.send("Last", String("x"))
+    time.sleep(0.1)
+    wait_for(connector, lambda: incoming(connector, "Last"))
+    assert node.GetText() == "99"
+    assert len(changes) == 1
+
+
+def test_commands_come_first_and_in_order_and_none_is_lost(connector, simulator):
+    commands = received_commands(connector)
+    simulator.send("SimState", String("x"))
+    order = []
+    scene = connector.GetScene()
+    scene.AddObserver(scene.NodeAddedEvent, lambda *_: order.append(len(commands)))
+    for number in range(500):
+        simulator.send_command("TrialCompleted", {"number": number})
+    time.sleep(0.1)
+    wait_for(connector, lambda: len(commands) == 500 and order)
+    assert [content for _name, content in commands] == [
+        f'{{"number": {number}}}' for number in range(500)
+    ]
+    assert order[0] > 0
+
+
+def test_a_wrong_checksum_creates_the_node_but_does_not_fill_it(connector, simulator):
+    damaged = bytearray(pack(Message("SimState", String("hello"))))
+    damaged[-1] ^= 1
+    simulator.send_bytes(bytes(damaged))
+    wait_for(connector, lambda: incoming(connector, "SimState"))
+    assert not incoming(connector, "SimState").GetText()
+
+
+def test_a_status_arrives_with_code_and_message(connector, simulator):
+    simulator.send("SimServer", Status(1, 2, "fine", "all is well"))
+    wait_for(connector, lambda: incoming(connector, "SimServer"))
+    node = incoming(connector, "SimServer")
+    assert (node.GetCode(), node.GetSubCode()) == (1, 2)
+    assert (node.GetErrorName(), node.GetStatusString()) == ("fine", "all is well")
+
+
+def test_each_connection_opens_with_the_nameless_status_that_slicer_sends(connector, simulator):
+    wait_for(connector, lambda: not simulator.received.empty())
+    greeting = simulator.received.get_nowait()
+    assert greeting.device == ""
+    assert greeting.content.code == 0
+    assert greeting.metadata == {"dummy": "dummy"}
+    assert greeting.timestamp == 0.0
+
+
+def test_an_answer_completes_its_command(scene):
+    with SimulatorDouble(lambda name, arguments: {"echo": name, **arguments}) as simulator:
+        connector = started_connector(scene, simulator.port)
+        command = HeadlessCommand()
+        command.SetName("ListTasks")
+        command.SetCommandContent('{"a": 1}')
+        completed = count_events(command, command.CommandCompletedEvent)
+        connector.SendCommand(command)
+        wait_for(connector, lambda: completed)
+        assert command.GetSuccessful()
+        assert command.GetResponseContent() == '{"echo": "ListTasks", "a": 1}'
+        assert simulator.received.get().content
+        connector.Stop()
+
+
+def test_a_refusal_brings_its_sentence(scene):
+    with SimulatorDouble(lambda *_: "There is no task seven.") as simulator:
+        connector = started_connector(scene, simulator.port)
+        command = sent(connector, "StartTask")
+        wait_for(connector, command.IsCompleted)
+        assert not command.GetSuccessful()
+        assert command.GetErrorMessage() == "There is no task seven."
+        connector.Stop()
+
+
+def test_a_command_without_an_answer_expires(scene):
+    with SimulatorDouble(lambda *_: None) as simulator:
+        connector = started_connector(scene, simulator.port)
+        command = sent(connector, "Hello", timeout=0.05)
+        wait_for(connector, command.IsCompleted)
+        assert command.GetCommandStatus() == command.CommandExpired
+        connector.Stop()
+
+
+def test_a_command_without_a_connection_is_silently_not_sent(scene):
+    connector = HeadlessConnector()
+    scene.AddNode(connector)
+    command = sent(connector, "Hello")
+    assert command.GetCommandStatus() == command.CommandUnknown
+    assert not command.IsInProgress()
+
+
+def test_a_lost_connection_is_told_only_after_the_next_one(scene):
+    simulator = SimulatorDouble()
+    connector = started_connector(scene, simulator.port)
+    disconnections = count_events(connector, connector.DisconnectedEvent)
+    wait_for(connector, lambda: not simulator.received.empty())
+    simulator.close()
+    wait_for(connector, lambda: connector.GetState() == connector.StateWaitConnection)
+    connector.PeriodicProcess()
+    assert not disconnections
+    with SimulatorDouble(port=simulator.port):
+        wait_for(connector, lambda: disconnections)
+        connector.Stop()
+
+
+def test_as_a_server_it_takes_many_clients(scene):
+    connector = HeadlessConnector()
+    scene.AddNode(connector)
+    connector.SetTypeServer(0)
+    connector.Start()
+    port = connector.GetServerPort()
+    with Client(port=port) as first, Client(port=port) as second:
+        first.send(Message("One", String("1")))
+        second.send(Message("Two", String("2")))
+        wait_for(connector, lambda: incoming(connector, "One") and incoming(connector, "Two"))
+    connector.Stop()
+    assert connector.GetState() == connector.StateOff
+
+
+def test_what_would_crash_slicer_is_an_error_here(connector, simulator):
+    data = bytearray(pack(Message("SimServer", Status(1))))
+    data[2:14] = b"GET_STATUS\0\0"
+    simulator.send_bytes(bytes(data))
+    with pytest.raises(RuntimeError, match="would not have survived"):
+        wait_for(connector, lambda: False)
+
+
+def test_a_type_that_slicer_does_not_know_is_logged_and_ignored(connector, simulator, caplog):
+    data = bytearray(pack(Message("Tracker", Status(1))))
+    data[2:14] = b"POSITION\0\0\0\0"
+    simulator.send_bytes(bytes(data))
+    simulator.send("Later", String("x"))
+    wait_for(connector, lambda: incoming(connector, "Later"))
+    assert incoming(connector, "Tracker") is None
+    assert "unknown device type POSITION" in caplog.text
