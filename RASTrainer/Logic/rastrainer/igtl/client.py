@@ -1,0 +1,194 @@
+"""A plain client: one connection, one receiving thread, commands that wait for their answer."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import json
+import socket
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NoResult
+from dataclasses import dataclass, field
+from typing import Any
+
+from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.igtl.command import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.stream import MessageReader
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, Device, decode_json_object
+
+_PIECE_BYTES = 64 * 1024
+
+
+class LinkError(RASTrainerError):
+    """The connection could not be made, was lost, or did not answer in time."""
+
+
+@dataclass(frozen=True)
+class Reply:
+    """The answer to a command: whether it succeeded, the sentence if not, and the data."""
+
+    ok: bool
+    error: str = ""
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+
+class Client:
+    """A connection to an OpenIGTLink server; close it, or use it in a `with` statement.
+
+    `on_message` is called in the receiving thread with every message that is not an answer to
+    `send_command`; it must not itself wait for an answer.
+
+    Attributes:
+        latest: the last message of each device, by its name.
+    """
+
+    def __init__(
+        self,
+        host: str = DEFAULT_HOST,
+        port: int = DEFAULT_PORT,
+        on_message: Callable[[Message], None] | None = None,
+        timeout: float = 5.0,
+    ):
+        """Connect within `timeout` seconds.
+
+        Raises:
+            LinkError: nothing listens there, or it does not answer in time.
+        """
+        try:
+            self._socket = socket.create_connection((host, port), timeout)
+        except OSError as error:
+            reason = error.strerror or "no answer in time"
+            raise LinkError(f"No connection to {host}:{port}: {reason}.") from None
+        self._socket.settimeout(None)
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._on_message = on_message
+        self._reader = MessageReader()
+        self._sending = threading.Lock()
+        self._news = threading.Condition()
+        self._numbers = itertools.count(1)
+        self._waiting: dict[int, Future[Reply]] = {}
+        self._is_open = True
+        self.latest: dict[str, Message] = {}
+        self._thread = threading.Thread(target=self._receive, name="igtl-client", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.close()
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the connection stands, as far as this side knows."""
+        return self._is_open
+
+    def close(self) -> None:
+        """Close the connection and wait for the receiving thread."""
+        with contextlib.suppress(OSError):  # The other side may have been faster.
+            self._socket.shutdown(socket.SHUT_RDWR)
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
+
+    def send(self, message: Message) -> None:
+        """Send one message.
+
+        Raises:
+            InputError: the message cannot travel.
+            LinkError: the connection is lost.
+        """
+        data = pack(message)
+        try:
+            with self._sending:
+                self._socket.sendall(data)
+        except OSError:
+            raise LinkError("The connection is lost.") from None
+
+    def send_command(
+        self, name: str, arguments: Mapping[str, Any] | None = None, timeout: float = 5.0
+    ) -> Reply:
+        """Send a command and return its answer.
+
+        Raises:
+            LinkError: the connection is lost, or no answer within `timeout` seconds.
+        """
+        number = next(self._numbers)
+        answer: Future[Reply] = Future()
+        self._waiting[number] = answer
+        try:
+            body = json.dumps(dict(arguments or {}), allow_nan=False)
+            self.send(Message(Device.COMMAND, Command(number, name, body)))
+            if not self._is_open:
+                raise LinkError("The connection is lost.")
+            return answer.result(timeout)
+        except NoResult:
+            raise LinkError(f"No answer to {name} within {timeout:g} s.") from None
+        finally:
+            self._waiting.pop(number, None)
+
+    def wait_for(
+        self,
+        device: str,
+        accept: Callable[[Message], bool] = lambda _message: True,
+        timeout: float = 5.0,
+    ) -> Message:
+        """Return the latest message of `device` as soon as there is one that `accept` accepts.
+
+        Raises:
+            LinkError: none within `timeout` seconds, or the connection is lost.
+        """
+
+        def has_arrived() -> bool:
+            return device in self.latest and accept(self.latest[device])
+
+        with self._news:
+            self._news.wait_for(lambda: has_arrived() or not self._is_open, timeout)
+            if has_arrived():
+                return self.latest[device]
+            if not self._is_open:
+                raise LinkError("The connection is lost.")
+            raise LinkError(f"Nothing that fits from {device} within {timeout:g} s.")
+
+    def _receive(self) -> None:
+        try:
+            while not self._reader.refusal:
+                data = self._socket.recv(_PIECE_BYTES)
+                if not data:
+                    break
+                for message in self._reader.feed(data):
+                    self._accept(message)
+        except OSError:
+            pass  # A reset connection is a closed one.
+        finally:
+            self._socket.close()
+            with self._news:
+                self._is_open = False
+                self._news.notify_all()
+            for answer in list(self._waiting.values()):
+                answer.set_exception(LinkError("The connection is lost."))
+
+    def _accept(self, message: Message) -> None:
+        if type(message.content) is CommandReply:
+            answer = self._waiting.pop(message.content.command_id, None)
+            if answer is not None:
+                _resolve(answer, message)
+            return
+        with self._news:
+            self.latest[message.device] = message
+            self._news.notify_all()
+        if self._on_message is not None:
+            self._on_message(message)
+
+
+def _resolve(answer: Future[Reply], message: Message) -> None:
+    """Give the waiting thread what an answer says; its body is the other side's, so checked."""
+    try:
+        data = decode_json_object(message.content.body)
+    except InputError:
+        answer.set_exception(LinkError("An answer's body must be a JSON object."))
+        return
+    is_success = message.metadata.get(STATUS_KEY) == SUCCESS
+    answer.set_result(Reply(is_success, message.metadata.get(ERROR_KEY, ""), data))

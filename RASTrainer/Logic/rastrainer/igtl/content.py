@@ -1,0 +1,143 @@
+"""The simple contents of messages: a transform, a text, a status."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.wire import (
+    check_float32,
+    decode_text,
+    encode_text,
+    pack_name,
+    unpack_name,
+)
+
+_TRANSFORM = struct.Struct(">12f")
+_STRING = struct.Struct(">HH")
+_STATUS = struct.Struct(">HQ20s")
+
+LONGEST_STRING = 65_535
+"""Bytes that a STRING holds: its length is a 16-bit number."""
+
+
+@dataclass(frozen=True)
+class Transform:
+    """A homogeneous transform in mm; becomes a linear transform node in Slicer.
+
+    Attributes:
+        columns: twelve numbers, the three columns of the rotation and then the translation.
+    """
+
+    TYPE: ClassVar[str] = "TRANSFORM"
+    columns: tuple[float, ...]
+
+    def __post_init__(self):
+        if len(self.columns) != 12:
+            raise InputError("A transform must have 12 numbers: three columns and a translation.")
+        check_float32(self.columns, "The numbers of a transform")
+
+    @classmethod
+    def from_matrix(cls, matrix: Sequence[Sequence[float]]) -> Transform:
+        """Return the transform of a `(4, 4) float` matrix in mm, whose last row is not sent."""
+        return cls(tuple(float(matrix[row][column]) for column in range(4) for row in range(3)))
+
+    @property
+    def matrix(self) -> tuple[tuple[float, ...], ...]:
+        """The `(4, 4) float` matrix, row by row."""
+        return (*(self.columns[row::3] for row in range(3)), (0.0, 0.0, 0.0, 1.0))
+
+    def pack(self) -> bytes:
+        """Return the content's 48 bytes."""
+        return _TRANSFORM.pack(*self.columns)
+
+    @classmethod
+    def unpack(cls, data: bytes) -> Transform:
+        """Return the transform that `data` holds.
+
+        Raises:
+            InputError: a wrong length, or a number that is not finite.
+        """
+        if len(data) != _TRANSFORM.size:
+            raise InputError(f"A TRANSFORM must have {_TRANSFORM.size} bytes, not {len(data)}.")
+        return cls(_TRANSFORM.unpack(data))
+
+
+@dataclass(frozen=True)
+class String:
+    """A text; becomes a text node in Slicer."""
+
+    TYPE: ClassVar[str] = "STRING"
+    text: str
+
+    def pack(self) -> bytes:
+        """Return the content's bytes.
+
+        Raises:
+            InputError: more than 65,535 bytes, or a NUL in the text.
+        """
+        encoding, data = encode_text(self.text)
+        if len(data) > LONGEST_STRING:
+            raise InputError(f"A STRING must have at most {LONGEST_STRING} bytes, not {len(data)}.")
+        return _STRING.pack(encoding, len(data)) + data
+
+    @classmethod
+    def unpack(cls, data: bytes) -> String:
+        """Return the text that `data` holds.
+
+        Raises:
+            InputError: cut short, or not UTF-8.
+        """
+        if len(data) < _STRING.size:
+            raise InputError(f"A STRING must have at least {_STRING.size} bytes, not {len(data)}.")
+        _encoding, length = _STRING.unpack_from(data)
+        if length > len(data) - _STRING.size:
+            raise InputError("A STRING must be as long as it says.")
+        return cls(decode_text(data[_STRING.size : _STRING.size + length]))
+
+
+@dataclass(frozen=True)
+class Status:
+    """The state of a device; becomes a status node in Slicer.
+
+    Attributes:
+        code: 1 is well, any other number a kind of trouble that the protocol lists.
+        subcode: meaning is the device's own.
+        name: the trouble's name, at most 20 ASCII characters.
+        message: anything for people to read.
+    """
+
+    TYPE: ClassVar[str] = "STATUS"
+    OK: ClassVar[int] = 1
+    code: int
+    subcode: int = 0
+    name: str = ""
+    message: str = ""
+
+    def pack(self) -> bytes:
+        """Return the content's bytes; the message ends with a NUL.
+
+        Raises:
+            InputError: a number out of range, or a name that is not short ASCII.
+        """
+        if not (0 <= self.code < 2**16 and 0 <= self.subcode < 2**64):
+            raise InputError("A status must have a 16-bit code and a 64-bit subcode.")
+        name = pack_name(self.name, 20, "The name in a status")
+        _encoding, message = encode_text(self.message)
+        return _STATUS.pack(self.code, self.subcode, name) + message + b"\0"
+
+    @classmethod
+    def unpack(cls, data: bytes) -> Status:
+        """Return the status that `data` holds.
+
+        Raises:
+            InputError: cut short, or a message that is not UTF-8.
+        """
+        if len(data) < _STATUS.size:
+            raise InputError(f"A STATUS must have at least {_STATUS.size} bytes, not {len(data)}.")
+        code, subcode, name = _STATUS.unpack_from(data)
+        message = data[_STATUS.size :].partition(b"\0")[0]
+        return cls(code, subcode, unpack_name(name), decode_text(message))

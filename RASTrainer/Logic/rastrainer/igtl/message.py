@@ -1,0 +1,181 @@
+"""A whole message: header, extended header, content and metadata, as bytes and back.
+
+Only the types in `CONTENTS` can be sent. Slicer crashes on most types with an underscore in their
+name, so a type is no argument anywhere: it follows from the content's class.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.checksum import crc64
+from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.points import Points
+from rastrainer.igtl.wire import decode_text, encode_text, pack_name, unpack_name
+
+Content: TypeAlias = Transform | String | Points | Status | Command | CommandReply
+
+CONTENTS: Mapping[str, type] = {
+    kind.TYPE: kind for kind in (Transform, String, Points, Status, Command, CommandReply)
+}
+"""Every type that is sent or understood."""
+
+LARGEST_BODY = 16 * 2**20
+"""Bytes; a message that claims more is not waited for."""
+
+MOST_METADATA = 256
+"""Entries in the metadata of one message."""
+
+_HEADER = struct.Struct(">H12s20sIIQQ")
+_EXTENDED = struct.Struct(">HHII")
+_COUNT = struct.Struct(">H")
+_ENTRY = struct.Struct(">HHI")
+_TYPE_FIELD = re.compile(rb"[A-Z][A-Z0-9_]{0,11}\0*")
+
+HEADER_BYTES = _HEADER.size
+
+
+@dataclass(frozen=True)
+class Message:
+    """One message.
+
+    Attributes:
+        device: the device's name, 1 to 20 ASCII characters; the name of the node in Slicer.
+        content: what it carries, which also makes its type.
+        metadata: texts by key; only header version 2 carries them.
+        message_id: 32-bit number of the sender's own; only header version 2 carries it.
+        timestamp: seconds since 1970; None stamps it when packed. Slicer sends 0.
+        version: header version, 1 or 2.
+    """
+
+    device: str
+    content: Content
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    message_id: int = 0
+    timestamp: float | None = None
+    version: int = 2
+
+
+@dataclass(frozen=True)
+class Header:
+    """The first 58 bytes of a message."""
+
+    version: int
+    type: str
+    device: str
+    timestamp: float
+    body_size: int
+    checksum: int
+
+
+def pack(message: Message) -> bytes:
+    """Return the bytes of a message.
+
+    Raises:
+        InputError: something in it cannot travel, or would do harm in Slicer: a content that is
+            none of ours, a name that is too long, a body without a byte, an empty list without
+            metadata (Slicer would not clear its points).
+    """
+    if type(message.content) not in CONTENTS.values():
+        known = ", ".join(CONTENTS)
+        raise InputError(f"The content of a message must be one of {known}.")
+    device = pack_name(message.device, 20, "The device name of a message")
+    if not device:
+        raise InputError("A message must name its device.")
+    timestamp = time.time() if message.timestamp is None else message.timestamp
+    if not (0 <= timestamp < 2**32 and 0 <= message.message_id < 2**32):
+        raise InputError("The time and the number of a message must fit 32 bits.")
+    body = _pack_body(message)
+    if len(body) > LARGEST_BODY:
+        raise InputError(f"The body of a message must have at most {LARGEST_BODY} bytes.")
+    seconds = int(timestamp)
+    fraction = int((timestamp - seconds) * 2**32)
+    kind = message.content.TYPE.encode("ascii")
+    header = _HEADER.pack(message.version, kind, device, seconds, fraction, len(body), crc64(body))
+    return header + body
+
+
+def _pack_body(message: Message) -> bytes:
+    content = message.content.pack()
+    if message.version == 1:
+        if message.metadata or not content:
+            raise InputError("Metadata and empty lists must be sent with header version 2.")
+        return content
+    if message.version != 2:
+        raise InputError("The header version must be 1 or 2.")
+    if not (content or message.metadata):
+        raise InputError("An empty list must be sent with metadata.")
+    index, entries = _pack_metadata(message.metadata)
+    extended = _EXTENDED.pack(_EXTENDED.size, len(index), len(entries), message.message_id)
+    return extended + content + index + entries
+
+
+def _pack_metadata(metadata: Mapping[str, str]) -> tuple[bytes, bytes]:
+    if len(metadata) > MOST_METADATA:
+        raise InputError(f"A message must have at most {MOST_METADATA} metadata entries.")
+    index, entries = [_COUNT.pack(len(metadata))], []
+    for key, value in metadata.items():
+        key_bytes = pack_name(key, 255, "A metadata key")
+        encoding, value_bytes = encode_text(value)
+        index.append(_ENTRY.pack(len(key_bytes), encoding, len(value_bytes)))
+        entries += (key_bytes, value_bytes)
+    return b"".join(index), b"".join(entries)
+
+
+def read_header(data: bytes) -> Header | None:
+    """Return the header that the first 58 bytes of `data` hold, or None where they hold none."""
+    version, kind, device, seconds, fraction, size, checksum = _HEADER.unpack_from(data)
+    if version not in (1, 2) or not _TYPE_FIELD.fullmatch(kind):
+        return None
+    name = kind.rstrip(b"\0").decode("ascii")
+    timestamp = seconds + fraction / 2**32
+    return Header(version, name, unpack_name(device), timestamp, size, checksum)
+
+
+def unpack(header: Header, body: bytes) -> Message:
+    """Return the message of a header and the body that belongs to it; its checksum is not asked.
+
+    Raises:
+        InputError: the type is none of ours, or the body does not hold what it says.
+    """
+    kind = CONTENTS.get(header.type)
+    if kind is None:
+        raise InputError(f"The type of a message must be one of {', '.join(CONTENTS)}.")
+    if header.version == 1:
+        return Message(header.device, kind.unpack(body), {}, 0, header.timestamp, 1)
+    if len(body) < _EXTENDED.size:
+        raise InputError("A message of header version 2 must have an extended header.")
+    extended_size, index_size, entries_size, message_id = _EXTENDED.unpack_from(body)
+    content_end = len(body) - index_size - entries_size
+    if extended_size < _EXTENDED.size or content_end < extended_size:
+        raise InputError("The sizes in an extended header must fit the message.")
+    index = body[content_end : content_end + index_size]
+    metadata = _unpack_metadata(index, body[content_end + index_size :])
+    content = kind.unpack(body[extended_size:content_end])
+    return Message(header.device, content, metadata, message_id, header.timestamp, 2)
+
+
+def _unpack_metadata(index: bytes, entries: bytes) -> dict[str, str]:
+    if not index:
+        return {}
+    if len(index) < _COUNT.size:
+        raise InputError("The metadata of a message must begin with their count.")
+    (count,) = _COUNT.unpack_from(index)
+    if count > MOST_METADATA or len(index) < _COUNT.size + count * _ENTRY.size:
+        raise InputError(f"A message must list at most {MOST_METADATA} whole metadata entries.")
+    metadata, start = {}, 0
+    for number in range(count):
+        key_size, _encoding, value_size = _ENTRY.unpack_from(index, _COUNT.size + number * 8)
+        value_start, end = start + key_size, start + key_size + value_size
+        if end > len(entries):
+            raise InputError("The metadata of a message must be as long as they say.")
+        metadata[decode_text(entries[start:value_start])] = decode_text(entries[value_start:end])
+        start = end
+    return metadata

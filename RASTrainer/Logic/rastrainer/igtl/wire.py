@@ -1,0 +1,71 @@
+"""What several contents share on the wire: fixed-size names, counted texts, finite numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from rastrainer.errors import InputError
+
+ASCII = 3
+UTF8 = 106
+"""IANA numbers of the two encodings that are sent."""
+
+_FLOAT32_MAX = 3.4028234663852886e38
+
+
+def pack_name(name: str, size: int, what: str) -> bytes:
+    """Return `name` as printable ASCII of at most `size` bytes; `struct` pads it.
+
+    Raises:
+        InputError: too long, or not printable ASCII.
+    """
+    if len(name) > size or not (name.isascii() and name.isprintable()):
+        raise InputError(f"{what} must be printable ASCII of at most {size} characters.")
+    return name.encode("ascii")
+
+
+def unpack_name(field: bytes) -> str:
+    """Return the text before the first NUL; what is not ASCII is replaced, as names are shown."""
+    return field.partition(b"\0")[0].decode("ascii", "replace").rstrip()
+
+
+def encode_text(text: str) -> tuple[int, bytes]:
+    """Return the IANA number of the encoding and the bytes of `text`.
+
+    Raises:
+        InputError: the text holds a NUL, at which Slicer would cut it, or a lone surrogate.
+    """
+    if "\0" in text:
+        raise InputError("A text must not contain NUL characters.")
+    if text.isascii():
+        return ASCII, text.encode("ascii")
+    try:
+        return UTF8, text.encode("utf-8")
+    except UnicodeEncodeError:
+        raise InputError("A text must be valid Unicode.") from None
+
+
+def decode_text(data: bytes) -> str:
+    """Return the text that `data` holds in UTF-8, without the NULs that some peers append.
+
+    The announced encoding is not asked: Slicer announces ASCII for UTF-8.
+
+    Raises:
+        InputError: not UTF-8.
+    """
+    try:
+        return data.decode("utf-8").rstrip("\0")
+    except UnicodeDecodeError:
+        raise InputError("A text must be encoded in UTF-8.") from None
+
+
+def check_float32(values: Sequence[float], what: str) -> None:
+    """Check that every value is a finite 32-bit number.
+
+    Raises:
+        InputError: NaN, infinite or beyond what 32 bits hold.
+    """
+    for value in values:
+        if not (math.isfinite(value) and -_FLOAT32_MAX <= value <= _FLOAT32_MAX):
+            raise InputError(f"{what} must be finite 32-bit numbers.")

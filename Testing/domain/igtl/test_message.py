@@ -1,0 +1,208 @@
+"""Whole messages against bytes that were worked out by hand, and what can never be sent."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.checksum import crc64
+from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, Message, pack, read_header, unpack
+from rastrainer.igtl.points import Point, Points
+
+IDENTITY = Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))
+EVERY_CONTENT = [
+    Transform((0, 1, 0, -1, 0, 0, 0, 0, 1, 10.5, -20.25, 300)),
+    String("touch point 3"),
+    String("é ± 1 mm"),
+    Status(1, 7, "", "ready"),
+    Points((Point("1", (1, 2, 3)), Point("2", (4, 5, 6), (1, 2, 3, 4), "Unselected", 2.5, "Tip"))),
+    Command(2**32 - 1, "StartTask", '{"task": "task-1"}'),
+    CommandReply(5, "StartTask", "{}"),
+]
+
+
+def read(data: bytes) -> Message:
+    header = read_header(data)
+    body = data[HEADER_BYTES:]
+    assert header.body_size == len(body)
+    assert header.checksum == crc64(body)
+    return unpack(header, body)
+
+
+def test_transform_of_header_version_1_has_the_bytes_worked_out_by_hand():
+    transform = Transform((1, 4, 7, 2, 5, 8, 3, 6, 9, 10, 20, 30))
+    data = pack(Message("Tip", transform, timestamp=2.5, version=1))
+    assert data[:2] == b"\x00\x01"
+    assert data[2:14] == b"TRANSFORM\0\0\0"
+    assert data[14:34] == b"Tip" + 17 * b"\0"
+    assert data[34:42] == b"\x00\x00\x00\x02\x80\x00\x00\x00"
+    assert data[42:50] == b"\x00\x00\x00\x00\x00\x00\x00\x30"
+    floats = "3f800000 40800000 40e00000 40000000 40a00000 41000000"
+    floats += "40400000 40c00000 41100000 41200000 41a00000 41f00000"
+    assert data[58:] == bytes.fromhex(floats)
+
+
+def test_string_of_header_version_2_with_metadata_has_the_bytes_worked_out_by_hand():
+    data = pack(Message("State", String("ok"), {"k": "vv"}, message_id=9, timestamp=0))
+    extended = "000c 000a 00000003 00000009"
+    content = "0003 0002 6f6b"
+    metadata = "0001 0001 0003 00000002 6b 7676"
+    assert data[58:] == bytes.fromhex(extended + content + metadata)
+    assert data[:2] == b"\x00\x02"
+
+
+def test_fifteen_points_take_2098_bytes_with_header_version_1():
+    points = Points(tuple(Point(str(i + 1), (i, i, i)) for i in range(15)))
+    assert len(pack(Message("CapturedPoints", points, version=1))) == 2098
+
+
+def test_command_has_its_number_a_name_of_128_bytes_the_encoding_and_the_length():
+    data = pack(Message("command", Command(258, "Hello", "{}"), version=1))
+    assert data[58:62] == b"\x00\x00\x01\x02"
+    assert data[62:190] == b"Hello" + 123 * b"\0"
+    assert data[190:] == b"\x00\x03\x00\x00\x00\x02{}"
+
+
+@pytest.mark.parametrize("version", [1, 2])
+@pytest.mark.parametrize("content", EVERY_CONTENT, ids=lambda content: content.TYPE)
+def test_every_content_comes_back_as_it_was_sent(content, version):
+    assert read(pack(Message("Device", content, version=version))).content == content
+
+
+def test_metadata_number_time_and_version_come_back():
+    sent = Message("Tip", IDENTITY, {"seq": "12", "note": "3 ± 1"}, 77, 1234.5, 2)
+    assert read(pack(sent)) == sent
+
+
+def test_empty_list_of_points_travels_with_metadata():
+    message = read(pack(Message("CapturedPoints", Points(()), {"count": "0"})))
+    assert message.content == Points(())
+
+
+def test_longer_extended_header_is_passed_over_by_its_own_size():
+    content = String("ok").pack()
+    body = struct.pack(">HHII", 16, 0, 0, 5) + b"new!" + content
+    header = struct.pack(">H12s20sIIQQ", 2, b"STRING", b"S", 0, 0, len(body), crc64(body))
+    message = read(header + body)
+    assert (message.content, message.message_id) == (String("ok"), 5)
+
+
+def test_transform_from_a_matrix_keeps_rows_and_columns_apart():
+    rows = ((1, 2, 3, 10), (4, 5, 6, 20), (7, 8, 9, 30), (0, 0, 0, 1))
+    transform = Transform.from_matrix(rows)
+    assert transform.columns == (1, 4, 7, 2, 5, 8, 3, 6, 9, 10, 20, 30)
+    assert transform.matrix == rows
+
+
+def test_only_six_types_exist_and_the_only_prefixed_one_is_the_answer_to_a_command():
+    assert set(CONTENTS) == {"TRANSFORM", "STRING", "POINT", "STATUS", "COMMAND", "RTS_COMMAND"}
+
+
+def test_content_with_an_invented_type_cannot_be_sent():
+    class GetStatus(Status):
+        TYPE = "GET_STATUS"
+
+    for content in [GetStatus(1), object(), b"", None]:
+        with pytest.raises(InputError, match="must be one of TRANSFORM, STRING"):
+            pack(Message("Evil", content))
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        Message("A name of 21 letters.", IDENTITY),
+        Message("", IDENTITY),
+        Message("Tête", IDENTITY),
+        Message("a\nb", IDENTITY),
+        Message("Points", Points(())),
+        Message("Points", Points(()), {"count": "0"}, version=1),
+        Message("Points", Points(()), version=1),
+        Message("Tip", IDENTITY, {"seq": "1"}, version=1),
+        Message("Tip", IDENTITY, version=3),
+        Message("Tip", IDENTITY, {"é": "1"}),
+        Message("Tip", IDENTITY, {"cut": "at\0NUL"}),
+        Message("Tip", IDENTITY, message_id=2**32),
+        Message("Tip", IDENTITY, timestamp=-1),
+        Message("Tip", IDENTITY, {str(i): "" for i in range(257)}),
+        Message("Text", String("x" * 65_536)),
+        Message("Text", String("cut at\0NUL")),
+        Message("Text", String("lone surrogate \ud800")),
+        Message("Status", Status(1, name="a name of 21 letters.")),
+        Message("Status", Status(70_000)),
+        Message("Points", Points((Point("x" * 65, (0, 0, 0)),))),
+        Message("command", Command(2**32, "Hello")),
+        Message("command", Command(1, "H" * 129)),
+        Message("command", Command(1, "Big", "x" * 2**24)),
+    ],
+)
+def test_message_that_slicer_would_cut_or_misread_is_refused(message):
+    with pytest.raises(InputError):
+        pack(message)
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf"), 1e39])
+def test_number_that_32_bits_do_not_hold_is_refused(bad):
+    with pytest.raises(InputError, match="finite 32-bit"):
+        Transform((bad, *IDENTITY.columns[1:]))
+    with pytest.raises(InputError, match="finite 32-bit"):
+        Point("1", (0, bad, 0))
+
+
+def test_text_is_read_as_utf_8_whatever_encoding_is_announced():
+    data = bytearray(String("é").pack())
+    data[:2] = b"\x00\x01"
+    assert String.unpack(bytes(data)) == String("é")
+
+
+@pytest.mark.parametrize(
+    ("kind", "data"),
+    [
+        (Transform, bytes(47)),
+        (Transform, bytes(52)),
+        (Transform, struct.pack(">12f", *[float("nan")] * 12)),
+        (String, b"\x00\x03\x00"),
+        (String, b"\x00\x03\x00\x05four"),
+        (String, b"\x00\x03\x00\x02\xff\xfe"),
+        (Points, bytes(135)),
+        (Points, bytes(137)),
+        (Points, b"\0" * 100 + struct.pack(">4f", 0, float("inf"), 0, 0) + b"\0" * 20),
+        (Status, bytes(29)),
+        (Command, bytes(137)),
+        (Command, struct.pack(">I128sHI", 1, b"Hello", 3, 2**32 - 1) + b"{}"),
+        (CommandReply, b""),
+    ],
+)
+def test_content_that_is_cut_short_or_not_finite_is_refused_with_a_sentence(kind, data):
+    with pytest.raises(InputError, match=r"must .*\."):
+        kind.unpack(data)
+
+
+@pytest.mark.parametrize(
+    "sizes",
+    [(11, 0, 0), (200, 0, 0), (12, 60, 0), (12, 0, 2**32 - 1), (12, 1, 0), (12, 65_535, 65_535)],
+)
+def test_extended_header_whose_sizes_do_not_fit_is_refused(sizes):
+    body = struct.pack(">HHII", *sizes, 0) + IDENTITY.pack()
+    header = struct.pack(">H12s20sIIQQ", 2, b"TRANSFORM", b"T", 0, 0, len(body), crc64(body))
+    with pytest.raises(InputError):
+        unpack(read_header(header), body)
+
+
+@pytest.mark.parametrize(
+    "index",
+    [
+        struct.pack(">H", 1),
+        struct.pack(">H", 65_535) + bytes(64),
+        struct.pack(">HHHI", 1, 3, 3, 2**32 - 1),
+        struct.pack(">HHHI", 1, 65_535, 3, 1),
+    ],
+)
+def test_metadata_longer_than_the_message_is_refused(index):
+    body = struct.pack(">HHII", 12, len(index), 2, 0) + IDENTITY.pack() + index + b"kv"
+    header = struct.pack(">H12s20sIIQQ", 2, b"TRANSFORM", b"T", 0, 0, len(body), crc64(body))
+    with pytest.raises(InputError):
+        unpack(read_header(header), body)

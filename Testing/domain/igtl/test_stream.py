@@ -1,0 +1,134 @@
+"""The reader of byte streams: whole messages out of any pieces, nothing else out of any bytes."""
+
+from __future__ import annotations
+
+import random
+import struct
+
+import pytest
+
+from rastrainer.igtl.checksum import crc64
+from rastrainer.igtl.command import Command
+from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.message import LARGEST_BODY, Message, pack
+from rastrainer.igtl.points import Point, Points
+from rastrainer.igtl.stream import LARGEST_KEPT, MOST_GARBAGE, MessageReader, StreamError
+
+TIP = Message("Tip", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 6, 7)), {"seq": "1"}, timestamp=1)
+STATE = Message("SimState", String('{"phase": "idle"}'), timestamp=1)
+CALL = Message("command", Command(3, "Hello", "{}"), timestamp=1, version=1)
+GOOD = [TIP, STATE, CALL]
+
+
+def header(kind: bytes, size: int, version: int = 1, checksum: int = 0) -> bytes:
+    return struct.pack(">H12s20sIIQQ", version, kind, b"Peer", 0, 0, size, checksum)
+
+
+def with_wrong_checksum(message: Message) -> bytes:
+    data = bytearray(pack(message))
+    data[-1] ^= 1
+    return bytes(data)
+
+
+@pytest.fixture
+def reader() -> MessageReader:
+    return MessageReader()
+
+
+@pytest.mark.parametrize("piece", [1, 2, 57, 58, 59, 1000])
+def test_messages_come_out_whole_and_in_order_whatever_the_pieces(reader, piece):
+    stream = b"".join(pack(message) for message in GOOD) * 3
+    found = []
+    for start in range(0, len(stream), piece):
+        found += reader.feed(stream[start : start + piece])
+    assert found == GOOD * 3
+    assert reader.is_between_messages
+    assert not reader.errors
+
+
+def test_message_with_a_wrong_checksum_is_counted_and_passed_over(reader):
+    assert reader.feed(with_wrong_checksum(TIP) + pack(STATE)) == [STATE]
+    assert reader.errors == {StreamError.CHECKSUM: 1}
+
+
+def test_unsupported_type_is_counted_and_passed_over_without_being_kept(reader):
+    stream = header(b"IMAGE", 10 * 2**20) + bytes(10 * 2**20) + pack(TIP)
+    found = []
+    for start in range(0, len(stream), 65_536):
+        found += reader.feed(stream[start : start + 65_536])
+        assert len(reader._buffer) <= 65_536
+    assert found == [TIP]
+    assert reader.errors == {StreamError.TYPE: 1}
+
+
+def test_known_type_that_is_too_long_is_passed_over_without_being_kept(reader):
+    size = LARGEST_KEPT + 1
+    assert reader.feed(header(b"STRING", size) + bytes(size) + pack(TIP)) == [TIP]
+    assert reader.errors == {StreamError.SIZE: 1}
+
+
+@pytest.mark.parametrize("size", [LARGEST_BODY + 1, 2**31, 2**64 - 1])
+def test_claimed_body_above_16_mib_ends_the_stream(reader, size):
+    assert reader.feed(header(b"TRANSFORM", size) + pack(TIP)) == []
+    assert str(size) in reader.refusal
+    assert reader.feed(pack(TIP)) == []
+
+
+def test_body_without_a_byte_does_not_stall(reader):
+    stream = b"".join(
+        header(kind, 0, version) for kind in (b"STRING", b"COMMAND") for version in (1, 2)
+    )
+    assert reader.feed(stream + pack(TIP)) == [TIP]
+    assert reader.errors == {StreamError.CONTENT: 4}
+
+
+def test_reader_finds_the_next_message_after_garbage(reader):
+    garbage = b"GET / HTTP/1.1\r\nHost: example\r\n\r\n" + bytes(100) + b"\0\1A\0\2Z"
+    assert reader.feed(pack(STATE) + garbage + pack(TIP) + pack(STATE)) == [STATE, TIP, STATE]
+    assert reader.errors == {StreamError.GARBAGE: 1}
+
+
+def test_reader_finds_the_next_message_after_one_whose_body_was_cut(reader):
+    assert reader.feed(pack(TIP)[:-20] + pack(STATE) + pack(TIP)) == [TIP]
+    assert reader.errors == {StreamError.CHECKSUM: 1, StreamError.GARBAGE: 1}
+
+
+def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):
+    generator = random.Random(2)
+    for _ in range(MOST_GARBAGE // 1000 + 2):
+        reader.feed(bytes(generator.choices(range(65, 91), k=1000)))
+        assert len(reader._buffer) < 2000
+    assert reader.refusal
+
+
+def test_header_of_an_unknown_version_is_no_header(reader):
+    assert reader.feed(header(b"TRANSFORM", 48, version=3) + bytes(48) + pack(TIP)) == [TIP]
+    assert reader.errors == {StreamError.GARBAGE: 1}
+
+
+def test_reader_survives_ten_thousand_mutated_streams():
+    generator = random.Random(3)
+    points = Message("P", Points(tuple(Point(str(i), (i, 0, 0)) for i in range(3))), {"n": "3"})
+    seeds = [pack(m) for m in [*GOOD, points, Message("S", Status(1, 2, "x", "well"))]]
+    for _ in range(10_000):
+        data = bytearray(generator.choice(seeds))
+        for _ in range(generator.randint(1, 6)):
+            position = generator.randrange(len(data))
+            data[position] = generator.choice([0, 1, 2, 0x7F, 0xFF, generator.randrange(256)])
+        if generator.random() < 0.3:
+            del data[generator.randrange(len(data)) :]
+        reader = MessageReader()
+        reader.feed(bytes(data) + pack(TIP))
+        assert len(reader._buffer) <= len(data) + 200
+
+
+def test_reader_survives_mutated_bodies_whose_checksum_is_right():
+    generator = random.Random(4)
+    for _ in range(5_000):
+        body = bytearray(pack(generator.choice(GOOD[:2]))[58:])
+        for _ in range(generator.randint(1, 6)):
+            body[generator.randrange(min(len(body), 80))] = generator.randrange(256)
+        kind = generator.choice([b"TRANSFORM", b"STRING", b"POINT", b"STATUS", b"COMMAND"])
+        reader = MessageReader()
+        bad = header(kind, len(body), 2, crc64(bytes(body))) + bytes(body)
+        assert reader.feed(bad + pack(TIP))[-1] == TIP
