@@ -1,0 +1,1 @@
+"""The robot: its model from a URDF, its kinematics, and FABRIK."""

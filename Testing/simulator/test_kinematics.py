@@ -1,0 +1,80 @@
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import load_robot
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return load_robot()
+
+
+@pytest.fixture(scope="module")
+def postures(robot):
+    return np.random.default_rng(20).uniform(robot.lower, robot.upper, (10_000, 7))
+
+
+def test_numpy_equals_pinocchio_to_1e_12_in_10_000_postures(robot, postures):
+    ours, theirs = make_kinematics(robot, "numpy"), make_kinematics(robot, "pinocchio")
+    for q in postures:
+        np.testing.assert_allclose(ours.tip(q), theirs.tip(q), rtol=0, atol=1e-12)
+        difference = np.abs(ours.jacobian(q) - theirs.jacobian(q)).max()
+        links, expected = ours.links(q), theirs.links(q)
+        assert links.keys() == expected.keys()
+        difference = max(difference, *(np.abs(links[n] - expected[n]).max() for n in links))
+        assert difference <= 1e-12
+
+
+@pytest.mark.parametrize("backend", ["numpy", "pinocchio"])
+def test_the_kinematics_agree_with_pinocchios_own_reading_of_the_urdf(robot, postures, backend):
+    kinematics = make_kinematics(robot, backend)
+    model = pin.buildModelFromUrdf(str(asset_path("robots", "iiwa7", "iiwa7.urdf")))
+    data = model.createData()
+    for q in postures[:500]:
+        pin.framesForwardKinematics(model, data, q)
+        for name, pose in kinematics.links(q).items():
+            expected = data.oMf[model.getFrameId(name)].homogeneous
+            np.testing.assert_allclose(pose, expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "pinocchio"])
+def test_the_jacobian_is_the_derivative_of_the_tip(robot, postures, backend):
+    kinematics, step = make_kinematics(robot, backend), 1e-6
+    for q in postures[:50]:
+        jacobian = kinematics.jacobian(q).copy()
+        rotation = kinematics.tip(q)[:3, :3]
+        for joint in range(7):
+            change = np.zeros(7)
+            change[joint] = step
+            slope = (kinematics.tip(q + change) - kinematics.tip(q - change)) / (2.0 * step)
+            spin = slope[:3, :3] @ rotation.T
+            turn = [spin[2, 1], spin[0, 2], spin[1, 0]]
+            np.testing.assert_allclose(jacobian[:3, joint], slope[:3, 3], atol=1e-8)
+            np.testing.assert_allclose(jacobian[3:, joint], turn, atol=1e-8)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "pinocchio"])
+def test_an_answer_is_not_changed_by_the_next_question(robot, postures, backend):
+    kinematics = make_kinematics(robot, backend)
+    tip, jacobian = kinematics.tip(postures[0]), kinematics.jacobian(postures[0])
+    links = kinematics.links(postures[0])
+    before = [tip.copy(), jacobian.copy(), *(pose.copy() for pose in links.values())]
+    kinematics.tip(postures[1])
+    kinematics.links(postures[1])
+    kinematics.jacobian(postures[1])
+    for kept, now in zip(before, [tip, jacobian, *links.values()], strict=True):
+        np.testing.assert_array_equal(kept, now)
+
+
+def test_the_environment_variable_chooses_the_backend(robot, monkeypatch):
+    monkeypatch.setenv("RASTRAINER_KINEMATICS", "numpy")
+    assert type(make_kinematics(robot)).__name__ == "NumpyKinematics"
+    monkeypatch.setenv("RASTRAINER_KINEMATICS", "")
+    assert type(make_kinematics(robot)).__name__ == "PinocchioKinematics"
+    monkeypatch.setenv("RASTRAINER_KINEMATICS", "orocos")
+    with pytest.raises(InputError, match="should be one of pinocchio, numpy"):
+        make_kinematics(robot)
