@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any
 
 import numpy as np
+
 from rastrainer.protocol import Phase, Proximity
 
 Vector = tuple[float, float, float]
@@ -24,7 +25,7 @@ class EventKind(str, Enum):
     MOTION = "motion"
     CAMERA = "camera"
     PLAN = "plan"
-    ACKNOWLEDGED = "acknowledged"
+    REACH = "reach"
 
 
 class Motion(str, Enum):
@@ -78,12 +79,16 @@ class PlannedTarget:
 
 @dataclass(frozen=True)
 class TrialResult:
-    """What the trainee is told once the client has registered and scored the trial (mm)."""
+    """What the trainee is told once the client has registered and scored the trial (mm).
+
+    `matrix` is the registration found, WorldToHead, 16 floats row by row, mm.
+    """
 
     fre_mm: float
     expected_tre_mm: float
     true_tre_mm: float
     score: float
+    matrix: tuple[float, ...]
     details: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -91,10 +96,12 @@ class TrialResult:
 class TrainingState:
     """Where the trial stands. The same object is handed out until something changes.
 
-    `next_point` is the label of the fiducial to touch, None when there is none. `record` is what
-    `rastrainer.trial_record` says of a registered trial, ready for JSON.
+    `revision` rises with every change that must not be lost (phase, touch, undo, score).
+    `next_point` is the label of the fiducial to touch, None when there is none; `rejected` and
+    `undone` count the touches that were refused and taken back.
     """
 
+    revision: int = 0
     phase: Phase = Phase.IDLE
     trainee: str = ""
     task: str = ""
@@ -103,9 +110,9 @@ class TrainingState:
     next_point: str | None = None
     instruction: str = ""
     touches: tuple[Touch, ...] = ()
-    record: Mapping[str, Any] | None = None
+    rejected: int = 0
+    undone: int = 0
     result: TrialResult | None = None
-    acknowledged: bool = False
 
 
 @dataclass(frozen=True)
