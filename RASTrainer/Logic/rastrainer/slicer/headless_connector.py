@@ -96,7 +96,12 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             return 0
         isServer = self._type == self.TypeServer
         self._state = self.StateWaitConnection
-        self._sockets = PeerSockets(isServer, *self._address, self._receive, self._changeState)
+        try:
+            self._sockets = PeerSockets(isServer, *self._address, self._receive, self._changeState)
+        except OSError as error:
+            self._state = self.StateOff
+            logging.error("Failed to create server socket: %s", error)
+            return 0
         return 1
 
     def Stop(self) -> int:

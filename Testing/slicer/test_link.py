@@ -1,0 +1,237 @@
+"""The link survives what happens in a lab: restarts, cleared scenes, silence, other programs."""
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.content import Status, String
+from rastrainer.igtl.points import Point, Points
+from rastrainer.protocol import PROTOCOL_VERSION, Device
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.heartbeat import RECONNECT_AFTER_S, LinkState
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role
+from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+
+
+class Clock:
+    def __init__(self):
+        self.now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.fixture
+def clock():
+    return Clock()
+
+
+@pytest.fixture
+def link(scene, clock):
+    link = Link(scene, headlessKit, clock=clock)
+    yield link
+    link.disconnect()
+
+
+def run(link, condition):
+    def process():
+        if link.connector is not None:
+            link.connector.PeriodicProcess()
+        link.process()
+
+    wait_until(condition, process)
+
+
+def beat(simulator, version=PROTOCOL_VERSION):
+    simulator.send(Device.SIM_SERVER, Status(1), {"protocolVersion": str(version)})
+
+
+def connect(link, simulator):
+    link.connectTo(port=simulator.port)
+    run(link, lambda: simulator.commands)
+    beat(simulator)
+    run(link, lambda: link.status.state is LinkState.CONNECTED)
+
+
+def test_the_first_thing_said_is_hello_with_the_protocol_version(link, simulator):
+    connect(link, simulator)
+    assert simulator.commands[0] == (
+        "Hello",
+        {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"},
+    )
+
+
+def test_each_state_is_told_once(link, simulator):
+    states = []
+    link.statusChanged.connect(lambda status: states.append(status.state))
+    connect(link, simulator)
+    link.disconnect()
+    assert states in (
+        [LinkState.ABSENT, LinkState.GREETING, LinkState.CONNECTED, LinkState.OFF],
+        [LinkState.GREETING, LinkState.CONNECTED, LinkState.OFF],
+    )
+
+
+def test_silence_is_told_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):
+    connect(link, simulator)
+    clock.now += 5.0
+    run(link, lambda: link.status.state is LinkState.STALE)
+    beat(simulator)
+    run(link, lambda: link.status.state is LinkState.CONNECTED)
+    clock.now += RECONNECT_AFTER_S + 1.0
+    run(link, lambda: len(simulator.commands) == 2)
+    assert simulator.commands[1][0] == "Hello"
+
+
+def test_a_simulator_of_another_version_is_named_and_gets_no_commands(link, simulator):
+    connect(link, simulator)
+    beat(simulator, PROTOCOL_VERSION + 1)
+    run(link, lambda: link.status.state is LinkState.WRONG_VERSION)
+    replies = []
+    link.send("ListTasks", onReply=replies.append)
+    run(link, lambda: replies)
+    assert not replies[0].ok
+    assert "version" in replies[0].error
+    assert len(simulator.commands) == 1
+
+
+def test_the_link_comes_back_when_the_simulator_does(link):
+    with SimulatorDouble() as simulator:
+        connect(link, simulator)
+    run(link, lambda: link.status.state is LinkState.ABSENT)
+    with SimulatorDouble(port=simulator.port) as restarted:
+        run(link, lambda: restarted.commands)
+        assert restarted.commands[0][0] == "Hello"
+
+
+def test_the_link_survives_a_cleared_scene(link, simulator, scene):
+    connect(link, simulator)
+    scene.Clear(False)
+    run(link, lambda: len(simulator.commands) == 2)
+    assert link.connector.GetScene() is not None
+    assert scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode") is not None
+
+
+def test_touched_points_are_told_as_they_come(link, simulator):
+    counts = []
+    connect(link, simulator)
+    link.pointsChanged.connect(lambda node: counts.append(node.GetNumberOfControlPoints()))
+    for count in (1, 2, 1):
+        points = tuple(Point(str(i + 1), (i, 0.0, 0.0)) for i in range(count))
+        simulator.send(Device.CAPTURED_POINTS, Points(points))
+        run(link, lambda wanted=count: counts and counts[-1] == wanted)
+    assert counts == [1, 2, 1]
+
+
+def test_the_list_of_touched_points_keeps_our_display_and_role(link, simulator, scene):
+    connect(link, simulator)
+    simulator.send(Device.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
+    run(link, lambda: scene.GetFirstNodeByName("CapturedPoints").GetNumberOfControlPoints())
+    node = scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode")
+    assert node.GetAttribute(ROLE_ATTRIBUTE) == Role.CAPTURED_POINTS
+    assert node.GetLocked()
+    assert node.GetDisplayNode().GetGlyphScale() == 2.5
+
+
+def test_a_deleted_list_comes_again(link, simulator, scene):
+    connect(link, simulator)
+    scene.RemoveNode(scene.GetFirstNodeByName("CapturedPoints"))
+    simulator.send(Device.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
+    run(
+        link,
+        lambda: (
+            (node := scene.GetFirstNodeByName("CapturedPoints")) is not None
+            and node.GetNumberOfControlPoints() == 1
+        ),
+    )
+
+
+def test_the_state_of_the_simulator_is_told_when_it_changes(link, simulator):
+    states = []
+    connect(link, simulator)
+    link.stateChanged.connect(states.append)
+    simulator.send(Device.SIM_STATE, String('{"phase": "running"}'))
+    run(link, lambda: states)
+    assert states == [{"phase": "running"}]
+
+
+def test_what_cannot_be_read_is_logged_and_changes_nothing(link, simulator, caplog):
+    states = []
+    connect(link, simulator)
+    link.stateChanged.connect(states.append)
+    simulator.send(Device.SIM_STATE, String("{not json"))
+    run(link, lambda: "cannot be read" in caplog.text)
+    simulator.send(Device.SIM_STATE, String('{"phase": "idle"}'))
+    run(link, lambda: states)
+
+
+def test_every_finished_trial_is_handed_over_in_order(link, simulator):
+    records = []
+    connect(link, simulator)
+    link.trialCompleted.connect(records.append)
+    for number in range(3):
+        simulator.send_command("TrialCompleted", {"number": number})
+    run(link, lambda: len(records) == 3)
+    assert [record["number"] for record in records] == [0, 1, 2]
+
+
+def test_a_reply_brings_the_data_of_the_answer(link):
+    with SimulatorDouble(lambda *_: {"tasks": ["task-1"]}) as simulator:
+        connect(link, simulator)
+        replies = []
+        link.send("ListTasks", onReply=replies.append)
+        run(link, lambda: replies)
+        assert replies[0].ok
+        assert replies[0].data == {"tasks": ["task-1"]}
+
+
+def test_without_a_connection_the_reply_says_so(link):
+    replies = []
+    link.send("ListTasks", onReply=replies.append)
+    assert not replies
+    link.process()
+    assert replies[0].error == "Not connected."
+
+
+def test_a_simulator_that_dies_before_it_answers_does_not_leave_one_waiting(link):
+    simulator = SimulatorDouble(lambda name, _arguments: {} if name == "Hello" else None)
+    connect(link, simulator)
+    replies = []
+    link.send("ListTasks", onReply=replies.append)
+    run(link, lambda: len(simulator.commands) == 2)
+    simulator.close()
+    run(link, lambda: replies)
+    assert "lost" in replies[0].error
+
+
+def test_a_simulator_that_never_answers_does_not_leave_one_waiting(link, clock):
+    with SimulatorDouble(lambda name, _arguments: {} if name == "Hello" else None) as simulator:
+        connect(link, simulator)
+        replies = []
+        link.send("ListTasks", onReply=replies.append, timeoutS=2.0)
+        clock.now += 2.1
+        run(link, lambda: replies)
+        assert replies[0].error == "The simulator gave no answer to ListTasks."
+
+
+def test_a_wrong_argument_is_refused_before_it_travels(link, simulator):
+    connect(link, simulator)
+    with pytest.raises(InputError, match="camera must be one of"):
+        link.send("SetCamera", {"camera": "sideways"})
+
+
+@pytest.mark.parametrize(
+    ("host", "port", "words"), [("", 18944, "host"), ("localhost", 0, "port"), ("a", 70000, "port")]
+)
+def test_an_address_that_is_none_gets_a_sentence(link, host, port, words):
+    with pytest.raises(InputError, match=words):
+        link.connectTo(host, port)
+
+
+def test_a_slicer_without_the_extension_is_told_what_to_install(scene):
+    link = Link(scene, lambda: None)
+    link.connectTo()
+    assert link.status.state is LinkState.NOT_INSTALLED
+    link.process()
+    link.disconnect()
+    assert link.status.state is LinkState.OFF
