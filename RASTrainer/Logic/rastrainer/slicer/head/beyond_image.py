@@ -13,10 +13,11 @@ from scipy import ndimage
 TREND_LENGTH = 5
 """Over how many voxels the trend of an outline is measured."""
 
-SLOWEST_CLOSING = 0.5
-"""An outline that does not shrink by itself is made to, by so much per voxel (about 63° steep)."""
+FASTEST_TREND = 2.0
+"""An outline shrinks by at most so many voxels a voxel at the image's edge, and never grows."""
 
-FASTEST_CLOSING = 2.0
+ROUNDING = 1 / 6
+"""Voxels per square voxel by which it shrinks ever faster, so that what is cut ends rounded."""
 
 
 def continued(level: np.ndarray, margin: int) -> np.ndarray:
@@ -41,10 +42,11 @@ def _continue_end(level: np.ndarray, axis: int, margin: int) -> np.ndarray:
         beyond = np.full((margin, *slices.shape[1:]), -1.0, level.dtype)
         return np.concatenate([level, np.moveaxis(beyond, 0, axis)], axis=axis)
     earlier = _signed_distance(slices[-1 - TREND_LENGTH])
-    trend = (outline - earlier) / TREND_LENGTH if earlier is not None else -SLOWEST_CLOSING
-    trend = np.clip(ndimage.gaussian_filter(trend, 2.0), -FASTEST_CLOSING, -SLOWEST_CLOSING)
+    trend = (outline - earlier) / TREND_LENGTH if earlier is not None else np.zeros_like(outline)
+    trend = np.clip(ndimage.gaussian_filter(trend, 2.0), -FASTEST_TREND, 0.0)
     steps = np.arange(1, margin + 1)[:, None, None]
-    beyond = np.clip(outline + steps * trend, -1.0, 1.0).astype(level.dtype)
+    distance = outline + steps * trend - ROUNDING * steps**2
+    beyond = np.clip(distance, -1.0, 1.0).astype(level.dtype)
     return np.concatenate([level, np.moveaxis(beyond, 0, axis)], axis=axis)
 
 

@@ -68,41 +68,50 @@ def _is_one(members: int, wanted: int, touching: list[int]) -> bool:
 def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Return `body` carved towards `wanted`, with the topology of `body`.
 
+    The voxels farthest from `wanted` go first, so that membranes stay where tunnels are narrow.
+
     Args:
         body: (i, j, k) bool, contains `wanted`.
         wanted: (i, j, k) bool.
     """
     # A border of one voxel lets every voxel have 26 neighbors; the neck goes on below.
-    sides = [(1, 1), (1, 1), (0, 1)]
-    below = [(0, 0), (0, 0), (1, 0)]
-    result = np.pad(np.pad(body, sides), below, mode="edge")
+    sides, below = [(1, 1), (1, 1), (0, 1)], [(0, 0), (0, 0), (1, 0)]
+    padded = np.pad(np.pad(body, sides), below, mode="edge")
     keep = np.pad(np.pad(wanted, sides), below, mode="edge")
     keep[:, :, 0] = True
-    _carve(result, keep)
-    return result[1:-1, 1:-1, 1:-1]
+    voxels = bytearray(padded.tobytes())
+    distance = ndimage.distance_transform_edt(~keep)
+    candidates = padded & ~keep
+    border = candidates & ndimage.binary_dilation(~padded)
+    _remove_simple(voxels, candidates.ravel(), distance.ravel(), border, _steps(padded.shape))
+    result = np.frombuffer(voxels, dtype=bool).reshape(padded.shape)
+    return result[1:-1, 1:-1, 1:-1].copy()
 
 
-def _carve(result: np.ndarray, keep: np.ndarray) -> None:
-    """Remove simple voxels of `result` that are not in `keep`, the farthest from `keep` first."""
-    flat, kept = result.ravel(), keep.ravel()
-    distance = ndimage.distance_transform_edt(~keep).ravel()
-    steps = [int(np.ravel_multi_index(np.add(o, 1), result.shape)) for o in _OFFSETS]
-    middle = int(np.ravel_multi_index((1, 1, 1), result.shape))
-    steps = [step - middle for step in steps]
-    near = [
-        step for step, offset in zip(steps, _OFFSETS, strict=True) if sum(map(abs, offset)) == 1
-    ]
-    border = result & ~keep & ~ndimage.binary_erosion(result, border_value=True)
-    queue = [(-float(distance[index]), int(index)) for index in np.flatnonzero(border.ravel())]
+def _steps(shape: tuple[int, ...]) -> list[int]:
+    """Return how far each of the 26 neighbors is in the flat array."""
+    strides = (shape[1] * shape[2], shape[2], 1)
+    return [sum(a * b for a, b in zip(offset, strides, strict=True)) for offset in _OFFSETS]
+
+
+def _remove_simple(
+    voxels: bytearray,
+    candidates: np.ndarray,
+    distance: np.ndarray,
+    border: np.ndarray,
+    steps: list[int],
+) -> None:
+    waiting = set(np.flatnonzero(border).tolist())
+    queue = [(-float(distance[index]), index) for index in waiting]
     heapq.heapify(queue)
-    waiting = {index for _, index in queue}
     while queue:
         _, index = heapq.heappop(queue)
         waiting.discard(index)
-        if not is_simple(sum(1 << bit for bit, step in enumerate(steps) if flat[index + step])):
+        around = [index + step for step in steps]
+        if not is_simple(sum(1 << bit for bit, other in enumerate(around) if voxels[other])):
             continue
-        flat[index] = False
-        for neighbor in (index + step for step in near):
-            if flat[neighbor] and not kept[neighbor] and neighbor not in waiting:
-                waiting.add(neighbor)
-                heapq.heappush(queue, (-float(distance[neighbor]), neighbor))
+        voxels[index] = 0
+        for other in around:
+            if voxels[other] and candidates[other] and other not in waiting:
+                waiting.add(other)
+                heapq.heappush(queue, (-float(distance[other]), other))

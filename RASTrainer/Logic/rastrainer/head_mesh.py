@@ -1,0 +1,123 @@
+"""The head's surface as triangles, and its file: binary PLY in RAS mm."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+
+MOST_BYTES = 64_000_000
+MOST_TRIANGLES = 1_000_000
+LIMIT_MM = 2000.0
+
+_HEADER = """ply
+format binary_little_endian 1.0
+comment SPACE=RAS
+element vertex {vertices}
+property float x
+property float y
+property float z
+element face {triangles}
+property list uchar int vertex_indices
+end_header
+"""
+_FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
+
+
+@dataclass(frozen=True)
+class HeadMesh:
+    """Triangles that share vertices.
+
+    Attributes:
+        vertices: (n, 3) float, RAS mm.
+        triangles: (m, 3) int, counterclockwise seen from outside.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """(e, 2) int: every edge once, the lower vertex first."""
+        corners = self.triangles
+        sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+        return np.unique(np.sort(sides, axis=1), axis=0)
+
+    @property
+    def euler_characteristic(self) -> int:
+        """Vertices − edges + triangles: 2 for one closed body without a tunnel."""
+        return len(np.unique(self.triangles)) - len(self.edges) + len(self.triangles)
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether every edge lies between exactly two triangles that run along it oppositely."""
+        corners = self.triangles.astype(np.int64)
+        sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+        keys = sides[:, 0] * len(self.vertices) + sides[:, 1]
+        opposite = sides[:, 1] * len(self.vertices) + sides[:, 0]
+        return len(np.unique(keys)) == len(keys) and np.array_equal(
+            np.sort(keys), np.sort(opposite)
+        )
+
+
+def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
+    """Write a mesh as PLY whose comment lets Slicer place it in RAS; whole or not at all."""
+    header = _HEADER.format(vertices=len(mesh.vertices), triangles=len(mesh.triangles))
+    faces = np.empty(len(mesh.triangles), _FACE)
+    faces["count"] = 3
+    faces["corners"] = mesh.triangles
+    content = header.encode() + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
+    partial = Path(path).with_suffix(".partial")
+    partial.write_bytes(content)
+    os.replace(partial, path)
+
+
+def read_head_mesh(path: Path) -> HeadMesh:
+    """Read a mesh that `write_head_mesh` wrote.
+
+    Raises:
+        InputError: missing, too large, or not such a file.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"The head mesh {path} does not exist.")
+    if path.stat().st_size > MOST_BYTES:
+        raise InputError(f"The head mesh {path} is larger than {MOST_BYTES // 1_000_000} MB.")
+    content = path.read_bytes()
+    head, end, body = content.partition(b"end_header\n")
+    counts = [_count(head, element) for element in (b"vertex", b"face")]
+    expected = _HEADER.format(vertices=counts[0], triangles=counts[1]).encode()
+    if not end or head + end != expected:
+        raise InputError(
+            f"The head mesh {path} must be a binary little-endian PLY file in RAS (comment "
+            "SPACE=RAS) with float vertices x, y, z and triangles."
+        )
+    return _checked(path, *counts, body)
+
+
+def _count(head: bytes, element: bytes) -> int:
+    for line in head.splitlines():
+        words = line.split()
+        if words[:2] == [b"element", element] and len(words) == 3 and words[2].isdigit():
+            return min(int(words[2][:9]), 10**9)
+    return 0
+
+
+def _checked(path: Path, vertex_count: int, triangle_count: int, body: bytes) -> HeadMesh:
+    if not 4 <= triangle_count <= MOST_TRIANGLES or vertex_count < 4:
+        raise InputError(f"The head mesh {path} must have 4 to {MOST_TRIANGLES} triangles.")
+    if len(body) != 12 * vertex_count + _FACE.itemsize * triangle_count:
+        raise InputError(f"The head mesh {path} is cut short or has bytes left over.")
+    vertices = np.frombuffer(body, "<f4", 3 * vertex_count).reshape(-1, 3)
+    faces = np.frombuffer(body, _FACE, triangle_count, 12 * vertex_count)
+    corners = faces["corners"]
+    if not np.all(np.abs(vertices) <= LIMIT_MM):
+        raise InputError(f"The head mesh {path} has a vertex that is not within ±{LIMIT_MM:g} mm.")
+    if (faces["count"] != 3).any() or corners.min() < 0 or corners.max() >= vertex_count:
+        raise InputError(f"The head mesh {path} has a face that is no triangle of its vertices.")
+    return HeadMesh(vertices.astype(float), corners.astype(np.int32))
