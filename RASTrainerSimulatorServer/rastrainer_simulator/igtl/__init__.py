@@ -1,0 +1,1 @@
+"""The simulator's OpenIGTLink side: the server, what it publishes, the commands it answers."""

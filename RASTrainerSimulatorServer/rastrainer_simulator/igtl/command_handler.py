@@ -1,0 +1,107 @@
+"""Commands of clients: checked, handed to the simulation in turn, answered when it has."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.command import ERROR_KEY, FAIL, STATUS_KEY, SUCCESS, Command, CommandReply
+from rastrainer.igtl.message import Message
+from rastrainer.protocol import Device, check_arguments, decode_json_object
+from rastrainer_simulator.igtl.connection import Connection
+from rastrainer_simulator.igtl.limits import Limits
+from rastrainer_simulator.igtl.outgoing import Outgoing
+from rastrainer_simulator.state import Answer
+
+Submit = Callable[[Connection, str, Mapping[str, Any]], "Future[Answer]"]
+
+
+@dataclass
+class _Turn:
+    """One client's commands: how many the simulation has, and which wait."""
+
+    at_work: int = 0
+    waiting: deque[tuple[Command, Mapping[str, Any]]] = field(default_factory=deque)
+
+
+class CommandHandler:
+    """Answers every COMMAND with an RTS_COMMAND, and never waits for one itself.
+
+    A client's commands are carried out in their order. Only a few of them are given to the
+    simulation at once, so that no client can crowd the others out of a tick.
+    """
+
+    def __init__(self, submit: Submit, limits: Limits):
+        """`submit` takes checked arguments and returns the answer's future at once."""
+        self._submit = submit
+        self._limits = limits
+        self._loop = asyncio.get_running_loop()
+        self._turns: dict[Connection, _Turn] = {}
+
+    def handle(self, connection: Connection, command: Command) -> None:
+        """Check a command and carry it out in its turn."""
+        try:
+            arguments = check_arguments(command.name, decode_json_object(command.body))
+        except InputError as error:
+            self._refuse(connection, command, str(error))
+            return
+        turn = self._turns.setdefault(connection, _Turn())
+        if len(turn.waiting) >= self._limits.waiting_commands:
+            self._refuse(connection, command, "Too many commands wait: wait for their answers.")
+            return
+        turn.waiting.append((command, arguments))
+        self._go_on(connection, turn)
+
+    def forget(self, connection: Connection) -> None:
+        """Drop what a client that left still wanted."""
+        self._turns.pop(connection, None)
+
+    def _go_on(self, connection: Connection, turn: _Turn) -> None:
+        while turn.waiting and turn.at_work < self._limits.commands_at_once:
+            command, arguments = turn.waiting.popleft()
+            turn.at_work += 1
+            future = self._submit(connection, command.name, arguments)
+            future.add_done_callback(
+                lambda done, command=command: self._loop.call_soon_threadsafe(
+                    self._answered, connection, command, done
+                )
+            )
+
+    def _answered(self, connection: Connection, command: Command, done: Future[Answer]) -> None:
+        turn = self._turns.get(connection)
+        if turn is None:
+            return
+        turn.at_work -= 1
+        if done.cancelled() or done.exception() is not None:
+            self._refuse(connection, command, "The simulator could not carry the command out.")
+        else:
+            answer = done.result()
+            self._reply(connection, command, answer.ok, answer.message, answer.data)
+        self._go_on(connection, turn)
+
+    def _refuse(self, connection: Connection, command: Command, sentence: str) -> None:
+        self._reply(connection, command, False, sentence, {})
+
+    def _reply(
+        self,
+        connection: Connection,
+        command: Command,
+        is_success: bool,
+        sentence: str,
+        data: Mapping[str, Any],
+    ) -> None:
+        """Send an answer; its body repeats the sentence for clients that read no metadata."""
+        metadata = {STATUS_KEY: SUCCESS if is_success else FAIL}
+        if not is_success:
+            metadata[ERROR_KEY] = sentence
+            data = {**data, "error": sentence}
+        name = command.name if command.name.isascii() and command.name.isprintable() else ""
+        body = json.dumps(dict(data), allow_nan=False)
+        reply = CommandReply(command.command_id, name, body)
+        connection.send(Outgoing(Message(Device.COMMAND, reply, metadata)))

@@ -1,0 +1,171 @@
+"""One client's connection: always reads, never waits, and ends alone when it misbehaves."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import socket
+from collections import Counter
+from typing import Protocol
+
+from rastrainer.igtl.message import Message
+from rastrainer.igtl.stream import MessageReader
+from rastrainer_simulator.igtl.limits import Limits
+from rastrainer_simulator.igtl.outgoing import Outgoing, OutgoingQueue
+
+_PIECE_BYTES = 32 * 1024
+
+
+class ConnectionOwner(Protocol):
+    """Who is told what happens on a connection; called in the event loop's thread."""
+
+    limits: Limits
+
+    def connected(self, connection: Connection) -> None:
+        """Answer a new connection."""
+
+    def received(self, connection: Connection, message: Message) -> None:
+        """Take one valid message."""
+
+    def bad_bytes(self, connection: Connection, errors: Counter) -> None:
+        """Count what was no valid message."""
+
+    def disconnected(self, connection: Connection, reason: str) -> None:
+        """Forget a connection; `reason` is empty when the peer left."""
+
+
+class Connection(asyncio.BufferedProtocol):
+    """One peer.
+
+    Messages go out with header version 2 until the peer sends one with version 1.
+
+    Attributes:
+        name: address of the peer, or what it called itself.
+        header_version: what the peer speaks.
+        closed: set when the connection has ended.
+    """
+
+    def __init__(self, owner: ConnectionOwner):
+        self.name = "a client"
+        self.header_version = 2
+        self.closed = asyncio.Event()
+        self._owner = owner
+        self._limits = owner.limits
+        self._loop = asyncio.get_running_loop()
+        self._transport: asyncio.Transport | None = None
+        self._piece = bytearray(_PIECE_BYTES)
+        self._reader = MessageReader()
+        self._queue = OutgoingQueue(self._limits.waiting_messages, self._limits.waiting_bytes)
+        self._flush_is_due = False
+        self._is_paused = False
+        self._drop_slow: asyncio.TimerHandle | None = None
+        self._drop_stalled: asyncio.TimerHandle | None = None
+        self._reason = ""
+
+    def send(self, message: Outgoing) -> None:
+        """Send what must not be lost, after all that was sent so before."""
+        data = message.packed(self.header_version)
+        if data is not None:
+            self._queue.put(data)
+            self._flush_soon()
+
+    def send_latest(self, message: Outgoing) -> None:
+        """Send a device's state, in place of an older one that still waits."""
+        data = message.packed(self.header_version)
+        if data is not None:
+            self._queue.put_latest(message.key, data)
+            self._flush_soon()
+
+    def drop(self, reason: str = "") -> None:
+        """End the connection at once, whatever still waits; no reason is no trouble."""
+        if self._transport is not None and not self._transport.is_closing():
+            self._reason = reason
+            self._transport.abort()
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Set the socket up and report."""
+        self._transport = transport
+        transport.set_write_buffer_limits(high=self._limits.buffer_bytes)
+        _set_up_socket(transport.get_extra_info("socket"), self._limits)
+        host, port = transport.get_extra_info("peername")[:2]
+        self.name = f"{host}:{port}"
+        self._owner.connected(self)
+
+    def get_buffer(self, sizehint: int) -> bytearray:  # noqa: ARG002
+        """Return where the next bytes go; small, so that one flood does not hold up the others."""
+        return self._piece
+
+    def buffer_updated(self, nbytes: int) -> None:
+        """Read what arrived."""
+        for message in self._reader.feed(self._piece[:nbytes]):
+            self.header_version = message.version
+            self._owner.received(self, message)
+        if self._reader.errors:
+            self._owner.bad_bytes(self, self._reader.errors)
+            self._reader.errors.clear()
+        if self._reader.refusal:
+            self.drop(self._reader.refusal)
+        self._watch_half_message()
+
+    def pause_writing(self) -> None:
+        """Give the peer some seconds to read on."""
+        self._is_paused = True
+        self._drop_slow = self._loop.call_later(
+            self._limits.slow_client_s,
+            self.drop,
+            f"It has not read for {self._limits.slow_client_s:g} s.",
+        )
+
+    def resume_writing(self) -> None:
+        """Go on with what waits."""
+        self._is_paused = False
+        self._drop_slow.cancel()
+        self._flush_soon()
+
+    def connection_lost(self, error: Exception | None) -> None:
+        """Report, once."""
+        for timer in (self._drop_slow, self._drop_stalled):
+            if timer is not None:
+                timer.cancel()
+        self._transport = None
+        self.closed.set()
+        self._owner.disconnected(self, self._reason or (str(error) if error else ""))
+
+    def _flush_soon(self) -> None:
+        if self._queue.is_overfull:
+            self.drop("Too much waits for it: it does not read.")
+        elif not self._flush_is_due and not self._is_paused:
+            self._flush_is_due = True
+            self._loop.call_soon(self._flush)
+
+    def _flush(self) -> None:
+        """Write all that gathered since the last round of the event loop in few pieces."""
+        self._flush_is_due = False
+        while self._queue and not self._is_paused and self._transport is not None:
+            self._transport.write(self._queue.take(self._limits.buffer_bytes))
+
+    def _watch_half_message(self) -> None:
+        if self._drop_stalled is not None:
+            self._drop_stalled.cancel()
+            self._drop_stalled = None
+        if not self._reader.is_between_messages:
+            self._drop_stalled = self._loop.call_later(
+                self._limits.half_message_s, self.drop, "It left a message half sent."
+            )
+
+
+def _set_up_socket(peer: socket.socket, limits: Limits) -> None:
+    """Send at once, queue little in the kernel, and notice a machine that has gone."""
+    peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.buffer_bytes)
+    peer.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    probe_s = max(1, int(limits.silent_peer_s / 6))
+    options = {
+        "TCP_KEEPIDLE": probe_s * 3,
+        "TCP_KEEPINTVL": probe_s,
+        "TCP_KEEPCNT": 3,
+        "TCP_USER_TIMEOUT": int(limits.silent_peer_s * 1000),
+    }
+    for name, value in options.items():
+        # Not every system has every option; each is a help, none a need.
+        with contextlib.suppress(AttributeError, OSError):
+            peer.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)

@@ -1,0 +1,34 @@
+"""What one client may cost, as settings with sane defaults."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of the OpenIGTLink server; the largest message is `rastrainer.igtl`'s own limit.
+
+    Attributes:
+        clients: connections at once; further ones are closed at once.
+        slow_client_s: time after which a client that does not read is dropped.
+        half_message_s: time after which a client is dropped that leaves a message half sent.
+        silent_peer_s: time after which a peer is dropped whose machine does not answer any more.
+        buffer_bytes: what is handed to the operating system ahead of a client that reads slowly.
+        waiting_messages: messages, and
+        waiting_bytes: bytes of answers that may wait for a client; one more drops it.
+        commands_at_once: commands of one client that the control loop is given at once.
+        waiting_commands: further commands of one client that wait for their turn.
+        reconnect_s: pause between two attempts to reach a listening Slicer.
+    """
+
+    clients: int = 128
+    slow_client_s: float = 5.0
+    half_message_s: float = 10.0
+    silent_peer_s: float = 20.0
+    buffer_bytes: int = 64 * 1024
+    waiting_messages: int = 4096
+    waiting_bytes: int = 8 * 2**20
+    commands_at_once: int = 16
+    waiting_commands: int = 4096
+    reconnect_s: float = 1.0

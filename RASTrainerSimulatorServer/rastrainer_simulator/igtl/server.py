@@ -1,0 +1,112 @@
+"""The OpenIGTLink server: listens for clients, or itself connects to a Slicer that listens."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import Iterable
+from typing import Protocol
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.message import Message
+from rastrainer_simulator.igtl.connection import Connection
+from rastrainer_simulator.igtl.limits import Limits
+from rastrainer_simulator.igtl.link_log import LinkLog
+
+_CONNECT_TIMEOUT_S = 5.0
+
+
+class LinkHandler(Protocol):
+    """What is done with clients and their messages; called in the event loop's thread."""
+
+    def connected(self, connection: Connection) -> None:
+        """Greet a client."""
+
+    def received(self, connection: Connection, message: Message) -> None:
+        """Take one valid message."""
+
+    def disconnected(self, connection: Connection) -> None:
+        """Forget a client."""
+
+
+class IgtlServer:
+    """Owns the connections of all clients; what one of them does disturbs no other.
+
+    Attributes:
+        limits: what one client may cost.
+    """
+
+    def __init__(self, handler: LinkHandler, limits: Limits | None = None):
+        self.limits = limits or Limits()
+        self._handler = handler
+        self._log = LinkLog()
+        self._connections: set[Connection] = set()
+        self._listener: asyncio.AbstractServer | None = None
+
+    @property
+    def connections(self) -> Iterable[Connection]:
+        """The clients of this moment."""
+        return tuple(self._connections)
+
+    async def listen(self, host: str, port: int) -> int:
+        """Listen and return the port, which is any free one where `port` is 0.
+
+        Raises:
+            InputError: the address cannot be listened on.
+        """
+        loop = asyncio.get_running_loop()
+        try:
+            self._listener = await loop.create_server(lambda: Connection(self), host, port)
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise InputError(
+                f"Cannot listen on {host}:{port} ({reason}); "
+                "choose another --port, or stop the program that uses it."
+            ) from None
+        return self._listener.sockets[0].getsockname()[1]
+
+    async def keep_connected_to(self, host: str, port: int) -> None:
+        """Be the client of a Slicer that listens, and come back whenever it went; never returns."""
+        loop = asyncio.get_running_loop()
+        while True:
+            attempt = loop.create_connection(lambda: Connection(self), host, port)
+            try:
+                _transport, connection = await asyncio.wait_for(attempt, _CONNECT_TIMEOUT_S)
+                await connection.closed.wait()
+            except (OSError, asyncio.TimeoutError):
+                self._log.note(f"Nothing listens at {host}:{port} yet.")
+            await asyncio.sleep(self.limits.reconnect_s)
+
+    async def close(self) -> None:
+        """Stop listening and end every connection."""
+        if self._listener is not None:
+            self._listener.close()
+        for connection in self.connections:
+            connection.drop()
+        await asyncio.gather(*(connection.closed.wait() for connection in self.connections))
+        self._log.close()
+
+    def connected(self, connection: Connection) -> None:
+        """Accept a connection, unless there are too many."""
+        if len(self._connections) >= self.limits.clients:
+            connection.drop(f"There are {self.limits.clients} clients already.")
+            return
+        self._connections.add(connection)
+        self._handler.connected(connection)
+
+    def received(self, connection: Connection, message: Message) -> None:
+        """Hand on one valid message."""
+        self._handler.received(connection, message)
+
+    def bad_bytes(self, connection: Connection, errors: Counter) -> None:
+        """Log what was no valid message."""
+        for kind, times in errors.items():
+            self._log.note(f"{connection.name}: {kind.value}", times)
+
+    def disconnected(self, connection: Connection, reason: str) -> None:
+        """Forget a connection."""
+        if reason:
+            self._log.note(f"{connection.name} was disconnected: {reason}")
+        if connection in self._connections:
+            self._connections.discard(connection)
+            self._handler.disconnected(connection)
