@@ -36,15 +36,19 @@ class LinkBody:
     inertia: Sequence[float]
 
 
-def urdf_text(bodies: Mapping[str, LinkBody]) -> str:
-    """Return the URDF as text; `bodies` holds one entry for every name in `LINK_NAMES`."""
+def urdf_text(bodies: Mapping[str, LinkBody], tip: tuple[str, str]) -> str:
+    """Return the URDF as text.
+
+    `bodies` holds one entry for every name in `LINK_NAMES`; `tip` is the mesh file and the color of
+    the tool's tip.
+    """
     robot = ElementTree.Element("robot", name="iiwa7")
     for name, color in COLORS.items():
         material = ElementTree.SubElement(robot, "material", name=name)
         ElementTree.SubElement(material, "color", rgba=_numbers(color))
     for link in LINK_NAMES:
         _add_link(robot, link, bodies[link])
-    ElementTree.SubElement(robot, "link", name=TOOL_TIP_LINK)
+    _add_visual(ElementTree.SubElement(robot, "link", name=TOOL_TIP_LINK), *tip)
     for joint, parent, child in zip(JOINTS, LINK_NAMES[:7], LINK_NAMES[1:8], strict=True):
         _add_revolute(robot, joint, parent, child)
     _add_fixed(robot, "iiwa_joint_tool", LINK_NAMES[7], TOOL_LINK, FLANGE_OFFSET)
@@ -63,10 +67,14 @@ def _add_link(robot: ElementTree.Element, name: str, body: LinkBody) -> None:
     moments = dict(zip(names, map(_number, body.inertia), strict=True))
     ElementTree.SubElement(inertial, "inertia", moments)
     for file, color in body.visuals:
-        visual = ElementTree.SubElement(link, "visual")
-        _add_mesh(visual, file)
-        ElementTree.SubElement(visual, "material", name=color)
+        _add_visual(link, file, color)
     _add_mesh(ElementTree.SubElement(link, "collision"), body.collision)
+
+
+def _add_visual(link: ElementTree.Element, file: str, color: str) -> None:
+    visual = ElementTree.SubElement(link, "visual")
+    _add_mesh(visual, file)
+    ElementTree.SubElement(visual, "material", name=color)
 
 
 def _add_mesh(parent: ElementTree.Element, file: str) -> None:

@@ -1,0 +1,104 @@
+"""Measure how far our iiwa 7 is from its official shape, in both directions.
+
+    python assets/robots/compare_meshes.py --official FOLDER [--samples N]
+
+FOLDER holds link_0.stl … link_7.stl, in metres, all in the base frame at q = 0 (or a folder
+`collision` with them). Points are drawn evenly over each robot's surface at q = 0 and kept where
+they can be seen from outside: not on the ground, and with at least one in twenty of the directions
+over the point open. From each of these the distance to the nearest point of the other robot is
+taken. The tool is left out: it is ours.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from iiwa7_dimensions import LINK_NAMES, link_origins
+from make_iiwa7 import visual_parts
+
+DIRECTIONS = 128
+OPEN_FRACTION = 0.05
+LIFT = 1e-4
+GROUND = 0.001
+
+
+def main() -> None:
+    """Print the distances."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--official", type=Path, required=True)
+    parser.add_argument("--samples", type=int, default=20_000)
+    arguments = parser.parse_args()
+    ours, official = our_robot(), official_robot(arguments.official)
+    for title, one, other in (
+        ("ours to official", ours, official),
+        ("official to ours", official, ours),
+    ):
+        distances, links = surface_distances(one, other, arguments.samples)
+        print(f"{title}: {_summary(distances)}")
+        for link, name in enumerate(LINK_NAMES[:8]):
+            print(f"  {name}: {_summary(distances[links == link])}")
+
+
+def our_robot() -> list[trimesh.Trimesh]:
+    """Return links 0 to 7 as they look, at q = 0, in the base frame, in metres."""
+    parts, origins = visual_parts(), link_origins()
+    return [
+        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origins[name])
+        for name in LINK_NAMES[:8]
+    ]
+
+
+def official_robot(folder: Path) -> list[trimesh.Trimesh]:
+    """Return the official links 0 to 7 at q = 0, in the base frame, in metres."""
+    if (folder / "collision").is_dir():
+        folder = folder / "collision"
+    return [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]
+
+
+def surface_distances(
+    one: list[trimesh.Trimesh], other: list[trimesh.Trimesh], samples: int, seed: int = 7
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far the visible surface of `one` is from `other`, and each point's link.
+
+    Distances (n,) float in mm; link numbers (n,) int.
+    """
+    whole, target = trimesh.util.concatenate(one), trimesh.util.concatenate(other)
+    points, faces = trimesh.sample.sample_surface(whole, samples, seed=seed)
+    links = np.repeat(np.arange(len(one)), [len(mesh.faces) for mesh in one])[faces]
+    seen = _visible(whole, points, whole.face_normals[faces]) & (points[:, 2] > GROUND)
+    _, distances, _ = trimesh.proximity.closest_point(target, points[seen])
+    return distances * 1000.0, links[seen]
+
+
+def _visible(mesh: trimesh.Trimesh, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Return which points (n, 3) see the outside in enough of the directions above them."""
+    directions = _sphere(DIRECTIONS)
+    above = np.zeros(len(points))
+    free = np.zeros(len(points))
+    for direction in directions:
+        facing = np.flatnonzero(normals @ direction > 0)
+        starts = points[facing] + LIFT * normals[facing]
+        hit = mesh.ray.intersects_any(starts, np.tile(direction, (len(facing), 1)))
+        above[facing] += 1
+        free[facing[~hit]] += 1
+    return free >= OPEN_FRACTION * above
+
+
+def _sphere(count: int) -> np.ndarray:
+    """Return (count, 3) float unit vectors, evenly spread (a Fibonacci spiral)."""
+    height = 1 - (2 * np.arange(count) + 1) / count
+    angle = np.pi * (3 - np.sqrt(5)) * np.arange(count)
+    radius = np.sqrt(1 - height**2)
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), height])
+
+
+def _summary(distances: np.ndarray) -> str:
+    high, largest = np.percentile(distances, 95), distances.max()
+    return f"mean {distances.mean():.2f} mm, 95 % below {high:.2f} mm, largest {largest:.1f} mm"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,121 @@
+"""Make the URDF and the meshes of the iiwa 7 with its pointer tool, always the same bytes.
+
+python assets/robots/make_iiwa7.py [--output FOLDER]
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from iiwa7_base import base, coarse_base
+from iiwa7_dimensions import LINK_NAMES, LINK_PREFIX, MASSES, TOOL_LINK, TOOL_TIP_LINK
+from iiwa7_shells import coarse_shells, shells
+from iiwa7_urdf import LinkBody, urdf_text
+from pointer_tool import coarse_tool, tip, tool
+
+RINGS = 26
+SEGMENTS = 40
+ROUND_SEGMENTS = 48
+TOOL_SEGMENTS = 20
+COARSE_RINGS = 10
+COARSE_SEGMENTS = 12
+MESH_DECIMALS = 6
+
+
+def main() -> None:
+    """Write the robot's folder."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "iiwa7")
+    write_robot(parser.parse_args().output)
+
+
+def write_robot(folder: Path) -> None:
+    """Write `iiwa7.urdf` and `meshes` into `folder`, in place of older ones."""
+    for old in (folder / "meshes").rglob("*.stl"):
+        old.unlink()
+    visuals, collisions = visual_parts(), collision_parts()
+    bodies = {}
+    for link in LINK_NAMES:
+        files = [
+            (_write(part, folder, f"visual/{_short(link)}_{color}.stl"), color)
+            for color, part in visuals[link].items()
+        ]
+        collision = _write(collisions[link], folder, f"collision/{_short(link)}.stl")
+        bodies[link] = _body(files, collision, MASSES[link], collisions[link])
+    tip_file = _write(visuals[TOOL_TIP_LINK]["blue"], folder, "visual/tool_tip_blue.stl")
+    text = urdf_text(bodies, (tip_file, "blue"))
+    (folder / "iiwa7.urdf").write_text(text, encoding="utf-8", newline="\n")
+
+
+def visual_parts() -> dict[str, dict[str, trimesh.Trimesh]]:
+    """Return the colored parts of each link, in its frame, in metres."""
+    parts = {f"{LINK_PREFIX}0": base(ROUND_SEGMENTS)}
+    for number, link_parts in shells(RINGS, SEGMENTS).items():
+        parts[f"{LINK_PREFIX}{number}"] = link_parts
+    parts[TOOL_LINK] = tool(TOOL_SEGMENTS)
+    parts[TOOL_TIP_LINK] = {"blue": tip(TOOL_SEGMENTS)}
+    return {
+        link: {color: in_metres(part) for color, part in link_parts.items()}
+        for link, link_parts in parts.items()
+    }
+
+
+def collision_parts() -> dict[str, trimesh.Trimesh]:
+    """Return one plain solid for each link, in its frame, in metres."""
+    parts = {f"{LINK_PREFIX}0": coarse_base(COARSE_SEGMENTS)}
+    for number, part in coarse_shells(COARSE_RINGS, COARSE_SEGMENTS).items():
+        parts[f"{LINK_PREFIX}{number}"] = part
+    parts[TOOL_LINK] = coarse_tool(COARSE_SEGMENTS)
+    return {link: in_metres(part) for link, part in parts.items()}
+
+
+def in_metres(part: trimesh.Trimesh) -> trimesh.Trimesh:
+    """Round a part to whole micrometres, in metres, its triangles in a fixed order.
+
+    Rounding and sorting take out what could differ from machine to machine: the last bits of
+    sines, and the order in which cuts and hulls return their triangles.
+    """
+    vertices = np.round(part.vertices / 1000.0, MESH_DECIMALS) + 0.0
+    vertices, index = np.unique(vertices, axis=0, return_inverse=True)
+    faces = index.reshape(-1)[part.faces]
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    first = np.argmin(faces, axis=1)
+    faces = np.take_along_axis(faces, (first[:, None] + np.arange(3)) % 3, axis=1)
+    return trimesh.Trimesh(vertices, faces[np.lexsort(faces.T[::-1])], process=False)
+
+
+def _write(part: trimesh.Trimesh, folder: Path, name: str) -> str:
+    path = folder / "meshes" / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(trimesh.exchange.stl.export_stl(part))
+    return f"meshes/{name}"
+
+
+def _body(
+    visuals: list[tuple[str, str]], collision: str, mass: float, solid: trimesh.Trimesh
+) -> LinkBody:
+    """Spread a link's mass evenly over its solid."""
+    solid = solid.copy()
+    solid.density = mass / solid.volume
+    inertia = solid.moment_inertia
+    rows, columns = np.triu_indices(3)
+    return LinkBody(
+        visuals, collision, mass, _clean(solid.center_mass), _clean(inertia[rows, columns])
+    )
+
+
+def _clean(values: np.ndarray) -> tuple[float, ...]:
+    """Round away what is only arithmetic noise."""
+    return tuple(float(value) + 0.0 for value in np.round(values, 7))
+
+
+def _short(link: str) -> str:
+    return link.removeprefix("iiwa_")
+
+
+if __name__ == "__main__":
+    main()
