@@ -119,8 +119,8 @@ class TrainingState:
 class SimulationState:
     """Everything a view needs after a tick (World, m, rad, s).
 
-    `q` are the seven joint angles; `tool_tip_to_world` and each of `link_to_world` (by the link's
-    name in the URDF) are (4, 4) float arrays that are never written again. `clearance` is the signed distance of the
+    `q` are the seven joint angles; `tool_tip_to_world` and each of `link_to_world` (links 0 to 7)
+    are (4, 4) float arrays that are never written again. `clearance` is the signed distance of the
     tool to the head. `elapsed` is the running trial's time, pauses excluded. `operator` is
     who moved the arm last.
     """
@@ -129,7 +129,7 @@ class SimulationState:
     sim_time: float
     q: tuple[float, ...]
     tool_tip_to_world: np.ndarray
-    link_to_world: Mapping[str, np.ndarray]
+    link_to_world: tuple[np.ndarray, ...]
     proximity: Proximity
     clearance: float
     training: TrainingState
