@@ -27,8 +27,8 @@ def base(segments: int) -> dict[str, trimesh.Trimesh]:
     }
 
 
-def coarse_base(segments: int) -> trimesh.Trimesh:
-    """Return the base in one plain piece: what collisions are checked with."""
+def plain_base(segments: int) -> trimesh.Trimesh:
+    """Return the base in one piece without details."""
     return union(revolve(BASE_FLARE[1::4] + BASE_FLARE[-1:], segments), _connector_box())
 
 

@@ -29,7 +29,7 @@ RING_SEGMENTS = 48
 MM_IN_M = 1000.0
 
 # How far the pan joint's end of an arm shell is below (links 1, 3) or above (2, 4) the tilt joint.
-LOWER_ARM_ENDS = {1: -182.5, 3: -225.0}
+LOWER_ARM_ENDS = {1: -182.5, 3: -215.0}
 UPPER_ARM_END = -184.5
 
 
@@ -46,8 +46,8 @@ def shells(rings: int, segments: int) -> dict[int, Parts]:
     }
 
 
-def coarse_shells(rings: int, segments: int) -> dict[int, trimesh.Trimesh]:
-    """Return links 1 to 7, each in one piece without seams: what collisions are checked with."""
+def plain_shells(rings: int, segments: int) -> dict[int, trimesh.Trimesh]:
+    """Return links 1 to 7, each in one piece without seams."""
     lower, upper = LOWER_ARM_ENDS, UPPER_ARM_END
     return {
         1: _place_lower(loft(_arm(lower[1]), rings, segments), 1, 0),

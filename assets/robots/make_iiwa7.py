@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from iiwa7_base import base, coarse_base
+from iiwa7_base import base, plain_base
 from iiwa7_dimensions import LINK_NAMES, LINK_PREFIX, MASSES, TOOL_LINK, TOOL_TIP_LINK
-from iiwa7_shells import coarse_shells, shells
+from iiwa7_shells import plain_shells, shells
 from iiwa7_urdf import LinkBody, urdf_text
-from pointer_tool import coarse_tool, tip, tool
+from pointer_tool import plain_tool, tip, tool
 
 RINGS = 26
 SEGMENTS = 40
@@ -36,7 +36,8 @@ def write_robot(folder: Path) -> None:
     """Write `iiwa7.urdf` and `meshes` into `folder`, in place of older ones."""
     for old in (folder / "meshes").rglob("*.stl"):
         old.unlink()
-    visuals, collisions = visual_parts(), collision_parts()
+    visuals, solids = visual_parts(), plain_parts(RINGS, SEGMENTS)
+    collisions = plain_parts(COARSE_RINGS, COARSE_SEGMENTS)
     bodies = {}
     for link in LINK_NAMES:
         files = [
@@ -44,7 +45,7 @@ def write_robot(folder: Path) -> None:
             for color, part in visuals[link].items()
         ]
         collision = _write(collisions[link], folder, f"collision/{_short(link)}.stl")
-        bodies[link] = _body(files, collision, MASSES[link], collisions[link])
+        bodies[link] = _body(files, collision, MASSES[link], solids[link])
     tip_file = _write(visuals[TOOL_TIP_LINK]["blue"], folder, "visual/tool_tip_blue.stl")
     text = urdf_text(bodies, (tip_file, "blue"))
     (folder / "iiwa7.urdf").write_text(text, encoding="utf-8", newline="\n")
@@ -63,12 +64,12 @@ def visual_parts() -> dict[str, dict[str, trimesh.Trimesh]]:
     }
 
 
-def collision_parts() -> dict[str, trimesh.Trimesh]:
-    """Return one plain solid for each link, in its frame, in metres."""
-    parts = {f"{LINK_PREFIX}0": coarse_base(COARSE_SEGMENTS)}
-    for number, part in coarse_shells(COARSE_RINGS, COARSE_SEGMENTS).items():
+def plain_parts(rings: int, segments: int) -> dict[str, trimesh.Trimesh]:
+    """Return each link in one piece, in its frame, in metres: for collisions and inertia."""
+    parts = {f"{LINK_PREFIX}0": plain_base(segments)}
+    for number, part in plain_shells(rings, segments).items():
         parts[f"{LINK_PREFIX}{number}"] = part
-    parts[TOOL_LINK] = coarse_tool(COARSE_SEGMENTS)
+    parts[TOOL_LINK] = plain_tool(segments)
     return {link: in_metres(part) for link, part in parts.items()}
 
 
@@ -101,16 +102,13 @@ def _body(
     """Spread a link's mass evenly over its solid."""
     solid = solid.copy()
     solid.density = mass / solid.volume
-    inertia = solid.moment_inertia
-    rows, columns = np.triu_indices(3)
-    return LinkBody(
-        visuals, collision, mass, _clean(solid.center_mass), _clean(inertia[rows, columns])
-    )
+    inertia = solid.moment_inertia[np.triu_indices(3)]
+    return LinkBody(visuals, collision, mass, _rounded(solid.center_mass, 4), _rounded(inertia, 6))
 
 
-def _clean(values: np.ndarray) -> tuple[float, ...]:
-    """Round away what is only arithmetic noise."""
-    return tuple(float(value) + 0.0 for value in np.round(values, 7))
+def _rounded(values: np.ndarray, decimals: int) -> tuple[float, ...]:
+    """Round away what a uniform density cannot know, and minus zero."""
+    return tuple(float(value) + 0.0 for value in np.round(values, decimals))
 
 
 def _short(link: str) -> str:

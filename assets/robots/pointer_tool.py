@@ -37,8 +37,8 @@ def tip(segments: int) -> trimesh.Trimesh:
     return revolve(outline[::-1], segments)
 
 
-def coarse_tool(segments: int) -> trimesh.Trimesh:
-    """Return the whole tool in one piece: what collisions are checked with."""
+def plain_tool(segments: int) -> trimesh.Trimesh:
+    """Return the whole tool in one piece, tip included."""
     length = TOOL_LENGTH * 1000.0
     outline = ((31.5, 0.0), (31.5, 8.0), (18.0, 13.0), (17.8, 48.0), (10.5, 66.0), (8.5, 80.0))
     shaft = ((SHAFT_RADIUS, 93.0), (SHAFT_RADIUS, length - 15.0), (POINT_RADIUS, length))
