@@ -5,13 +5,27 @@ from __future__ import annotations
 import math
 
 import pytest
-from rastrainer_simulator.axes import ROBOT_AXES, camera_axes
-from rastrainer_simulator.commanded_motion import ARRIVED, JogCommand, MoveCommand, Outcome
+
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.state import Motion
-from rastrainer_simulator.stick import StickResponse
-from rastrainer_simulator.teleoperation import Teleoperation, TeleoperationSettings, Tip
-from rastrainer_simulator.tool_steering import SteeringSettings, Surface, ToolDirection
+from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, camera_axes
+from rastrainer_simulator.teleoperation.commanded_motion import (
+    ARRIVED,
+    JogCommand,
+    MoveCommand,
+    Outcome,
+)
+from rastrainer_simulator.teleoperation.stick import StickResponse
+from rastrainer_simulator.teleoperation.teleoperation import (
+    Teleoperation,
+    TeleoperationSettings,
+    Tip,
+)
+from rastrainer_simulator.teleoperation.tool_steering import (
+    SteeringSettings,
+    Surface,
+    ToolDirection,
+)
 from rastrainer_simulator.vectors import ZERO, add, angle, distance, length, unit
 
 DT = 0.004

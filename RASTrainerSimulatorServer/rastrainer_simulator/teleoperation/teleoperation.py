@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from rastrainer_simulator.axes import Axes
-from rastrainer_simulator.commanded_motion import (
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.state import Motion
+from rastrainer_simulator.teleoperation.axes import Axes
+from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
     Jogging,
     Moving,
@@ -13,10 +15,8 @@ from rastrainer_simulator.commanded_motion import (
     accelerated,
     started,
 )
-from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.state import Motion
-from rastrainer_simulator.stick import StickResponse
-from rastrainer_simulator.tool_steering import SteeringSettings, Surface, ToolSteering
+from rastrainer_simulator.teleoperation.stick import StickResponse
+from rastrainer_simulator.teleoperation.tool_steering import SteeringSettings, Surface, ToolSteering
 from rastrainer_simulator.vectors import ZERO, Vector, scale
 
 STRAIGHT = (0.0, 0.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from rastrainer_simulator.axes import Axes
+from rastrainer_simulator.teleoperation.axes import Axes
 from rastrainer_simulator.vectors import (
     ZERO,
     Vector,

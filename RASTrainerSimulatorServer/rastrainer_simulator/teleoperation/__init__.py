@@ -1,0 +1,1 @@
+"""From the operator's hands to where the tool's tip shall be."""
