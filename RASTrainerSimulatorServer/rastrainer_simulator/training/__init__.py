@@ -1,0 +1,1 @@
+"""The trial: its phases, its touches, what is said, and what is true."""

@@ -1,0 +1,74 @@
+"""Which command is right in which phase, and what is said when it is not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rastrainer.protocol import FIDUCIAL_COUNT, CommandName, Phase
+from rastrainer_simulator.operator_input import Command
+from rastrainer_simulator.state import TrainingState
+from rastrainer_simulator.training.texts import Texts
+
+RECORDING_FAILED = "RecordingFailed"
+"""By it the control loop takes back what could not be written; clients cannot send it."""
+
+_OPEN = {Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE}
+_FINISHED = {Phase.REGISTERED, Phase.SCORED}
+_AFTER_REGISTRATION = {
+    Phase.IDLE: "no trial",
+    **dict.fromkeys(_OPEN, "not registered"),
+}
+_IN_A_TRIAL = {Phase.IDLE: "no trial", **dict.fromkeys(_FINISHED, "is registered")}
+_NOT_PAUSED = {Phase.PAUSED: "is paused"}
+
+REFUSALS: Mapping[str, Mapping[Phase, str]] = {
+    CommandName.LIST_TASKS: {},
+    CommandName.START_TASK: dict.fromkeys(_OPEN, "trial is open"),
+    CommandName.JOG: _NOT_PAUSED,
+    CommandName.MOVE_TIP_TO: _NOT_PAUSED,
+    CommandName.CAPTURE: {**_IN_A_TRIAL, **_NOT_PAUSED, Phase.COMPLETE: "all touched"},
+    CommandName.UNDO: {**_IN_A_TRIAL, **_NOT_PAUSED},
+    CommandName.REGISTER: {**_IN_A_TRIAL, **_NOT_PAUSED, Phase.RUNNING: "not all touched"},
+    CommandName.ABORT: _IN_A_TRIAL,
+    CommandName.PAUSE: {
+        **_IN_A_TRIAL,
+        Phase.PAUSED: "already paused",
+        Phase.COMPLETE: "all touched",
+    },
+    CommandName.RESUME: {
+        **_IN_A_TRIAL,
+        Phase.RUNNING: "not paused",
+        Phase.COMPLETE: "all touched",
+    },
+    CommandName.SET_CAMERA: {},
+    CommandName.TRIAL_SCORED: _AFTER_REGISTRATION,
+    CommandName.PLAN_TARGET: _AFTER_REGISTRATION,
+    CommandName.GET_TRIAL: {Phase.IDLE: "no trial"},
+    RECORDING_FAILED: {},
+}
+"""For each command of the simulation the phases that it is wrong in, and the sentence's key."""
+
+NAMING_A_TRIAL = (CommandName.TRIAL_SCORED, CommandName.GET_TRIAL)
+
+
+def refusal(command: Command, state: TrainingState, texts: Texts) -> str | None:
+    """Return the sentence that refuses a command in the trial's phase, None where it is right.
+
+    A command that names a trial is right for the present trial only.
+    """
+    if command.name not in REFUSALS:
+        return texts.say("not a simulation command", command=command.name)
+    named = command.arguments.get("trialId", state.trial_id)
+    if command.name in NAMING_A_TRIAL and named != state.trial_id:
+        return texts.say("no such trial", trial_id=named)
+    key = REFUSALS[command.name].get(state.phase)
+    if key is None:
+        return None
+    return texts.say(
+        key,
+        trainee=state.trainee,
+        task=state.task,
+        point=state.next_point,
+        kept=len(state.touches),
+        count=FIDUCIAL_COUNT,
+    )

@@ -1,0 +1,309 @@
+"""The trial: from StartTask over fifteen touches to the score."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName, Phase
+from rastrainer_simulator.operator_input import Command
+from rastrainer_simulator.state import Event, EventKind, Touch, TrainingState, TrialResult
+from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, refusal
+from rastrainer_simulator.training.texts import Texts
+from rastrainer_simulator.training.touch_rule import MM, refused_touch
+from rastrainer_simulator.training.trial_clock import TrialClock
+from rastrainer_simulator.training.trial_seed import trial_id, trial_seed
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.vectors import Vector
+
+if TYPE_CHECKING:
+    from rastrainer.scenario import Scenario
+    from rastrainer.tasks import Task
+
+
+@dataclass(frozen=True)
+class TrainingSettings:
+    """What counts as a touch: `acceptance_radius` is its longest distance to its fiducial, m."""
+
+    acceptance_radius: float = 0.010
+
+
+@dataclass(frozen=True)
+class Moment:
+    """When and where a command is carried out: simulated time (s), the tip in World (m)."""
+
+    sim_time: float
+    tip: Vector
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What a command led to."""
+
+    ok: bool
+    message: str = ""
+    data: Mapping[str, Any] = field(default_factory=dict)
+    events: tuple[Event, ...] = ()
+
+
+class Training:
+    """The state machine of a trial.
+
+    `state` is what everyone may know, `truth` where the head really is. Time and the tip's position
+    come with every command: the trial has no clock of its own.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int,
+        settings: TrainingSettings | None = None,
+        texts: Texts | None = None,
+    ) -> None:
+        self._scenario = scenario
+        self._seed = seed
+        self._settings = settings or TrainingSettings()
+        self._texts = texts or Texts()
+        self._number = 0
+        self._clock = TrialClock(0.0)
+        self._task: Task | None = None
+        self._fiducials: dict[str, Vector] = {}
+        self.trial_seed = 0
+        self.truth = self._truth(scenario.head_to_world, None)
+        self.state = TrainingState(instruction=self._texts.say("idle"))
+        self._history = {0: self.state}
+        self._handlers: dict[str, Callable[[Command, Moment], Reply]] = {
+            CommandName.START_TASK: self._start,
+            CommandName.CAPTURE: self._capture,
+            CommandName.UNDO: self._undo,
+            CommandName.REGISTER: self._register,
+            CommandName.ABORT: self._abort,
+            CommandName.PAUSE: self._pause,
+            CommandName.RESUME: self._resume,
+            CommandName.TRIAL_SCORED: self._scored,
+            CommandName.GET_TRIAL: self._get_trial,
+            RECORDING_FAILED: self._recording_failed,
+        }
+
+    def handles(self, command: str) -> bool:
+        """Return whether a command is the trial's business."""
+        return command in self._handlers
+
+    def handle(self, command: Command, now: Moment) -> Reply:
+        """Carry out a command, or refuse it with a sentence that says what would be right."""
+        sentence = refusal(command, self.state, self._texts)
+        if sentence is not None:
+            return Reply(False, sentence)
+        return self._handlers[command.name](command, now)
+
+    def elapsed(self, sim_time: float) -> float:
+        """Return the trial's time in s, pauses excluded; it ends with the last touch."""
+        if self.state.phase is Phase.IDLE:
+            return 0.0
+        if self.state.phase in (Phase.RUNNING, Phase.PAUSED):
+            return self._clock.elapsed(sim_time)
+        return self.state.touches[-1].elapsed
+
+    def _start(self, command: Command, now: Moment) -> Reply:
+        arguments = command.arguments
+        try:
+            task = self._scenario.task(arguments["task"])
+        except InputError as error:
+            return Reply(False, str(error))
+        number = self._number
+        self._number += 1
+        chosen = arguments.get("seed")
+        self.trial_seed = trial_seed(self._seed, number) if chosen is None else chosen
+        self._task = task
+        self.truth = self._truth(self._scenario.perturbed_head_to_world(self.trial_seed), task)
+        self._fiducials = {
+            label: tuple(float(v) / MM for v in self.truth.in_world(point))
+            for label, point in self.truth.fiducials.items()
+        }
+        self._clock = TrialClock(now.sim_time)
+        idle = TrainingState(revision=self.state.revision)
+        self._history = {idle.revision: idle}
+        started = TrainingState(
+            phase=Phase.RUNNING,
+            trainee=arguments["trainee"],
+            task=task.name,
+            mode=arguments["mode"],
+            trial_id=arguments.get("trialId") or trial_id(self._seed, number),
+            next_point=task.labels[0],
+            revision=self.state.revision,
+        )
+        event = self._enter(started, "start", now)
+        return Reply(True, data=self._summary(), events=(event,))
+
+    def _capture(self, _command: Command, now: Moment) -> Reply:
+        state = self.state
+        label = state.next_point
+        sentence = refused_touch(
+            now.tip, label, self._fiducials, self._settings.acceptance_radius, self._texts
+        )
+        position = [MM * value for value in now.tip]
+        if sentence is not None:
+            self.state = replace(state, rejected=state.rejected + 1, instruction=sentence)
+            data = {"label": label, "positionMm": position, "message": sentence}
+            return Reply(False, sentence, events=(Event(EventKind.REJECTED, now.sim_time, data),))
+        touch = Touch(label, now.tip, now.sim_time, self._clock.elapsed(now.sim_time))
+        touches = (*state.touches, touch)
+        data = {"label": label, "positionMm": position, "kept": len(touches)}
+        event = Event(EventKind.TOUCH, now.sim_time, data)
+        if len(touches) == len(self._task.labels):
+            complete = replace(state, phase=Phase.COMPLETE, touches=touches, next_point=None)
+            return Reply(True, data=data, events=(event, self._enter(complete, "complete", now)))
+        following = self._task.labels[len(touches)]
+        touched = replace(state, touches=touches, next_point=following)
+        self._keep(touched, "touched", label=label)
+        return Reply(True, data={**data, "nextPoint": following}, events=(event,))
+
+    def _undo(self, _command: Command, now: Moment) -> Reply:
+        state = self.state
+        if not state.touches:
+            return Reply(False, self._texts.say("nothing to undo", point=state.next_point))
+        label = state.touches[-1].label
+        data = {"label": label, "kept": len(state.touches) - 1, "nextPoint": label}
+        events = [Event(EventKind.UNDO, now.sim_time, data)]
+        undone = replace(
+            state,
+            phase=Phase.RUNNING,
+            touches=state.touches[:-1],
+            next_point=label,
+            undone=state.undone + 1,
+        )
+        if state.phase is Phase.RUNNING:
+            self._keep(undone, "undone", label=label)
+        else:
+            events.append(self._enter(undone, "undone", now, label=label))
+        return Reply(True, data=data, events=tuple(events))
+
+    def _register(self, _command: Command, now: Moment) -> Reply:
+        event = self._enter(replace(self.state, phase=Phase.REGISTERED), "registered", now)
+        data = {**self._summary(), "completionTimeS": self.state.touches[-1].elapsed}
+        return Reply(True, data=data, events=(event,))
+
+    def _abort(self, _command: Command, now: Moment) -> Reply:
+        aborted = self.state
+        self._leave()
+        idle = TrainingState(revision=aborted.revision)
+        self._history = {}
+        event = self._enter(idle, "aborted", now, trainee=aborted.trainee)
+        return Reply(True, data={"trialId": aborted.trial_id}, events=(event,))
+
+    def _pause(self, _command: Command, now: Moment) -> Reply:
+        self._clock.pause(now.sim_time)
+        return Reply(
+            True, events=(self._enter(replace(self.state, phase=Phase.PAUSED), "paused", now),)
+        )
+
+    def _resume(self, _command: Command, now: Moment) -> Reply:
+        self._clock.resume(now.sim_time)
+        return Reply(
+            True, events=(self._enter(replace(self.state, phase=Phase.RUNNING), "resumed", now),)
+        )
+
+    def _scored(self, command: Command, now: Moment) -> Reply:
+        arguments = command.arguments
+        revealed = self._revealed(arguments["matrix"])
+        data = {"trialId": self.state.trial_id, **revealed}
+        result = TrialResult(
+            fre_mm=arguments["freMm"],
+            expected_tre_mm=arguments["expectedTreMm"],
+            true_tre_mm=revealed["trueTreMm"],
+            score=arguments["score"],
+            matrix=arguments["matrix"],
+            details=arguments["details"],
+        )
+        if result == self.state.result:
+            return Reply(True, data=data)
+        scored = replace(self.state, phase=Phase.SCORED, result=result)
+        event = self._enter(
+            scored,
+            "scored",
+            now,
+            score=result.score,
+            fre=result.fre_mm,
+            tre=result.true_tre_mm,
+        )
+        return Reply(True, data=data, events=(event,))
+
+    def _get_trial(self, _command: Command, _now: Moment) -> Reply:
+        state = self.state
+        data = self._summary()
+        data["touches"] = [
+            {
+                "label": touch.label,
+                "positionMm": [MM * value for value in touch.position],
+                "simTime": touch.sim_time,
+            }
+            for touch in state.touches
+        ]
+        if state.result is not None:
+            data.update(self._revealed(state.result.matrix))
+        return Reply(True, data=data)
+
+    def _recording_failed(self, command: Command, now: Moment) -> Reply:
+        """Go back to the last revision that is on the disk, and pause."""
+        kept = self._history.get(command.arguments["revision"])
+        if kept is None:
+            return Reply(True)
+        sentence = self._texts.say("not recorded", reason=command.arguments["reason"])
+        if kept.phase is Phase.RUNNING:
+            self._clock.pause(now.sim_time)
+            kept = replace(kept, phase=Phase.PAUSED)
+        if kept.phase is Phase.IDLE:
+            self._leave()
+        back = replace(kept, revision=self.state.revision)
+        event = self._enter(back, "not recorded", now, reason=command.arguments["reason"])
+        return Reply(True, message=sentence, events=(event,))
+
+    def _enter(self, state: TrainingState, key: str, now: Moment, **values: object) -> Event:
+        """Take on a state of another phase and return the event that tells of it."""
+        self._keep(state, key, **values)
+        data = {**self._summary(), "instruction": self.state.instruction}
+        return Event(EventKind.PHASE, now.sim_time, data)
+
+    def _keep(self, state: TrainingState, key: str, **values: object) -> None:
+        """Take on a state that must not be lost, with the instruction that goes with it."""
+        words = {
+            "trainee": state.trainee,
+            "point": state.next_point,
+            "count": len(self._task.labels),
+            **values,
+        }
+        revision = state.revision + 1
+        instruction = self._texts.say(key, **words)
+        self.state = replace(state, revision=revision, instruction=instruction)
+        self._history[revision] = self.state
+
+    def _leave(self) -> None:
+        """Between trials the head is where it nominally is."""
+        self.truth = self._truth(self._scenario.head_to_world, None)
+        self._fiducials = {}
+
+    def _summary(self) -> dict[str, Any]:
+        state = self.state
+        return {
+            "trialId": state.trial_id,
+            "phase": state.phase.value,
+            "trainee": state.trainee,
+            "task": state.task,
+            "mode": state.mode,
+            "nextPoint": state.next_point,
+        }
+
+    def _revealed(self, matrix: tuple[float, ...]) -> dict[str, Any]:
+        touches = (
+            (touch.label, tuple(MM * v for v in touch.position)) for touch in self.state.touches
+        )
+        return self.truth.revealed(np.array(matrix, dtype=float).reshape(4, 4), touches)
+
+    def _truth(self, head_to_world: np.ndarray, task: Task | None) -> Truth:
+        fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
+        target = self._scenario.target.position
+        return Truth(np.asarray(head_to_world, dtype=float), target, fiducials)

@@ -1,0 +1,78 @@
+"""What only a simulator can tell: how far a registration and each touch are from the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Truth:
+    """Where the head really is in a trial: the simulator's secret until the trial is scored.
+
+    Attributes:
+        head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
+        target: (3,) float, RAS mm, where the true error of a registration is told.
+        fiducials: label → (3,) float, RAS mm, of the trial's task.
+    """
+
+    head_to_world: np.ndarray
+    target: np.ndarray
+    fiducials: Mapping[str, np.ndarray]
+
+    def in_world(self, point: np.ndarray) -> np.ndarray:
+        """Return a point of the head (RAS mm) in World (mm)."""
+        return self.head_to_world[:3, :3] @ point + self.head_to_world[:3, 3]
+
+    def in_head(self, point: np.ndarray) -> np.ndarray:
+        """Return a point of World (mm) in the head (RAS mm)."""
+        return self.head_to_world[:3, :3].T @ (point - self.head_to_world[:3, 3])
+
+    def target_error_mm(self, world_to_head: np.ndarray) -> float:
+        """Return |WorldToHead · HeadToWorld(target) − target|, the true TRE of a registration.
+
+        `world_to_head` is the registration found, (4, 4) float, mm.
+        """
+        registered = (world_to_head @ np.append(self.in_world(self.target), 1.0))[:3]
+        return float(np.linalg.norm(registered - self.target))
+
+    def touch_errors_mm(
+        self, touches: Iterable[tuple[str, tuple[float, float, float]]]
+    ) -> dict[str, float]:
+        """Return for each touch (label, World mm) how far it is from its fiducial, in mm."""
+        return {
+            label: float(np.linalg.norm(self.in_head(np.array(position)) - self.fiducials[label]))
+            for label, position in touches
+        }
+
+    def revealed(
+        self,
+        world_to_head: np.ndarray,
+        touches: Iterable[tuple[str, tuple[float, float, float]]],
+    ) -> dict[str, Any]:
+        """Return what the answer to TrialScored tells, ready for JSON."""
+        return {
+            "headToWorld": [float(value) for value in self.head_to_world.ravel()],
+            "trueTreMm": self.target_error_mm(world_to_head),
+            "touchErrorsMm": self.touch_errors_mm(touches),
+        }
+
+    def to_json(self) -> dict[str, Any]:
+        """Return what the journal keeps, so that the truth outlives the server."""
+        return {
+            "headToWorld": [float(value) for value in self.head_to_world.ravel()],
+            "target": [float(value) for value in self.target],
+            "fiducials": {k: [float(v) for v in point] for k, point in self.fiducials.items()},
+        }
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> Truth:
+        """Return what `to_json` gave."""
+        return cls(
+            head_to_world=np.array(value["headToWorld"], dtype=float).reshape(4, 4),
+            target=np.array(value["target"], dtype=float),
+            fiducials={k: np.array(v, dtype=float) for k, v in value["fiducials"].items()},
+        )
