@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from typing import Any
 
@@ -13,7 +13,8 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.command import Command
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device, Rate
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device, Phase, Rate
+from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.igtl import devices
 from rastrainer_simulator.igtl.command_handler import CommandHandler
 from rastrainer_simulator.igtl.connection import Connection
@@ -46,6 +47,7 @@ class SimulatorLink:
         self,
         latest: Callable[[], SimulationState],
         submit: SubmitCommand,
+        unacknowledged: Callable[[], Sequence[TrialRecord]],
         limits: Limits | None = None,
     ):
         """Make a link, in the event loop's thread.
@@ -54,11 +56,13 @@ class SimulatorLink:
             latest: gives the newest state.
             submit: takes a command's name, checked arguments and sender, and returns the
                 answer's future at once.
+            unacknowledged: gives the records of the trials that no client has acknowledged.
             limits: what one client may cost.
         """
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
-        self.offers = TrialOffers(lambda: self.server.connections)
+        self.offers = TrialOffers(unacknowledged, lambda: self.server.connections)
+        self._told = Phase.IDLE
         self._submit_command = submit
         self._commands = CommandHandler(self._submit, self.server.limits)
 
@@ -81,6 +85,14 @@ class SimulatorLink:
         """Forget a client."""
         self.publisher.unsubscribe(connection)
         self._commands.forget(connection)
+
+    def tell(self, state: SimulationState) -> None:
+        """Publish what is due, and offer a trial as soon as it is registered."""
+        self.publisher.publish(state)
+        phase = state.training.phase
+        if phase is Phase.REGISTERED and self._told is not phase:
+            self.offers.offer_newest()
+        self._told = phase
 
     async def beat(self, details: Callable[[], Mapping[str, Any]]) -> None:
         """Send the heartbeat every second, with `details`, and repeat the offers; never returns."""

@@ -4,47 +4,53 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
 
 from rastrainer.igtl.command import Command
 from rastrainer.igtl.message import Message
 from rastrainer.protocol import CommandName, Device
+from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.igtl.connection import Connection
 from rastrainer_simulator.igtl.outgoing import Outgoing
 
-_MOST_AT_ONCE = 8
-_LARGEST_NUMBER = 2**32
+MOST_AT_ONCE = 8
+"""Trials in one round of offers."""
+
+_NUMBERS = 2**32
 
 
 class TrialOffers:
-    """The trials that nobody has acknowledged yet, oldest first.
+    """Offers the trials that nobody has acknowledged.
 
     Clients keep trials by their UUID, so an offer that arrives twice does no harm.
     """
 
-    def __init__(self, clients: Callable[[], Iterable[Connection]]):
+    def __init__(
+        self,
+        unacknowledged: Callable[[], Sequence[TrialRecord]],
+        clients: Callable[[], Iterable[Connection]],
+    ):
+        """`unacknowledged` gives the records that wait, oldest first; `clients` who is there."""
+        self._unacknowledged = unacknowledged
         self._clients = clients
-        self._records: dict[str, Mapping[str, Any]] = {}
         self._numbers = itertools.count(1)
+        self._start = 0
 
-    def add(self, record: Mapping[str, Any]) -> None:
-        """Offer a trial's record at once, and from then on with `repeat`."""
-        self._records[record["trialId"]] = record
-        self._offer([record])
-
-    def remove(self, trial_id: str) -> None:
-        """Offer a trial no more."""
-        self._records.pop(trial_id, None)
+    def offer_newest(self) -> None:
+        """Offer the trial that was registered last."""
+        self._offer(self._unacknowledged()[-1:])
 
     def repeat(self) -> None:
-        """Offer the oldest again; the others follow as these are acknowledged."""
-        self._offer(itertools.islice(self._records.values(), _MOST_AT_ONCE))
+        """Offer some again, others in the next round, so that none holds up the rest."""
+        records = tuple(self._unacknowledged())
+        start = self._start if self._start < len(records) else 0
+        self._offer((records[start:] + records[:start])[:MOST_AT_ONCE])
+        self._start = start + MOST_AT_ONCE if len(records) > MOST_AT_ONCE else 0
 
-    def _offer(self, records: Iterable[Mapping[str, Any]]) -> None:
+    def _offer(self, records: Iterable[TrialRecord]) -> None:
         for record in records:
-            number = next(self._numbers) % _LARGEST_NUMBER
-            body = json.dumps(record, allow_nan=False)
+            body = json.dumps(record.to_json(), allow_nan=False)
+            number = next(self._numbers) % _NUMBERS
             command = Command(number, CommandName.TRIAL_COMPLETED, body)
             offer = Outgoing(Message(Device.COMMAND, command))
             for connection in self._clients():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyigtl
 import pytest
+
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
 from rastrainer.igtl.points import Point, Points

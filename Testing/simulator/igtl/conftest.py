@@ -1,0 +1,47 @@
+"""Servers on real sockets, and a client of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer_simulator.igtl.limits import Limits
+from Testing.simulator.igtl.servers import LinkServer, LoopThread, PlainServer
+
+
+@pytest.fixture
+def loop_thread():
+    thread = LoopThread()
+    yield thread
+    thread.stop()
+
+
+@pytest.fixture
+def start(loop_thread):
+    """Starts servers of a kind with given limits, and ends them."""
+    started = []
+
+    def start_one(kind, **limits):
+        server = kind(loop_thread, Limits(**limits))
+        started.append(server)
+        return server
+
+    yield start_one
+    for server in started:
+        loop_thread.run(server.server.close())
+
+
+@pytest.fixture
+def plain_server(start) -> PlainServer:
+    return start(PlainServer)
+
+
+@pytest.fixture
+def link_server(start) -> LinkServer:
+    return start(LinkServer)
+
+
+@pytest.fixture
+def client(link_server) -> Client:
+    with Client(port=link_server.port) as client:
+        yield client
