@@ -68,7 +68,7 @@ def test_other_meshes_replace_those_of_the_urdf(tmp_path, robot):
     kept = [part.path for part in other.meshes if part.link != "iiwa_link_3"]
     assert kept == [part.path for part in robot.meshes if part.link != "iiwa_link_3"]
     with pytest.raises(InputError, match="no mesh for this robot"):
-        load_robot(mesh_folder=tmp_path / "visual")
+        load_robot(mesh_folder=tmp_path / "empty")
 
 
 @pytest.mark.parametrize(

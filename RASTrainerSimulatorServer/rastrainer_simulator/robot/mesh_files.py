@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,6 +29,7 @@ class MeshPart:
     origin: np.ndarray  # (4, 4) float: the mesh's frame to the link's frame, m
     scale: tuple[float, float, float]
     color: tuple[float, float, float, float]  # RGBA, 0…1
+    replaced: bool = False  # stands in for the URDF's own mesh
 
 
 def mesh_parts(
@@ -37,7 +39,8 @@ def mesh_parts(
 
     `mesh_folder` follows the custom of robot descriptions: `visual/link_3.stl` (or .dae, .obj,
     .ply, .glb) replaces what the link whose name ends in `link_3` shows, `collision/link_3.stl`
-    what it collides with. Raises InputError where `mesh_folder` fits no link.
+    what it collides with, and a plain `link_3.stl` both. Without any visual mesh for a link, its
+    collision mesh is shown. Raises InputError where `mesh_folder` fits no link.
     """
     colors = {
         material.name: _rgba(material) for material in robot.materials if material.color is not None
@@ -49,22 +52,22 @@ def mesh_parts(
             other = _replacement(link.name, kind, mesh_folder) if mesh_folder else None
             if other:
                 replaced = True
-                parts.append(MeshPart(link.name, kind, other, np.eye(4), (1.0,) * 3, _GREY))
+                parts.append(MeshPart(link.name, kind, other, np.eye(4), (1.0,) * 3, _GREY, True))
             else:
                 parts.extend(_own_parts(link, kind, urdf_folder, colors))
     if mesh_folder and not replaced:
         raise InputError(
             f"{mesh_folder} has no mesh for this robot; there should be files such as "
-            "visual/link_0.stl and collision/link_0.stl."
+            "link_0.stl, visual/link_0.stl or collision/link_0.stl."
         )
     return tuple(parts)
 
 
 def _replacement(link: str, kind: str, folder: Path) -> Path | None:
     names = [link, *(link[i + 1 :] for i, letter in enumerate(link) if letter == "_")]
-    for name in names:
-        for suffix in _SUFFIXES:
-            path = folder / kind / f"{name}{suffix}"
+    for place in (folder / kind, folder, folder / "collision"):
+        for name, suffix in itertools.product(names, _SUFFIXES):
+            path = place / f"{name}{suffix}"
             if path.is_file():
                 return path
     return None

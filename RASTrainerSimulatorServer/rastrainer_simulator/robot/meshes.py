@@ -1,0 +1,116 @@
+"""Open the mesh files of a robot's links: checked, in metres, each in its link's frame."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.robot.mesh_files import MeshPart
+from rastrainer_simulator.robot.model import RobotModel
+
+if TYPE_CHECKING:
+    import trimesh
+
+    ColoredMesh = tuple[trimesh.Trimesh, tuple[float, float, float, float]]
+
+LARGEST_FILE = 50_000_000
+MOST_TRIANGLES = 500_000
+FARTHEST = 10.0
+
+
+def load_meshes(model: RobotModel, kind: str = "visual") -> dict[str, list[ColoredMesh]]:
+    """Return the meshes of every link that has some, each with its color (RGBA, 0…1).
+
+    `kind` is "visual" or "collision". Vertices are in metres in the link's frame. Meshes that
+    replace the URDF's own may also lie where they are on the robot at q = 0, in the base frame, as
+    some published sets do: they are recognized by where they lie, and moved.
+
+    Raises:
+        InputError: a file is missing, too large, not a mesh, empty, or has unusable vertices.
+    """
+    parts = [part for part in model.meshes if part.kind == kind]
+    loaded = [(part, _load(part)) for part in parts]
+    replacements = [(part.link, mesh) for part, mesh in loaded if part.replaced]
+    if _lie_in_base_frame(model, replacements):
+        poses = _outstretched(model)
+        for link, mesh in replacements:
+            mesh.apply_transform(np.linalg.inv(poses[link]))
+    meshes: dict[str, list[ColoredMesh]] = {}
+    for part, mesh in loaded:
+        meshes.setdefault(part.link, []).append((mesh, part.color))
+    return meshes
+
+
+def _load(part: MeshPart) -> trimesh.Trimesh:
+    import trimesh
+
+    data, kind = _read_bytes(part), part.path.suffix[1:].lower()
+    try:
+        # From bytes there is no folder in which a mesh could ask for further files.
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type=kind, process=False)
+        vertices, faces = np.asarray(mesh.vertices, dtype=float), np.asarray(mesh.faces)
+    except Exception as error:  # a hostile file can break the parser in any way
+        raise InputError(
+            f"{part.path} cannot be read as a {kind.upper()} mesh ({type(error).__name__})."
+        ) from error
+    if len(faces) == 0:
+        raise InputError(f"{part.path} holds no triangles; it should hold a surface mesh.")
+    if len(faces) > MOST_TRIANGLES:
+        raise InputError(f"{part.path} has {len(faces)} triangles; at most {MOST_TRIANGLES} fit.")
+    if not np.all(np.abs(vertices * part.scale) <= FARTHEST):
+        raise InputError(
+            f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; "
+            "robot meshes should be in metres."
+        )
+    mesh = trimesh.Trimesh(vertices * part.scale, faces, process=False)
+    mesh.merge_vertices()
+    return mesh.apply_transform(part.origin)
+
+
+def _read_bytes(part: MeshPart) -> bytes:
+    try:
+        with part.path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise InputError(
+            f"The mesh {part.path} of {part.link} cannot be read: {error.strerror}."
+        ) from error
+    if len(data) > LARGEST_FILE:
+        raise InputError(f"{part.path} is larger than {LARGEST_FILE // 1_000_000} MB.")
+    return data
+
+
+def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Trimesh]]) -> bool:
+    """Tell whether meshes lie on the outstretched robot rather than around their links' origins.
+
+    A link's mesh lies about the middle between its own and the next joint.
+    """
+    poses, middles = _outstretched(model), _link_middles(model)
+    in_link = in_base = 0.0
+    for link, mesh in meshes:
+        center = mesh.bounds.mean(axis=0)
+        on_robot = poses[link][:3, :3] @ middles[link] + poses[link][:3, 3]
+        in_link += float(np.linalg.norm(center - middles[link]))
+        in_base += float(np.linalg.norm(center - on_robot))
+    return in_base < in_link
+
+
+def _outstretched(model: RobotModel) -> dict[str, np.ndarray]:
+    """Return each link's pose (4, 4) in the base frame at q = 0, in metres."""
+    bases = [np.eye(4)]
+    for joint in model.joints:
+        bases.append(bases[-1] @ joint.origin)
+    return {link.name: bases[link.joint] @ link.offset for link in model.links}
+
+
+def _link_middles(model: RobotModel) -> dict[str, np.ndarray]:
+    """Return the middle (3,) between each link's origin and what follows, in the link's frame."""
+    ends = [*(joint.origin for joint in model.joints), model.tip.offset]
+    return {
+        link.name: (np.linalg.inv(link.offset) @ ends[link.joint])[:3, 3] / 2
+        for link in model.links
+    }
