@@ -93,6 +93,12 @@ class CommandName:
     TRIAL_COMPLETED = "TrialCompleted"
 
 
+SPEED_LIMIT_MM_S = 500.0
+WORLD_LIMIT_MM = 5000.0
+OBJECT_LIMIT = 65_536
+"""Characters of a JSON object that is kept with a trial, such as the details of a score."""
+
+
 @dataclass(frozen=True)
 class Argument:
     """One argument of a command: how it is checked, and what it is when left out.
@@ -175,14 +181,16 @@ def trial_id(value: Any) -> str:
 
 
 def plain_object(value: Any) -> dict[str, Any]:
-    """Accept a JSON object as it is."""
-    if not isinstance(value, dict):
-        raise ValueError("a JSON object")
+    """Accept a JSON object as it is, within a size that fits a line of a journal."""
+    words = f"a JSON object of at most {OBJECT_LIMIT} characters"
+    try:
+        size = len(json.dumps(value, allow_nan=False))
+    except (TypeError, ValueError, RecursionError):
+        raise ValueError(words) from None
+    if not isinstance(value, dict) or size > OBJECT_LIMIT:
+        raise ValueError(words)
     return value
 
-
-SPEED_LIMIT_MM_S = 500.0
-WORLD_LIMIT_MM = 5000.0
 
 COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.HELLO: {

@@ -305,5 +305,5 @@ class Training:
 
     def _truth(self, head_to_world: np.ndarray, task: Task | None) -> Truth:
         fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
-        target = self._scenario.target.position
+        target = self._scenario.target_position
         return Truth(np.asarray(head_to_world, dtype=float), target, fiducials)

@@ -1,0 +1,1 @@
+"""The record of trials: journals, what is still to be delivered, and replay."""

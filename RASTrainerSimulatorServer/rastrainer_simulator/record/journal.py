@@ -1,0 +1,136 @@
+"""Write a trial's journal: append-only, chained by hashes, on the disk before anyone is told.
+
+The format is described in `docs/trial-journal.md`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import RASTrainerError
+from rastrainer_simulator.record.file_lock import lock
+from rastrainer_simulator.record.journal_line import NO_LINE, encode_line
+from rastrainer_simulator.record.journal_reader import Integrity, JournalReading, read_journal
+
+
+class RecordError(RASTrainerError):
+    """The journal could not be written; the message says why and is fit for the trainee."""
+
+
+class Journal:
+    """One trial's journal file.
+
+    What could not be written is kept and tried again with the next entries, in its order: nothing
+    is lost while the program lives, and the chain has no gap. Not safe for several threads.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Take a path of a new file, which the first `write` creates and never overwrites."""
+        self.path = path
+        self._descriptor: int | None = None
+        self._count = 0
+        self._previous = NO_LINE
+        self._size: int | None = None
+        self._unwritten: list[Mapping[str, Any]] = []
+
+    @classmethod
+    def continuing(cls, reading: JournalReading) -> Journal:
+        """Return the journal of an existing file that was not altered, to append to it.
+
+        What stands behind its last whole line was never acknowledged: the first `write` cuts it
+        off.
+        """
+        journal = cls(reading.path)
+        journal._take_up(reading)
+        return journal
+
+    def write(self, entries: Sequence[Mapping[str, Any]], sync: bool) -> None:
+        """Append entries; with `sync` they are on the disk when this returns.
+
+        Raises:
+            RecordError: they could not be written. They are kept for the next `write`.
+        """
+        self._unwritten.extend(entries)
+        try:
+            self._open()
+            count, previous, data = self._encoded()
+            self._append(data)
+            if sync:
+                os.fsync(self._descriptor)
+        except OSError as error:
+            self._cut_off()
+            raise RecordError(f"{self.path.name}: {error.strerror or error}") from error
+        self._count, self._previous, self._size = count, previous, self._size + len(data)
+        self._unwritten.clear()
+
+    def close(self) -> None:
+        """Close the file; a later `write` opens it again. A file without any line is removed."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+        if self._size == 0:
+            self.path.unlink(missing_ok=True)
+            self._size = None
+
+    def _open(self) -> None:
+        if self._descriptor is not None:
+            return
+        flags = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+        if self._size is None:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self._descriptor = os.open(self.path, flags | os.O_CREAT | os.O_EXCL, 0o644)
+            self._size = 0
+            _sync_folder(self.path.parent)
+        else:
+            self._descriptor = os.open(self.path, flags)
+        lock(self._descriptor)
+        if os.fstat(self._descriptor).st_size != self._size:
+            self._catch_up()
+            os.ftruncate(self._descriptor, self._size)
+
+    def _encoded(self) -> tuple[int, str, bytes]:
+        count, previous, lines = self._count, self._previous, []
+        for entry in self._unwritten:
+            count += 1
+            line, previous = encode_line(count, previous, entry)
+            lines.append(line)
+        return count, previous, b"".join(lines)
+
+    def _append(self, data: bytes) -> None:
+        os.lseek(self._descriptor, self._size, os.SEEK_SET)
+        rest = memoryview(data)
+        while rest:
+            rest = rest[os.write(self._descriptor, rest) :]
+
+    def _cut_off(self) -> None:
+        """Leave no half line behind; where even that fails, the next `write` sees to it."""
+        if self._descriptor is not None:
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._descriptor, self._size)
+            os.close(self._descriptor)
+            self._descriptor = None
+
+    def _catch_up(self) -> None:
+        reading = read_journal(self.path)
+        if reading.integrity is Integrity.ALTERED:
+            raise RecordError(f"{self.path.name} is {reading.sentence}; nothing is added to it.")
+        self._take_up(reading)
+
+    def _take_up(self, reading: JournalReading) -> None:
+        self._count = len(reading.entries)
+        self._previous = reading.last_hash
+        self._size = reading.end
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make a new file's name durable; Windows has no such call and does it by itself."""
+    if os.name == "posix":
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

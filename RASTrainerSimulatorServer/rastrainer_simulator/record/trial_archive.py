@@ -1,0 +1,193 @@
+"""The trials in a folder of journals: which are still to be delivered, and what each one says."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_reader import Integrity, JournalReading, read_journal
+from rastrainer_simulator.training.true_error import Truth
+
+SUFFIX = ".journal"
+FIRST_REACH = 1 << 16
+"""Bytes at the end of a journal that are looked at first."""
+
+_KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
+_AFTER_THE_TRIAL = frozenset({b"registered", b"scored", b"acknowledged"})
+
+
+@dataclass(frozen=True)
+class ArchivedTrial:
+    """A registered trial.
+
+    Attributes:
+        record: as it is delivered.
+        truth: where the head really was.
+        seed: of the trial, told with the truth.
+        scored: the arguments of TrialScored; None before.
+        acknowledged: whether a client has said that it has stored the record.
+    """
+
+    record: TrialRecord
+    truth: Truth
+    seed: int
+    scored: Mapping[str, Any] | None = None
+    acknowledged: bool = False
+
+    def told(self) -> dict[str, Any]:
+        """Return what GetTrial answers: the truth only once the trial is scored."""
+        data: dict[str, Any] = {
+            "trialId": self.record.trial_id,
+            "phase": "registered" if self.scored is None else "scored",
+            "record": self.record.to_json(),
+            "acknowledged": self.acknowledged,
+        }
+        return data if self.scored is None else {**data, "seed": self.seed, **self.revealed()}
+
+    def revealed(self) -> dict[str, Any]:
+        """Return what TrialScored answers; the trial has to be scored."""
+        matrix = np.array(self.scored["matrix"], dtype=float).reshape(4, 4)
+        touches = zip(self.record.labels, self.record.positions_mm, strict=True)
+        return self.truth.revealed(matrix, touches)
+
+
+class TrialArchive:
+    """The registered trials of a folder. One thread changes it; any may ask what is to deliver.
+
+    `problems` are sentences about journals that cannot be used.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._trials: dict[str, ArchivedTrial] = {}
+        self._journals: dict[str, Journal] = {}
+        self.problems: list[str] = []
+        for path in find_unacknowledged(folder):
+            self._load(path)
+
+    def unacknowledged(self) -> tuple[TrialRecord, ...]:
+        """Return the records that no client has acknowledged, the oldest first."""
+        trials = list(self._trials.values())
+        return tuple(trial.record for trial in trials if not trial.acknowledged)
+
+    def add(self, trial: ArchivedTrial, journal: Journal) -> None:
+        """Take in a trial that has just been registered."""
+        self._trials[trial.record.trial_id] = trial
+        self._journals[trial.record.trial_id] = journal
+
+    def scored(self, trial_id: str, arguments: Mapping[str, Any]) -> None:
+        """Take note of a score that is in the trial's journal already."""
+        self._trials[trial_id] = replace(self._trials[trial_id], scored=dict(arguments))
+
+    def answer(
+        self, command: str, arguments: Mapping[str, Any], times: Mapping[str, Any]
+    ) -> dict[str, Any]:
+        """Carry out GetTrial, AcknowledgeTrial or TrialScored and return the answer's data.
+
+        `times` are the stamps of the entry that is appended to the trial's journal.
+
+        Raises:
+            InputError: there is no such trial.
+            RecordError: its journal cannot be written.
+        """
+        trial = self._found(arguments["trialId"])
+        trial_id = trial.record.trial_id
+        if command == CommandName.GET_TRIAL:
+            return trial.told()
+        if command == CommandName.ACKNOWLEDGE_TRIAL:
+            if not trial.acknowledged:
+                self._append(trial_id, {"kind": "acknowledged", **times})
+                self._trials[trial_id] = replace(trial, acknowledged=True)
+            return {"trialId": trial_id}
+        if trial.scored != arguments:
+            entry = {"kind": "scored", **times, "arguments": dict(arguments)}
+            self._append(trial_id, entry)
+            self.scored(trial_id, arguments)
+        return {"trialId": trial_id, **self._trials[trial_id].revealed()}
+
+    def _found(self, trial_id: str) -> ArchivedTrial:
+        if trial_id not in self._trials:
+            for path in self._folder.glob(f"*_{trial_id}{SUFFIX}"):
+                self._load(path)
+        if trial_id not in self._trials:
+            raise InputError(
+                f"There is no registered trial {trial_id} here; TrialCompleted tells the IDs."
+            )
+        return self._trials[trial_id]
+
+    def _load(self, path: Path) -> None:
+        try:
+            reading = read_journal(path)
+            trial = archived_trial(reading)
+        except InputError as error:
+            self.problems.append(str(error))
+            return
+        if trial is not None:
+            self.add(trial, Journal.continuing(reading))
+
+    def _append(self, trial_id: str, entry: Mapping[str, Any]) -> None:
+        journal = self._journals[trial_id]
+        try:
+            journal.write([entry], sync=True)
+        finally:
+            journal.close()
+
+
+def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
+    """Return the trial that a journal tells of, None if it was never registered.
+
+    Raises:
+        InputError: the journal was altered, or its record is not one.
+    """
+    if reading.integrity is Integrity.ALTERED:
+        raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
+    registered = reading.of_kind("registered")
+    if not registered:
+        return None
+    scores = reading.of_kind("scored")
+    return ArchivedTrial(
+        record=TrialRecord.from_json(registered[-1]["record"]),
+        truth=Truth.from_json(registered[-1]["truth"]),
+        seed=reading.header["seed"],
+        scored=scores[-1]["arguments"] if scores else None,
+        acknowledged=bool(reading.of_kind("acknowledged")),
+    )
+
+
+def find_unacknowledged(folder: Path) -> list[Path]:
+    """Return the journals of registered trials that no client has acknowledged, oldest first.
+
+    Only the end of each file is read: a lab's folder holds thousands.
+    """
+    return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _awaits_delivery(path)]
+
+
+def _awaits_delivery(path: Path) -> bool:
+    kinds = _last_kinds(path)
+    return b"registered" in kinds and b"acknowledged" not in kinds
+
+
+def _last_kinds(path: Path) -> list[bytes]:
+    """Return the kinds of the last lines, back to before the trial was registered."""
+    reach = FIRST_REACH
+    try:
+        with path.open("rb") as file:
+            size = file.seek(0, os.SEEK_END)
+            while True:
+                file.seek(max(0, size - reach))
+                kinds = _KIND.findall(file.read(reach))
+                if reach >= size or not _AFTER_THE_TRIAL.issuperset(kinds):
+                    return kinds
+                reach *= 4
+    except OSError:
+        return []

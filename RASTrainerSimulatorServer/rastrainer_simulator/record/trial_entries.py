@@ -1,0 +1,174 @@
+"""The entries of one trial's journal, formed tick by tick."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+from typing import TYPE_CHECKING, Any
+
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.trial_record import TouchedPoint, TrialRecord
+from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer_simulator.record.journal_line import FORMAT, FORMAT_VERSION
+from rastrainer_simulator.record.stamps import stamp
+from rastrainer_simulator.record.versions import versions
+from rastrainer_simulator.state import Event, EventKind, SimulationState, StepResult
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.simulation import Simulation
+
+SAMPLE_HZ = 50.0
+MM = 1000.0
+MUST_LAST = frozenset({EventKind.PHASE, EventKind.TOUCH, EventKind.UNDO})
+"""Events that nobody may be told of before they are on the disk."""
+
+_KIND_OF_PHASE = {Phase.REGISTERED: "registered", Phase.IDLE: "aborted"}
+_SAMPLED = (Phase.RUNNING, Phase.COMPLETE)
+_Q = struct.Struct("<7d")
+
+
+class TrialEntries:
+    """What one trial adds to its journal; `pending` is what has not been handed to the writer."""
+
+    def __init__(
+        self, simulation: Simulation, before: SimulationState, result: StepResult, dt: float
+    ) -> None:
+        """Begin with the header; `before` is the state in which StartTask was carried out."""
+        state = result.state
+        training = state.training
+        self.trial_id = training.trial_id
+        self._seed = simulation.trial_seed
+        self._scenario = simulation.setup.scenario.name
+        self._versions = versions()
+        self._every = max(1, round(1.0 / (SAMPLE_HZ * dt)))
+        self._sticks: tuple[Any, ...] | None = None
+        self._trajectory = hashlib.sha256()
+        self._utc: dict[float, str] = {}
+        times = stamp(state.tick, state.sim_time)
+        self.started_utc = times["utc"]
+        self.pending: list[dict[str, Any]] = [
+            {
+                "kind": "header",
+                "format": FORMAT,
+                "version": FORMAT_VERSION,
+                **times,
+                "trialId": training.trial_id,
+                "trainee": training.trainee,
+                "task": training.task,
+                "mode": training.mode,
+                "seed": self._seed,
+                "tickS": dt,
+                "before": {
+                    "tick": before.tick,
+                    "simTime": before.sim_time,
+                    "revision": before.training.revision,
+                    "camera": before.camera,
+                },
+                **simulation.setup.description(),
+                "versions": self._versions,
+            }
+        ]
+
+    def add(
+        self, simulation: Simulation, operator_input: OperatorInput, result: StepResult
+    ) -> TrialRecord | None:
+        """Take note of one tick; return the trial's record when it has just been registered."""
+        state = result.state
+        sticks = (operator_input.translation, operator_input.rotation, operator_input.fine)
+        self._trajectory.update(_Q.pack(*state.q))
+        is_sampled = state.training.phase in _SAMPLED and state.tick % self._every == 0
+        quiet = sticks == self._sticks and not operator_input.commands and not result.events
+        if quiet and not is_sampled:
+            return None
+        times = stamp(state.tick, state.sim_time)
+        if sticks != self._sticks:
+            self._sticks = sticks
+            self.pending.append(_input_entry(times, operator_input))
+        for command in operator_input.commands:
+            self.pending.append(self._command_entry(times, command))
+        record = None
+        for event in result.events:
+            if event.kind is EventKind.TOUCH:
+                self._utc[event.sim_time] = times["utc"]
+            entry = self._event_entry(times, event)
+            if entry["kind"] == "registered":
+                record = self._record(state)
+                entry["record"] = record.to_json()
+                entry["truth"] = simulation.truth.to_json()
+            self.pending.append(entry)
+        if is_sampled:
+            self.pending.append(_sample_entry(times, state))
+        return record
+
+    def taken(self) -> list[dict[str, Any]]:
+        """Return what is pending, which then counts as handed over."""
+        taken, self.pending = self.pending, []
+        return taken
+
+    def _command_entry(self, times: dict[str, Any], command: Command) -> dict[str, Any]:
+        arguments = dict(command.arguments)
+        if command.name == CommandName.START_TASK:
+            arguments |= {"seed": self._seed, "trialId": self.trial_id}
+        return {
+            "kind": "command",
+            **times,
+            "name": command.name,
+            "arguments": arguments,
+            "sender": command.sender,
+        }
+
+    def _event_entry(self, times: dict[str, Any], event: Event) -> dict[str, Any]:
+        kind = event.kind.value
+        if event.kind is EventKind.PHASE:
+            kind = _KIND_OF_PHASE.get(Phase(event.data["phase"]), kind)
+        entry = {"kind": kind, **times, **event.data}
+        if event.kind in MUST_LAST:
+            entry["trajectorySha256"] = self._trajectory.hexdigest()
+        return entry
+
+    def _record(self, state: SimulationState) -> TrialRecord:
+        training = state.training
+        points = tuple(
+            TouchedPoint(
+                label=touch.label,
+                position_mm=tuple(MM * value for value in touch.position),
+                sim_time_s=touch.sim_time,
+                utc=self._utc[touch.sim_time],
+            )
+            for touch in training.touches
+        )
+        return TrialRecord(
+            trial_id=training.trial_id,
+            trainee=training.trainee,
+            task=training.task,
+            mode=training.mode,
+            scenario=self._scenario,
+            started_utc=self.started_utc,
+            completed_utc=points[-1].utc,
+            completion_time_s=training.touches[-1].elapsed,
+            points=points,
+            rejected_touches=training.rejected,
+            undone_touches=training.undone,
+            versions=self._versions,
+        )
+
+
+def _input_entry(times: dict[str, Any], operator_input: OperatorInput) -> dict[str, Any]:
+    return {
+        "kind": "input",
+        **times,
+        "translation": operator_input.translation,
+        "rotation": operator_input.rotation,
+        "fine": operator_input.fine,
+        "operator": operator_input.operator,
+    }
+
+
+def _sample_entry(times: dict[str, Any], state: SimulationState) -> dict[str, Any]:
+    return {
+        "kind": "sample",
+        **times,
+        "q": state.q,
+        "tipMm": [MM * float(value) for value in state.tool_tip_to_world[:3, 3]],
+        "clearanceMm": MM * state.clearance,
+    }

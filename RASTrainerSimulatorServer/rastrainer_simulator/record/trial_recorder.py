@@ -1,0 +1,152 @@
+"""Write the journal of the trial that is running, in a thread of its own."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.stamps import file_stamp, stamp
+from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
+from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
+from rastrainer_simulator.state import SimulationState, StepResult
+from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.simulation import Simulation
+
+FLUSH_TICKS = 50
+"""Entries that nobody waits for go to the disk after so many ticks."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """A write that is under way.
+
+    `future` fails where the disk refuses; with `is_awaited` the tick may not be told to anyone
+    before it is done.
+    """
+
+    future: Future[Any]
+    is_awaited: bool
+
+
+class TrialRecorder:
+    """Keeps the journal of the present trial.
+
+    `record` and `stop` belong to the control loop's thread and never touch the disk: the entries
+    are formed there and written by `writer`, a pool of one thread.
+    """
+
+    def __init__(
+        self, folder: Path, archive: TrialArchive, writer: ThreadPoolExecutor, dt: float
+    ) -> None:
+        self._folder = folder
+        self._archive = archive
+        self._writer = writer
+        self._dt = dt
+        self._entries: TrialEntries | None = None
+        self._journal: Journal | None = None
+        self._registering: Future[Any] | None = None
+        self._is_stuck = False
+
+    def record(
+        self,
+        simulation: Simulation,
+        before: SimulationState,
+        operator_input: OperatorInput,
+        result: StepResult,
+    ) -> Written | None:
+        """Take note of a tick that led from `before` to `result`; return what was handed over."""
+        training = result.state.training
+        if training.trial_id and training.trial_id != before.training.trial_id:
+            self._begin(simulation, before, result)
+        if self._entries is None:
+            return None
+        if any(command.name == RECORDING_FAILED for command in operator_input.commands):
+            return self._taken_back(simulation, operator_input, result)
+        if self._is_registered():
+            return self._after_registration(operator_input, result)
+        record = self._entries.add(simulation, operator_input, result)
+        if record is not None:
+            return self._register(simulation, record)
+        if training.phase is Phase.IDLE:
+            return self._hand_over_and_leave()
+        if any(event.kind in MUST_LAST for event in result.events):
+            self._is_stuck = False
+            return self._hand_over(is_awaited=True)
+        is_due = self._entries.pending and result.state.tick % FLUSH_TICKS == 0
+        return self._hand_over(is_awaited=False) if is_due and not self._is_stuck else None
+
+    def stop(self, state: SimulationState) -> None:
+        """Write what is left; a trial that is still open is marked as stopped."""
+        if self._entries is None or self._registering is not None:
+            return
+        self._entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
+        self._hand_over_and_leave()
+
+    def _begin(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
+        self._entries = TrialEntries(simulation, before, result, self._dt)
+        name = f"{file_stamp(self._entries.started_utc)}_{self._entries.trial_id}{SUFFIX}"
+        self._journal = Journal(self._folder / name)
+        self._registering = None
+        self._is_stuck = False
+
+    def _is_registered(self) -> bool:
+        future = self._registering
+        return future is not None and future.done() and future.exception() is None
+
+    def _taken_back(
+        self, simulation: Simulation, operator_input: OperatorInput, result: StepResult
+    ) -> None:
+        """Keep what the disk has refused until the trainee goes on: then it is tried again."""
+        phase = result.state.training.phase
+        if phase is Phase.IDLE:
+            self._leave()
+        elif not self._is_registered():
+            self._registering = None
+            self._is_stuck = True
+            self._entries.add(simulation, operator_input, result)
+
+    def _hand_over(self, is_awaited: bool) -> Written:
+        future = self._writer.submit(self._journal.write, self._entries.taken(), sync=is_awaited)
+        return Written(future, is_awaited)
+
+    def _register(self, simulation: Simulation, record: TrialRecord) -> Written:
+        trial = ArchivedTrial(record, simulation.truth, simulation.trial_seed)
+        journal, entries = self._journal, self._entries.taken()
+
+        def write() -> None:
+            journal.write(entries, sync=True)
+            journal.close()
+            self._archive.add(trial, journal)
+
+        self._registering = self._writer.submit(write)
+        return Written(self._registering, is_awaited=True)
+
+    def _after_registration(
+        self, operator_input: OperatorInput, result: StepResult
+    ) -> Written | None:
+        """Write the score, the only thing that comes after the record."""
+        if not any(event.kind in MUST_LAST for event in result.events):
+            return None
+        scores = [c for c in operator_input.commands if c.name == CommandName.TRIAL_SCORED]
+        times = stamp(result.state.tick, result.state.sim_time)
+        future = self._writer.submit(
+            self._archive.answer, scores[-1].name, scores[-1].arguments, times
+        )
+        return Written(future, is_awaited=True)
+
+    def _hand_over_and_leave(self) -> Written:
+        written = self._hand_over(is_awaited=False)
+        self._leave()
+        return written
+
+    def _leave(self) -> None:
+        self._writer.submit(self._journal.close)
+        self._entries = self._journal = self._registering = None

@@ -1,0 +1,357 @@
+"""The trial's state machine: what each command does in each phase, and what is said."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer_simulator.operator_input import Command
+from rastrainer_simulator.state import EventKind
+from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, REFUSALS
+from rastrainer_simulator.training.texts import ENGLISH, Texts
+from rastrainer_simulator.training.training import Moment, Training, TrainingSettings
+
+ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())
+SCORE = {
+    "matrix": ANY_MATRIX,
+    "freMm": 1.2,
+    "expectedTreMm": 0.9,
+    "score": 81.0,
+    "details": {},
+}
+
+
+class Trial:
+    """A trial driven by hand: the tip is put wherever it is wanted."""
+
+    def __init__(self, scenario, seed=5, **others):
+        self.training = Training(scenario, seed, **others)
+        self.now = 10.0
+
+    def do(self, name, tip=(0.0, 0.0, 0.0), **arguments):
+        command = Command(name, arguments)
+        if name in (CommandName.TRIAL_SCORED, CommandName.GET_TRIAL):
+            trial_id = self.state.trial_id
+            command = Command(name, {"trialId": trial_id, **arguments})
+        return self.training.handle(command, Moment(self.now, tip))
+
+    def start(self, task="task-1", **others):
+        return self.do(CommandName.START_TASK, task=task, trainee="P01", mode="desktop", **others)
+
+    def fiducial(self, label):
+        point = self.training.truth.fiducials[label]
+        return tuple(self.training.truth.in_world(point) / 1000.0)
+
+    def touch(self, count=1):
+        for _ in range(count):
+            reply = self.do(CommandName.CAPTURE, self.fiducial(self.state.next_point))
+            assert reply.ok, reply.message
+        return reply
+
+    @property
+    def state(self):
+        return self.training.state
+
+
+def in_phase(scenario, phase):
+    """Return a trial that stands in a phase."""
+    trial = Trial(scenario)
+    if phase is Phase.IDLE:
+        return trial
+    trial.start()
+    trial.touch(1 if phase in (Phase.RUNNING, Phase.PAUSED) else 15)
+    if phase is Phase.PAUSED:
+        trial.do(CommandName.PAUSE)
+    if phase in (Phase.REGISTERED, Phase.SCORED):
+        trial.do(CommandName.REGISTER)
+    if phase is Phase.SCORED:
+        trial.do(CommandName.TRIAL_SCORED, **SCORE)
+    assert trial.state.phase is phase
+    return trial
+
+
+RIGHT = {
+    CommandName.START_TASK: {Phase.IDLE, Phase.REGISTERED, Phase.SCORED},
+    CommandName.CAPTURE: {Phase.RUNNING},
+    CommandName.UNDO: {Phase.RUNNING, Phase.COMPLETE},
+    CommandName.REGISTER: {Phase.COMPLETE},
+    CommandName.ABORT: {Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE},
+    CommandName.PAUSE: {Phase.RUNNING},
+    CommandName.RESUME: {Phase.PAUSED},
+    CommandName.TRIAL_SCORED: {Phase.REGISTERED, Phase.SCORED},
+    CommandName.GET_TRIAL: set(Phase) - {Phase.IDLE},
+}
+WHAT_WOULD_BE_RIGHT = ("StartTask", "Register", "Capture", "Resume", "Abort", "Undo")
+
+
+@pytest.mark.parametrize(("name", "phase"), list(itertools.product(RIGHT, Phase)))
+def test_each_command_is_carried_out_in_its_phases_and_else_refused_with_what_would_be_right(
+    scenario, name, phase
+):
+    trial = in_phase(scenario, phase)
+    before = trial.state
+    arguments = {
+        CommandName.START_TASK: {"task": "task-2", "trainee": "P02", "mode": "hmd"},
+        CommandName.TRIAL_SCORED: SCORE,
+    }.get(name, {})
+    tip = trial.fiducial(before.next_point) if before.next_point else (0.0, 0.0, 0.0)
+    reply = trial.do(name, tip, **arguments)
+    assert reply.ok is (phase in RIGHT[name])
+    if not reply.ok:
+        assert trial.state is before
+        assert reply.events == ()
+        assert any(word in reply.message for word in WHAT_WOULD_BE_RIGHT)
+        assert "None" not in reply.message
+
+
+def test_every_command_of_the_simulation_has_its_phases_stated():
+    assert set(RIGHT) <= set(REFUSALS)
+    assert {key for phases in REFUSALS.values() for key in phases.values()} <= set(ENGLISH)
+
+
+def test_a_whole_trial_goes_through_its_phases_and_says_what_is_next(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    assert trial.state.instruction == "P01, touch point 1."
+    trial.touch(14)
+    assert "point 14 is recorded. Now touch point 15" in trial.state.instruction
+    trial.touch()
+    assert trial.state.phase is Phase.COMPLETE
+    assert trial.state.next_point is None
+    assert [touch.label for touch in trial.state.touches] == [str(i) for i in range(1, 16)]
+    trial.do(CommandName.REGISTER)
+    trial.do(CommandName.TRIAL_SCORED, **SCORE)
+    assert trial.state.phase is Phase.SCORED
+    assert "81 of 100" in trial.state.instruction
+
+
+def test_a_touch_keeps_where_the_tip_was_and_when(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    trial.now += 2.5
+    tip = tuple(v + 0.003 for v in trial.fiducial("1"))
+    reply = trial.do(CommandName.CAPTURE, tip)
+    touch = trial.state.touches[0]
+    assert (touch.position, touch.sim_time, touch.elapsed) == (tip, 12.5, 2.5)
+    assert reply.data["positionMm"] == [1000.0 * v for v in tip]
+    assert [event.kind for event in reply.events] == [EventKind.TOUCH]
+
+
+@pytest.mark.parametrize(("away_mm", "counts"), [(9.99, True), (10.01, False)])
+def test_a_touch_counts_within_the_acceptance_radius(scenario, away_mm, counts):
+    trial = Trial(scenario, settings=TrainingSettings(acceptance_radius=0.010))
+    trial.start()
+    x, y, z = trial.fiducial("1")
+    assert trial.do(CommandName.CAPTURE, (x + away_mm / 1000.0, y, z)).ok is counts
+
+
+def test_a_touch_too_far_away_is_refused_with_the_distance_and_the_point(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    x, y, z = trial.fiducial("1")
+    reply = trial.do(CommandName.CAPTURE, (x, y, z + 0.2))
+    assert "Too far from point 1: 200.0 mm" in reply.message
+    assert trial.state.instruction == reply.message
+    assert trial.state.rejected == 1
+    assert [event.kind for event in reply.events] == [EventKind.REJECTED]
+
+
+def test_touching_another_fiducial_is_refused_as_the_wrong_point(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    assert (
+        "Wrong point: that is point 9" in trial.do(CommandName.CAPTURE, trial.fiducial("9")).message
+    )
+
+
+def test_undo_takes_back_the_last_touch_also_after_the_fifteenth(scenario):
+    trial = in_phase(scenario, Phase.COMPLETE)
+    reply = trial.do(CommandName.UNDO)
+    assert trial.state.phase is Phase.RUNNING
+    assert trial.state.next_point == "15"
+    assert len(trial.state.touches) == 14
+    assert trial.state.undone == 1
+    assert {event.kind for event in reply.events} == {EventKind.UNDO, EventKind.PHASE}
+
+
+def test_undo_without_a_touch_says_what_comes_first(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    assert "Capture point 1 first" in trial.do(CommandName.UNDO).message
+
+
+def test_completion_time_runs_from_the_start_to_the_last_kept_touch_without_pauses(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    trial.now += 4.0
+    trial.touch(14)
+    trial.do(CommandName.PAUSE)
+    trial.now += 100.0
+    assert trial.training.elapsed(trial.now) == 4.0
+    trial.do(CommandName.RESUME)
+    trial.now += 3.0
+    trial.touch()
+    trial.now += 50.0
+    assert trial.training.elapsed(trial.now) == pytest.approx(7.0)
+    assert trial.do(CommandName.REGISTER).data["completionTimeS"] == pytest.approx(7.0)
+
+
+def test_after_undoing_the_fifteenth_touch_the_time_has_gone_on(scenario):
+    trial = in_phase(scenario, Phase.COMPLETE)
+    trial.now += 5.0
+    trial.do(CommandName.UNDO)
+    trial.touch()
+    assert trial.state.touches[-1].elapsed == pytest.approx(5.0)
+
+
+def test_where_the_head_is_stays_secret_until_the_trial_is_scored(scenario):
+    trial = in_phase(scenario, Phase.REGISTERED)
+    assert "headToWorld" not in trial.do(CommandName.GET_TRIAL).data
+    answer = trial.do(CommandName.TRIAL_SCORED, **SCORE).data
+    assert answer["headToWorld"] == list(trial.training.truth.head_to_world.ravel())
+    assert trial.do(CommandName.GET_TRIAL).data["headToWorld"] == answer["headToWorld"]
+
+
+def test_the_true_errors_of_a_perfect_registration_of_perfect_touches_are_zero(scenario):
+    trial = in_phase(scenario, Phase.REGISTERED)
+    exact = np.linalg.inv(trial.training.truth.head_to_world)
+    answer = trial.do(CommandName.TRIAL_SCORED, **SCORE | {"matrix": tuple(exact.ravel())}).data
+    assert answer["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
+    assert max(answer["touchErrorsMm"].values()) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_true_errors_of_a_registration_that_is_off_by_a_shift_are_the_shift(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    trial.touch(14)
+    x, y, z = trial.fiducial("15")
+    trial.do(CommandName.CAPTURE, (x, y + 0.004, z))
+    trial.do(CommandName.REGISTER)
+    shifted = np.linalg.inv(trial.training.truth.head_to_world)
+    shifted[:3, 3] += (1.0, 2.0, 2.0)
+    answer = trial.do(CommandName.TRIAL_SCORED, **SCORE | {"matrix": tuple(shifted.ravel())}).data
+    assert answer["trueTreMm"] == pytest.approx(3.0)
+    assert answer["touchErrorsMm"]["15"] == pytest.approx(4.0)
+
+
+def test_a_score_that_arrives_twice_counts_once(scenario):
+    trial = in_phase(scenario, Phase.REGISTERED)
+    first = trial.do(CommandName.TRIAL_SCORED, **SCORE)
+    second = trial.do(CommandName.TRIAL_SCORED, **SCORE)
+    assert second.ok
+    assert second.data == first.data
+    assert second.events == ()
+
+
+def test_details_of_a_score_that_fit_no_journal_line_are_refused_before_they_get_here():
+    score = {"trialId": "12345678-1234-4234-8234-123456789abc", **SCORE}
+    assert check_arguments(CommandName.TRIAL_SCORED, score | {"details": {"a": "x" * 60_000}})
+    with pytest.raises(InputError, match="at most 65536 characters"):
+        check_arguments(CommandName.TRIAL_SCORED, score | {"details": {"a": "x" * 70_000}})
+
+
+def test_a_score_for_another_trial_is_refused(scenario):
+    trial = in_phase(scenario, Phase.REGISTERED)
+    other = "12345678-1234-4234-8234-123456789abc"
+    assert "no trial" in trial.do(CommandName.TRIAL_SCORED, trialId=other, **SCORE).message
+
+
+def test_an_unknown_task_is_refused_with_the_tasks_there_are(scenario):
+    reply = Trial(scenario).start(task="task-9")
+    assert not reply.ok
+    assert "task-1" in reply.message
+
+
+def test_the_head_stands_elsewhere_in_every_trial_and_equally_with_the_same_seed(scenario):
+    poses = []
+    for seed in (1, 2, 1):
+        trial = Trial(scenario)
+        trial.start(seed=seed)
+        poses.append(trial.training.truth.head_to_world)
+    assert not np.array_equal(poses[0], poses[1])
+    assert np.array_equal(poses[0], poses[2])
+
+
+def test_seeds_and_ids_of_trials_follow_from_the_simulators_seed(scenario):
+    first, same, other = (Trial(scenario, seed) for seed in (5, 5, 6))
+    for trial in (first, same, other):
+        trial.start()
+    assert first.state.trial_id == same.state.trial_id != other.state.trial_id
+    assert first.training.trial_seed == same.training.trial_seed != other.training.trial_seed
+    trial_id = first.state.trial_id
+    first.do(CommandName.ABORT)
+    first.start()
+    assert first.state.trial_id != trial_id
+
+
+def test_between_trials_the_head_is_at_its_nominal_pose(scenario):
+    trial = Trial(scenario)
+    assert np.array_equal(trial.training.truth.head_to_world, scenario.head_to_world)
+    trial.start()
+    trial.do(CommandName.ABORT)
+    assert np.array_equal(trial.training.truth.head_to_world, scenario.head_to_world)
+    assert trial.state.instruction == "P01, the trial was aborted. Choose a task to start again."
+
+
+def test_every_change_that_must_last_raises_the_revision_and_nothing_else_does(scenario):
+    trial = Trial(scenario)
+    revisions = [trial.state.revision]
+    trial.start()
+    revisions.append(trial.state.revision)
+    trial.touch()
+    revisions.append(trial.state.revision)
+    trial.do(CommandName.UNDO)
+    revisions.append(trial.state.revision)
+    assert revisions == sorted(set(revisions))
+    trial.do(CommandName.CAPTURE, (9.0, 9.0, 9.0))
+    trial.do(CommandName.GET_TRIAL)
+    assert trial.state.revision == revisions[-1]
+
+
+def test_a_touch_that_could_not_be_written_is_taken_back_and_the_trial_pauses(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    trial.touch(3)
+    kept = trial.state
+    trial.touch()
+    reply = trial.do(RECORDING_FAILED, revision=kept.revision, reason="No space left on device")
+    assert trial.state.phase is Phase.PAUSED
+    assert trial.state.touches == kept.touches
+    assert trial.state.next_point == "4"
+    assert "No space left on device" in trial.state.instruction
+    assert reply.events[0].kind is EventKind.PHASE
+    trial.do(CommandName.RESUME)
+    trial.touch()
+    assert len(trial.state.touches) == 4
+
+
+def test_a_registration_that_could_not_be_written_leaves_the_trial_complete(scenario):
+    trial = in_phase(scenario, Phase.COMPLETE)
+    kept = trial.state
+    trial.do(CommandName.REGISTER)
+    trial.do(RECORDING_FAILED, revision=kept.revision, reason="read-only")
+    assert trial.state.phase is Phase.COMPLETE
+    assert trial.do(CommandName.REGISTER).ok
+
+
+def test_a_start_that_could_not_be_written_leaves_no_trial(scenario):
+    trial = Trial(scenario)
+    kept = trial.state
+    trial.start()
+    trial.do(RECORDING_FAILED, revision=kept.revision, reason="read-only")
+    assert trial.state.phase is Phase.IDLE
+    assert trial.state.trial_id == ""
+    assert np.array_equal(trial.training.truth.head_to_world, scenario.head_to_world)
+
+
+def test_the_sentences_can_be_translated_and_what_is_missing_is_said_in_english(scenario):
+    texts = Texts({"start": "{trainee}, berühre Punkt {point}."})
+    trial = Trial(scenario, texts=texts)
+    trial.start()
+    assert trial.state.instruction == "P01, berühre Punkt 1."
+    trial.touch()
+    assert "is recorded" in trial.state.instruction
