@@ -1,8 +1,10 @@
-"""Tails of the F distribution, for tests and intervals without scipy."""
+"""Probabilities for tests and intervals, on numpy alone."""
 
 from __future__ import annotations
 
 import math
+
+import numpy as np
 
 
 def f_tail(value: float, numerator: float, denominator: float) -> float:
@@ -45,3 +47,41 @@ def _continued_fraction(a: float, b: float, x: float, terms: int = 200) -> float
             d = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
         value = 1.0 + d / value
     return value
+
+
+def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float:
+    """Return the quantile of Σ wₖ zₖ² / (χ²/dof), zₖ standard normal, all independent.
+
+    With equal weights it is a multiple of the F distribution; with unequal ones it is the squared
+    length of a vector of anisotropic variance whose size was estimated from `dof` residuals.
+
+    Args:
+        probability: Between 0 and 1.
+        weights: (k,) float, above 0.
+        dof: Degrees of freedom of the χ² variable.
+    """
+    scale = float(np.sum(weights))
+    low, high = 0.0, 1.0
+    while _ratio_probability(high, weights / scale, dof) < probability:
+        low, high = high, 4.0 * high
+    while high - low > 1e-8 * high:
+        middle = (low + high) / 2
+        if _ratio_probability(middle, weights / scale, dof) < probability:
+            low = middle
+        else:
+            high = middle
+    return scale * (low + high) / 2
+
+
+def _ratio_probability(value: float, weights: np.ndarray, dof: float) -> float:
+    """Return P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) by Imhof's inversion formula (1961).
+
+    The integral runs over u = exp(s), where the trapezoidal rule converges exponentially.
+    """
+    step = 0.025
+    u = np.exp(np.arange(-30.0, 30.0, step))
+    terms = np.append(weights, -value / dof)[:, None] * u
+    multiplicity = np.append(np.ones(len(weights)), dof)[:, None]
+    angle = 0.5 * (multiplicity * np.arctan(terms)).sum(axis=0)
+    log_size = 0.25 * (multiplicity * np.log1p(terms**2)).sum(axis=0)
+    return 0.5 - step * float(np.sum(np.sin(angle) * np.exp(-log_size))) / math.pi
