@@ -1,0 +1,94 @@
+"""From two lists of points in the scene to a transform between them, and back."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.registration import RIGID, Registration, register
+from rastrainer.slicer.control_points import labelsOf, localPoints, worldPoints
+from rastrainer.slicer.scene import Role, findOrAddNode
+
+MOVING_REFERENCE = "RASTrainer.moving"
+FIXED_REFERENCE = "RASTrainer.fixed"
+KIND_ATTRIBUTE = "RASTrainer.registration"
+FRE_ATTRIBUTE = "RASTrainer.freMm"
+
+
+def registerNodes(moving: Any, fixed: Any, kind: str = RIGID) -> Registration:
+    """Register the points of one `vtkMRMLMarkupsNode` to those of another, paired by label.
+
+    The moving points are taken in their own frame, so that it does not matter whether an earlier
+    result is applied to them; the fixed points are taken where Slicer shows them.
+
+    Raises:
+        InputError: the labels do not pair up, or the points cannot be registered.
+    """
+    labels = labelsOf(moving)
+    rows = _rowsOf(labels, labelsOf(fixed))
+    return register(localPoints(moving), worldPoints(fixed)[rows], kind, labels)
+
+
+def _rowsOf(labels: tuple[str, ...], fixedLabels: tuple[str, ...]) -> list[int]:
+    """Return for each moving label the row of the fixed point of that label."""
+    for name, given in (("touched", labels), ("fixed", fixedLabels)):
+        doubled = sorted({label for label in given if given.count(label) > 1})
+        if doubled:
+            raise InputError(f"The {name} points have the label {json.dumps(doubled[0])} twice.")
+    missing = [label for label in labels if label not in fixedLabels]
+    if missing:
+        raise InputError(
+            f"The touched point {json.dumps(missing[0])} has no fiducial; "
+            f"the fiducials are {', '.join(fixedLabels)}."
+        )
+    return [fixedLabels.index(label) for label in labels]
+
+
+def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:
+    """Put a registration into the scene's WorldToHead transform and return that node.
+
+    The node remembers its lists of points. Whether it is applied to the moving points stays as it
+    was; the first time it is.
+    """
+    node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
+    isFirst = movingNode(node) is None
+    node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(registration.matrix))
+    node.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
+    node.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
+    node.SetAttribute(KIND_ATTRIBUTE, registration.kind)
+    node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
+    if isFirst:
+        setApplied(node, True)
+    return node
+
+
+def movingNode(transformNode: Any) -> Any | None:
+    """Return the list of touched points that the transform was made from, if it is still there."""
+    return transformNode.GetNodeReference(MOVING_REFERENCE)
+
+
+def fixedNode(transformNode: Any) -> Any | None:
+    """Return the list of fiducials that the transform was made from, if it is still there."""
+    return transformNode.GetNodeReference(FIXED_REFERENCE)
+
+
+def isApplied(transformNode: Any) -> bool:
+    """Tell whether the touched points are shown on the head."""
+    moving = movingNode(transformNode)
+    return moving is not None and moving.GetTransformNodeID() == transformNode.GetID()
+
+
+def setApplied(transformNode: Any, applied: bool) -> None:
+    """Show the touched points on the head, or where they are in the robot's World."""
+    moving = movingNode(transformNode)
+    if moving is not None:
+        moving.SetAndObserveTransformNodeID(transformNode.GetID() if applied else None)
+
+
+def matrixOf(transformNode: Any) -> np.ndarray:
+    """Return the transform to the parent, (4, 4) float, mm."""
+    return slicer.util.arrayFromTransformMatrix(transformNode)

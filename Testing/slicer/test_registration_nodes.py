@@ -1,0 +1,153 @@
+"""Lists of points in the scene become a transform that remembers them."""
+
+import numpy as np
+import pytest
+import slicer
+import vtk
+
+from rastrainer.errors import InputError
+from rastrainer.slicer import registration_nodes
+from rastrainer.slicer.control_points import labelsOf, localPoints, setPoints, worldPoints
+from rastrainer.slicer.registration_nodes import registerNodes, showRegistration
+from rastrainer.slicer.result_tables import showFits, showResiduals
+
+LABELS = tuple(str(i + 1) for i in range(15))
+
+
+@pytest.fixture
+def points():
+    return np.random.default_rng(5).normal(0.0, 60.0, (15, 3))
+
+
+def markups(scene, name, labels, points):
+    node = scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", name)
+    setPoints(node, labels, points)
+    return node
+
+
+@pytest.fixture
+def fixed(scene, points):
+    return markups(scene, "Fixed", LABELS, points)
+
+
+@pytest.fixture
+def moving(scene, points):
+    touched = moved(points) + np.random.default_rng(6).normal(0.0, 0.8, (15, 3))
+    return markups(scene, "CapturedPoints", LABELS, touched)
+
+
+def moved(points):
+    transform = vtk.vtkTransform()
+    transform.Translate(500.0, 20.0, 300.0)
+    transform.RotateWXYZ(130.0, 0.2, -0.4, 0.9)
+    return np.array([transform.TransformPoint(point) for point in points])
+
+
+def landmark_transform(moving, fixed):
+    transform = vtk.vtkLandmarkTransform()
+    transform.SetModeToRigidBody()
+    for points, use in (
+        (moving, transform.SetSourceLandmarks),
+        (fixed, transform.SetTargetLandmarks),
+    ):
+        landmarks = vtk.vtkPoints()
+        landmarks.SetDataTypeToDouble()
+        for point in points:
+            landmarks.InsertNextPoint(point)
+        use(landmarks)
+    transform.Update()
+    return slicer.util.arrayFromVTKMatrix(transform.GetMatrix())
+
+
+def test_the_registration_is_that_of_vtk_landmark_transform(scene, moving, fixed):
+    registration = registerNodes(moving, fixed)
+    node = showRegistration(scene, registration, moving, fixed)
+    expected = landmark_transform(localPoints(moving), localPoints(fixed))
+    np.testing.assert_allclose(registration_nodes.matrixOf(node), expected, atol=1e-6)
+
+
+def test_points_are_paired_by_label_whatever_their_order(scene, moving, fixed, points):
+    order = np.random.default_rng(7).permutation(15)
+    shuffled = markups(scene, "Shuffled", [LABELS[i] for i in order], points[order])
+    np.testing.assert_allclose(
+        registerNodes(moving, shuffled).matrix, registerNodes(moving, fixed).matrix, atol=1e-9
+    )
+
+
+def test_applying_the_result_shows_the_touches_on_the_head(scene, moving, fixed, points):
+    registration = registerNodes(moving, fixed)
+    node = showRegistration(scene, registration, moving, fixed)
+    assert registration_nodes.isApplied(node)
+    residuals = np.linalg.norm(worldPoints(moving) - points, axis=1)
+    np.testing.assert_allclose(residuals, registration.residuals_mm, atol=1e-6)
+    registration_nodes.setApplied(node, False)
+    assert not registration_nodes.isApplied(node)
+    np.testing.assert_allclose(worldPoints(moving), localPoints(moving))
+
+
+def test_registering_again_gives_the_same_whether_applied_or_not(scene, moving, fixed):
+    first = registerNodes(moving, fixed)
+    node = showRegistration(scene, first, moving, fixed)
+    np.testing.assert_array_equal(registerNodes(moving, fixed).matrix, first.matrix)
+    registration_nodes.setApplied(node, False)
+    assert showRegistration(scene, first, moving, fixed) is node
+    assert not registration_nodes.isApplied(node)
+
+
+def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
+    headless_scene, moving, fixed, tmp_path
+):
+    node = showRegistration(headless_scene.scene, registerNodes(moving, fixed), moving, fixed)
+    assert registration_nodes.movingNode(node) is moving
+    headless_scene.save(tmp_path / "trial.mrb")
+    headless_scene.load(tmp_path / "trial.mrb")
+    node = headless_scene.scene.GetFirstNodeByName("WorldToHead")
+    assert registration_nodes.movingNode(node).GetName() == "CapturedPoints"
+    assert labelsOf(registration_nodes.fixedNode(node)) == LABELS
+    assert registration_nodes.isApplied(node)
+
+
+def test_deleted_lists_are_no_trouble(scene, moving, fixed):
+    node = showRegistration(scene, registerNodes(moving, fixed), moving, fixed)
+    scene.RemoveNode(moving)
+    assert registration_nodes.movingNode(node) is None
+    assert not registration_nodes.isApplied(node)
+    registration_nodes.setApplied(node, True)
+
+
+@pytest.mark.parametrize(
+    ("labels", "words"),
+    [
+        (("A", *LABELS[1:]), 'touched point "A" has no fiducial'),
+        (("2", *LABELS[1:]), 'touched points have the label "2" twice'),
+    ],
+)
+def test_labels_that_do_not_pair_get_a_sentence(scene, fixed, points, labels, words):
+    touched = markups(scene, "Touched", labels, points)
+    with pytest.raises(InputError, match=words):
+        registerNodes(touched, fixed)
+
+
+def test_the_residual_table_has_a_row_a_fiducial_and_units_in_its_columns(scene, moving, fixed):
+    registration = registerNodes(moving, fixed)
+    table = showResiduals(scene, registration)
+    assert [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())] == [
+        "fiducial",
+        "residual (mm)",
+        "residual R (mm)",
+        "residual A (mm)",
+        "residual S (mm)",
+    ]
+    assert table.GetNumberOfRows() == 15
+    assert table.GetCellText(4, 0) == "5"
+    values = slicer.util.arrayFromTableColumn(table, "residual (mm)")
+    np.testing.assert_allclose(values, registration.residuals_mm)
+    assert showResiduals(scene, registration) is table
+
+
+def test_the_fits_are_compared_side_by_side(scene, moving, fixed):
+    fits = [registerNodes(moving, fixed, kind) for kind in ("rigid", "similarity", "affine")]
+    table = showFits(scene, fits, expectedTreMm=0.5)
+    fre = slicer.util.arrayFromTableColumn(table, "FRE (mm)")
+    assert fre[0] >= fre[1] >= fre[2]
+    assert [table.GetCellText(row, 0) for row in range(3)] == ["rigid", "similarity", "affine"]
