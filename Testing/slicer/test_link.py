@@ -43,7 +43,7 @@ def run(link, condition):
 
 
 def beat(simulator, version=PROTOCOL_VERSION):
-    simulator.send(Device.SIM_SERVER, Status(1), {"protocolVersion": str(version)})
+    simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=version))
 
 
 def connect(link, simulator):

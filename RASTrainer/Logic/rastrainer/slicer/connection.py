@@ -24,7 +24,6 @@ from rastrainer.slicer.heartbeat import (
 from rastrainer.slicer.link_nodes import findIncomingNode
 
 CONNECTOR_NAME = "RASTrainerLink"
-VERSION_ATTRIBUTE = "OpenIGTLink.protocolVersion"
 
 
 class Connection:
@@ -147,9 +146,7 @@ class Connection:
         self._heartbeatTime = node.GetMTime()
         self._isHeard = True
         self._lastSign = self._clock()
-        version = node.GetAttribute(VERSION_ATTRIBUTE) or ""
-        if version.isdecimal():
-            self.peerVersion = int(version)
+        self.peerVersion = node.GetSubCode()
 
     @vtk.calldata_type(vtk.VTK_OBJECT)
     def _onCommandReceived(self, _caller: Any, _event: str, command: Any) -> None:
