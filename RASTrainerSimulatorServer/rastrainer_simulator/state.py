@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.protocol import Phase, Proximity
-
-Vector = tuple[float, float, float]
+from rastrainer_simulator.vectors import Vector
 
 
 class EventKind(str, Enum):
