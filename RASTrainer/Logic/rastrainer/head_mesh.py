@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -41,12 +40,16 @@ class HeadMesh:
     vertices: np.ndarray
     triangles: np.ndarray
 
+    @property
+    def sides(self) -> np.ndarray:
+        """(3 m, 2) int: the sides of all triangles, from corner to next corner."""
+        corners = self.triangles
+        return np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+
     @cached_property
     def edges(self) -> np.ndarray:
         """(e, 2) int: every edge once, the lower vertex first."""
-        corners = self.triangles
-        sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-        return np.unique(np.sort(sides, axis=1), axis=0)
+        return np.unique(np.sort(self.sides, axis=1), axis=0)
 
     @property
     def euler_characteristic(self) -> int:
@@ -56,13 +59,28 @@ class HeadMesh:
     @property
     def is_closed(self) -> bool:
         """Whether every edge lies between exactly two triangles that run along it oppositely."""
-        corners = self.triangles.astype(np.int64)
-        sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-        keys = sides[:, 0] * len(self.vertices) + sides[:, 1]
-        opposite = sides[:, 1] * len(self.vertices) + sides[:, 0]
-        return len(np.unique(keys)) == len(keys) and np.array_equal(
-            np.sort(keys), np.sort(opposite)
-        )
+        start, end = self.sides.T.astype(np.int64)
+        keys, opposite = start * len(self.vertices) + end, end * len(self.vertices) + start
+        keys.sort()
+        opposite.sort()
+        return bool(np.all(keys[1:] != keys[:-1]) and np.array_equal(keys, opposite))
+
+    @cached_property
+    def vertex_normals(self) -> np.ndarray:
+        """(n, 3) float: outward unit normals, means of the triangles' weighted by their areas."""
+        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        normals = np.zeros((len(self.vertices), 3))
+        for corner in range(3):
+            np.add.at(normals, self.triangles[:, corner], np.cross(b - a, c - a))
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        return normals / np.where(lengths > 0, lengths, 1.0)
+
+    @property
+    def centroid(self) -> np.ndarray:
+        """(3,) float: the center of mass of the closed body, RAS mm."""
+        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+        return volumes @ (a + b + c) / (4.0 * volumes.sum())
 
 
 def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
@@ -74,7 +92,7 @@ def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
     content = header.encode() + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
     partial = Path(path).with_suffix(".partial")
     partial.write_bytes(content)
-    os.replace(partial, path)
+    partial.replace(path)
 
 
 def read_head_mesh(path: Path) -> HeadMesh:

@@ -1,0 +1,104 @@
+"""How far it is from one point of a surface to another along the surface.
+
+The shortest path is sought in a graph (Dijkstra 1959) whose nodes are the mesh's vertices. Besides
+the edges it has, for every edge, the straight way across it between the opposite corners of its two
+triangles, unfolded into one plane. Its lengths are never shorter than the true geodesic and, on a
+sphere, about 2.5 % longer on average.
+"""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+
+from rastrainer.head_mesh import HeadMesh
+from rastrainer.surface_queries import NearestPoint, nearest_on_mesh
+
+
+class SurfaceGraph:
+    """The ways over a mesh; distances in mm."""
+
+    def __init__(self, mesh: HeadMesh) -> None:
+        self._mesh = mesh
+        pairs, lengths = _ways(mesh)
+        both = np.concatenate([pairs, pairs[:, ::-1]])
+        order = np.argsort(both[:, 0], kind="stable")
+        self._starts = np.searchsorted(both[order, 0], np.arange(len(mesh.vertices) + 1)).tolist()
+        self._ends = both[order, 1].tolist()
+        self._lengths = np.concatenate([lengths, lengths])[order].tolist()
+
+    def distance(self, start: np.ndarray, end: np.ndarray) -> float:
+        """Return the length of the way over the surface between two points (3,) on it."""
+        return self.distances(start, [end])[0]
+
+    def distances(self, start: np.ndarray, ends: list[np.ndarray]) -> list[float]:
+        """Return the lengths of the ways from one point on the surface to several."""
+        first = nearest_on_mesh(self._mesh, start)
+        targets = [nearest_on_mesh(self._mesh, end) for end in ends]
+        needed = {int(v) for target in targets for v in self._corners(target)}
+        reached = self._from_corners(first, needed)
+        return [self._to_point(reached, first, target) for target in targets]
+
+    def _corners(self, point: NearestPoint) -> list[int]:
+        return self._mesh.triangles[point.triangle].tolist()
+
+    def _leaving(self, point: NearestPoint) -> list[tuple[float, int]]:
+        """Return the straight ways from a point to the corners of its triangle."""
+        corners = self._corners(point)
+        ways = np.linalg.norm(self._mesh.vertices[corners] - point.position, axis=1)
+        return list(zip(ways.tolist(), corners, strict=True))
+
+    def _from_corners(self, point: NearestPoint, needed: set[int]) -> dict[int, float]:
+        """Return the distances of vertices, as far as `needed` ones are reached."""
+        waiting, done, missing = self._leaving(point), {}, set(needed)
+        heapq.heapify(waiting)
+        while waiting and missing:
+            length, vertex = heapq.heappop(waiting)
+            if vertex in done:
+                continue
+            done[vertex] = length
+            missing.discard(vertex)
+            for way in range(self._starts[vertex], self._starts[vertex + 1]):
+                if self._ends[way] not in done:
+                    heapq.heappush(waiting, (length + self._lengths[way], self._ends[way]))
+        return done
+
+    def _to_point(
+        self, reached: dict[int, float], first: NearestPoint, last: NearestPoint
+    ) -> float:
+        if first.triangle == last.triangle:
+            return float(np.linalg.norm(first.position - last.position))
+        return min(reached.get(v, np.inf) + way for way, v in self._leaving(last))
+
+
+def _ways(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return the graph's pairs of vertices (n, 2) and their distances (n,)."""
+    edges = mesh.edges
+    straight = np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1)
+    pairs, across = _ways_across(mesh)
+    return np.concatenate([edges, pairs]), np.concatenate([straight, across])
+
+
+def _ways_across(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ways between opposite corners of neighboring triangles, where straight."""
+    low, high = np.sort(mesh.sides, axis=1).T
+    opposite = np.concatenate([mesh.triangles[:, corner] for corner in (2, 0, 1)])
+    order = np.lexsort((high, low))
+    low, high, opposite = low[order], high[order], opposite[order]
+    pair = np.flatnonzero((low[1:] == low[:-1]) & (high[1:] == high[:-1]))
+    a, b = mesh.vertices[low[pair]], mesh.vertices[high[pair]]
+    ends = np.stack([opposite[pair], opposite[pair + 1]], axis=1)
+    along = b - a
+    width = np.linalg.norm(along, axis=1)
+    # Place of each corner along the edge and its height above it, in its own triangle's plane.
+    place, height = [], []
+    for end in ends.T:
+        offset = mesh.vertices[end] - a
+        place.append(np.einsum("ij,ij->i", offset, along) / width)
+        height.append(np.linalg.norm(np.cross(offset, along), axis=1) / width)
+    total = np.maximum(height[0] + height[1], 1e-12)
+    crossing = place[0] + (place[1] - place[0]) * height[0] / total
+    straight = (crossing > 0) & (crossing < width)
+    length = np.hypot(place[0] - place[1], total)
+    return ends[straight], length[straight]
