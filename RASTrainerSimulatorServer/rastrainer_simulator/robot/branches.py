@@ -1,0 +1,182 @@
+"""From the directions of the links to joint angles, on the branch nearest to the last q.
+
+A shoulder, elbow or wrist is a pan and a tilt: turning the pan by π and mirroring the tilt gives
+the same direction. Two choices at each of three places make eight branches (Shimizu et al. 2008,
+10.1109/TRO.2008.2003266, section III).
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from math import atan2, copysign, cos, inf, pi, remainder, sin, sqrt
+
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm
+from rastrainer_simulator.vectors import Vector
+
+TURN = 2.0 * pi
+_PI2 = pi * pi
+# A tilt below this leaves its pan free; the tip moves by less than 2e-10 m.
+_STRAIGHT = 1e-10
+# Rounding may carry an angle this far past its limit; it is then put onto the limit.
+_SLACK = 1e-11
+
+Roll = tuple[Vector, Vector] | None
+
+
+def joint_angles(
+    upper: Vector,
+    fore: Vector,
+    tool: Vector,
+    roll: Roll,
+    last: Angles,
+    signs: tuple[float, float, float] = (1.0, 1.0, 1.0),
+) -> tuple[float, ...]:
+    """Return θ of the branch whose tilts have the given signs, pans within ±π, in rad.
+
+    `upper`, `fore` and `tool` are unit vectors, `roll` the tool's x and y axes where its roll
+    matters. Where a tilt vanishes its pan is taken from `last`, as is θ7 where the roll is free.
+    """
+    ux, uy, uz = upper
+    fx, fy, fz = fore
+    tx, ty, tz = tool
+    shoulder, elbow, wrist = signs
+    # (px, py, 0), (ex, ey, ez), (wx, wy, wz): the axes of joints 2, 4 and 6, not normalized.
+    px, py = -shoulder * uy, shoulder * ux
+    s2 = sqrt(ux * ux + uy * uy)
+    if s2 > _STRAIGHT:
+        t1 = atan2(-px, py)
+    else:
+        t1 = last[0]
+        px, py = -sin(t1), cos(t1)
+    ex, ey, ez = (
+        elbow * (uy * fz - uz * fy),
+        elbow * (uz * fx - ux * fz),
+        elbow * (ux * fy - uy * fx),
+    )
+    s4 = sqrt(ex * ex + ey * ey + ez * ez)
+    if s4 > _STRAIGHT:
+        t3 = atan2(elbow * (px * fx + py * fy), px * ex + py * ey)
+    else:
+        t3 = last[2]
+        ex, ey, ez = _turned((px, py, 0.0), upper, t3)
+    wx, wy, wz = (
+        wrist * (fy * tz - fz * ty),
+        wrist * (fz * tx - fx * tz),
+        wrist * (fx * ty - fy * tx),
+    )
+    s6 = sqrt(wx * wx + wy * wy + wz * wz)
+    if s6 > _STRAIGHT:
+        t5 = atan2(wrist * (ex * tx + ey * ty + ez * tz), ex * wx + ey * wy + ez * wz)
+    else:
+        t5 = last[4]
+        wx, wy, wz = _turned((ex, ey, ez), fore, t5)
+    t7 = last[6]
+    if roll:
+        (xx, xy, xz), (yx, yy, yz) = roll
+        t7 = atan2(wx * xx + wy * xy + wz * xz, wx * yx + wy * yy + wz * yz)
+    return (
+        t1,
+        shoulder * atan2(s2, uz),
+        t3,
+        elbow * atan2(s4, ux * fx + uy * fy + uz * fz),
+        t5,
+        wrist * atan2(s6, fx * tx + fy * ty + fz * tz),
+        t7,
+    )
+
+
+def nearest_branch(
+    arm: CanonicalArm, angles: Angles, last: Angles, rolls: bool
+) -> tuple[float, ...] | None:
+    """Return the branch inside the limits whose θ is nearest to `last` (least squares), or None.
+
+    `angles` is the branch of positive tilts; `rolls` tells whether θ7 has to follow the wrist.
+    """
+    t1, t2, t3, t4, t5, t6, t7 = angles
+    l1, l2, l3, l4, l5, l6, l7 = last
+    d1, d3, d5, d7 = t1 - l1, t3 - l3, t5 - l5, t7 - l7
+    if not (-pi < d1 < pi and -pi < d3 < pi and -pi < d5 < pi and -pi < d7 < pi):
+        d1, d3, d5, d7 = (remainder(change, TURN) for change in (d1, d3, d5, d7))
+    # What it costs to turn a pan by π, or to mirror a tilt, in squared distance from `last`.
+    c1, c3, c5 = _PI2 - TURN * abs(d1), _PI2 - TURN * abs(d3), _PI2 - TURN * abs(d5)
+    c12 = c1 + 4.0 * t2 * l2
+    c67 = 4.0 * t6 * l6 + (_PI2 - TURN * abs(d7) if rolls else 0.0)
+    # Given the elbow's sign, shoulder and wrist choose theirs independently.
+    straight = min(0.0, c12 + c3) + min(0.0, c67 + c5)
+    mirrored = min(c3, c12) + min(c5, c67) + 4.0 * t4 * l4
+    elbow = mirrored < straight
+    if elbow:
+        c3, c5, t4 = -c3, -c5, -t4
+    shoulder, wrist = c12 + c3 < 0.0, c67 + c5 < 0.0
+    if shoulder:
+        d1, t2 = d1 - copysign(pi, d1), -t2
+    if shoulder != elbow:
+        d3 -= copysign(pi, d3)
+    if elbow != wrist:
+        d5 -= copysign(pi, d5)
+    if wrist:
+        t6 = -t6
+        if rolls:
+            d7 -= copysign(pi, d7)
+    theta = (l1 + d1, t2, l3 + d3, t4, l5 + d5, t6, l7 + d7)
+    return theta if inside(theta, arm.limits) else _nearest_inside(arm, angles, last, rolls)
+
+
+def inside(theta: Angles, limits: tuple[tuple[float, float], ...]) -> bool:
+    """Tell whether each θ is within its limits."""
+    t1, t2, t3, t4, t5, t6, t7 = theta
+    (a1, b1), (a2, b2), (a3, b3), (a4, b4), (a5, b5), (a6, b6), (a7, b7) = limits
+    return (
+        a1 <= t1 <= b1
+        and a2 <= t2 <= b2
+        and a3 <= t3 <= b3
+        and a4 <= t4 <= b4
+        and a5 <= t5 <= b5
+        and a6 <= t6 <= b6
+        and a7 <= t7 <= b7
+    )
+
+
+def _nearest_inside(
+    arm: CanonicalArm, angles: Angles, last: Angles, rolls: bool
+) -> tuple[float, ...] | None:
+    """Do as `nearest_branch` by trying all eight: where the nearest of all breaks a limit."""
+    best, nearest = inf, None
+    for shoulder, elbow, wrist in product((0, 1), repeat=3):
+        turns = (shoulder, 0, shoulder ^ elbow, 0, elbow ^ wrist, 0, wrist if rolls else 0)
+        signs = (0, shoulder, 0, elbow, 0, wrist, 0)
+        theta = []
+        for angle, turned, mirrored, before, limits in zip(
+            angles, turns, signs, last, arm.limits, strict=True
+        ):
+            fitted = fit(-angle if mirrored else angle + pi * turned, before, limits)
+            if fitted is None:
+                break
+            theta.append(fitted)
+        else:
+            cost = sum([(a - b) ** 2 for a, b in zip(theta, last, strict=True)])
+            if cost < best:
+                best, nearest = cost, tuple(theta)
+    return nearest
+
+
+def fit(angle: float, last: float, limits: tuple[float, float]) -> float | None:
+    """Return `angle`, by whole turns as near to `last` as the limits allow, or None."""
+    lower, upper = limits
+    angle = last + remainder(angle - last, TURN)
+    if angle < lower:
+        angle = lower if angle > lower - _SLACK else angle + TURN
+    elif angle > upper:
+        angle = upper if angle < upper + _SLACK else angle - TURN
+    return angle if lower <= angle <= upper else None
+
+
+def _turned(a: Vector, axis: Vector, angle: float) -> Vector:
+    """Return `a` turned about the unit vector `axis`, to which it is perpendicular."""
+    c, s = cos(angle), sin(angle)
+    (ax, ay, az), (x, y, z) = a, axis
+    return (
+        c * ax + s * (y * az - z * ay),
+        c * ay + s * (z * ax - x * az),
+        c * az + s * (x * ay - y * ax),
+    )

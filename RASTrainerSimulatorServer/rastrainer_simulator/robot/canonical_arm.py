@@ -1,0 +1,98 @@
+"""The canonical S-R-S chain in plain floats: what FABRIK's inner loops read.
+
+Everything here lives in the arm's own frame: the shoulder is the origin and θ2 = 0 points the upper
+arm along z. `SrsGeometry` says how World and q relate to it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, sin
+
+from rastrainer_simulator.robot.srs_geometry import SrsGeometry
+from rastrainer_simulator.vectors import Vector
+
+Angles = Sequence[float]
+# Directions of upper arm, forearm and tool, then the axes of joints 2, 4 and 6: unit vectors.
+Chain = tuple[Vector, Vector, Vector, Vector, Vector, Vector]
+
+# Beyond every cosine: a bound that never binds.
+_NEVER = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class CanonicalArm:
+    """Lengths in m, limits of θ in rad, and the bounds that the tilts put on directions.
+
+    `…_cosines` bound the cosine of the angle between z and the upper arm, between upper arm and
+    forearm, between forearm and tool. The elbow's tilt keeps the wrist between `nearest` and
+    `farthest` from the shoulder.
+    """
+
+    upper: float
+    fore: float
+    tool: float
+    limits: tuple[tuple[float, float], ...]
+    shoulder_cosines: tuple[float, float]
+    elbow_cosines: tuple[float, float]
+    wrist_cosines: tuple[float, float]
+    nearest: float
+    farthest: float
+
+    @classmethod
+    def of(cls, geometry: SrsGeometry) -> CanonicalArm:
+        """Return the constants of an arm."""
+        limits = geometry.canonical_limits
+        elbow = tilt_range(*limits[3])
+        return cls(
+            upper=geometry.upper,
+            fore=geometry.fore,
+            tool=geometry.tool,
+            limits=limits,
+            shoulder_cosines=_cosines(tilt_range(*limits[1])),
+            elbow_cosines=_cosines(elbow),
+            wrist_cosines=_cosines(tilt_range(*limits[5])),
+            nearest=_third_side(geometry, elbow[1]),
+            farthest=_third_side(geometry, elbow[0]),
+        )
+
+
+def tilt_range(lower: float, upper: float) -> tuple[float, float]:
+    """Return the smallest and largest angle that a tilt can make, its pan being free."""
+    sizes = sorted((abs(lower), abs(upper)))
+    return (0.0 if lower <= 0.0 <= upper else sizes[0], min(sizes[1], math.pi))
+
+
+def _cosines(tilts: tuple[float, float]) -> tuple[float, float]:
+    smallest, largest = tilts
+    return (
+        cos(largest) if largest < math.pi else -_NEVER,
+        cos(smallest) if smallest > 0.0 else _NEVER,
+    )
+
+
+def _third_side(geometry: SrsGeometry, bend: float) -> float:
+    a, b = geometry.upper, geometry.fore
+    return math.sqrt(max(0.0, a * a + b * b + 2.0 * a * b * cos(bend)))
+
+
+def chain(theta: Angles) -> Chain:
+    """Return where links and axes point. Joints 1, 3, 5 and 7 turn about z and the three links."""
+    t1, t2, t3, t4, t5, t6, _ = theta
+    s1, c1, s2, c2 = sin(t1), cos(t1), sin(t2), cos(t2)
+    s3, c3, s4, c4 = sin(t3), cos(t3), sin(t4), cos(t4)
+    s5, c5, s6, c6 = sin(t5), cos(t5), sin(t6), cos(t6)
+    ux, uy, uz = c1 * s2, s1 * s2, c2
+    # Rz(θ1) Ry(θ2) Rz(θ3): x and y; then Ry(θ4) turns x, and z becomes the forearm.
+    p, r = c1 * c2, s1 * c2
+    xx, xy, xz = c3 * p - s3 * s1, c3 * r + s3 * c1, -c3 * s2
+    ex, ey, ez = -s3 * p - c3 * s1, c3 * c1 - s3 * r, s3 * s2
+    fx, fy, fz = s4 * xx + c4 * ux, s4 * xy + c4 * uy, s4 * xz + c4 * uz
+    xx, xy, xz = c4 * xx - s4 * ux, c4 * xy - s4 * uy, c4 * xz - s4 * uz
+    # Rz(θ5) turns x and y; then Ry(θ6) makes z the tool.
+    wx, wy, wz = c5 * ex - s5 * xx, c5 * ey - s5 * xy, c5 * ez - s5 * xz
+    xx, xy, xz = c5 * xx + s5 * ex, c5 * xy + s5 * ey, c5 * xz + s5 * ez
+    tx, ty, tz = s6 * xx + c6 * fx, s6 * xy + c6 * fy, s6 * xz + c6 * fz
+    return (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), (-s1, c1, 0.0), (ex, ey, ez), (wx, wy, wz)

@@ -1,0 +1,64 @@
+"""Close the chain exactly: from wrist and tool to joint angles inside the limits."""
+
+from __future__ import annotations
+
+from math import inf
+
+from rastrainer_simulator.robot.branches import Roll, joint_angles, nearest_branch
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm
+from rastrainer_simulator.robot.elbow_circle import (
+    elbow_circle,
+    elbows_at_limits,
+    nearest_elbow,
+    tilts_allow,
+)
+from rastrainer_simulator.vectors import Vector
+
+
+def close(
+    arm: CanonicalArm,
+    wrist: Vector,
+    tool: Vector,
+    roll: Roll,
+    guess: Vector,
+    last: Angles,
+    farthest: float = inf,
+) -> Angles | None:
+    """Return θ that holds the wrist and the tool's direction, and its roll where given, or None.
+
+    The elbow is the feasible one nearest to `guess`, the branch the one nearest to `last`. Where
+    that leaves a joint more than `farthest` (rad) from `last`, an elbow at a limit is taken if it
+    avoids such a jump.
+    """
+    circle = elbow_circle(arm, wrist, guess)
+    (cx, cy, cz), (sx, sy, sz), _ = circle
+    elbow = (cx + sx, cy + sy, cz + sz)
+    if not tilts_allow(arm, elbow, wrist, tool):
+        elbow = nearest_elbow(arm, circle, wrist, tool)
+        if elbow is None:
+            return None
+    theta = _branch(arm, elbow, wrist, tool, roll, last)
+    if theta is not None and (farthest == inf or _near(theta, last, farthest)):
+        return theta
+    for elbow in elbows_at_limits(arm, circle, wrist, tool, roll):
+        other = _branch(arm, elbow, wrist, tool, roll, last)
+        if other is not None and _near(other, last, farthest):
+            return other
+        theta = theta or other
+    return theta
+
+
+def _branch(
+    arm: CanonicalArm, elbow: Vector, wrist: Vector, tool: Vector, roll: Roll, last: Angles
+) -> Angles | None:
+    ex, ey, ez = elbow
+    wx, wy, wz = wrist
+    a, b = 1.0 / arm.upper, 1.0 / arm.fore
+    upper = (a * ex, a * ey, a * ez)
+    fore = (b * (wx - ex), b * (wy - ey), b * (wz - ez))
+    angles = joint_angles(upper, fore, tool, roll, last)
+    return nearest_branch(arm, angles, last, roll is not None)
+
+
+def _near(theta: Angles, last: Angles, farthest: float) -> bool:
+    return all(-farthest <= a - b <= farthest for a, b in zip(theta, last, strict=True))

@@ -1,0 +1,50 @@
+"""What the tool shall reach, in the arm's frame: the three modes differ only in what is given."""
+
+from __future__ import annotations
+
+from math import atan2, cos, dist, sin
+from typing import NamedTuple
+
+from rastrainer_simulator.robot.branches import Roll
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain
+from rastrainer_simulator.vectors import Vector, add, cross, dot, length, scale
+
+
+class Goal(NamedTuple):
+    """A position (m), the tool's direction unless it is free, and its roll unless that is free."""
+
+    position: Vector
+    tool: Vector | None
+    roll: Roll
+
+    def errors(self, arm: CanonicalArm, theta: Angles, links: Chain) -> tuple[float, float]:
+        """Return how far θ, whose chain is `links`, is from the goal: m and rad."""
+        position_error = dist(self.position, tip(arm, links))
+        if self.tool is None:
+            return position_error, 0.0
+        turn = cross(links[2], self.tool)
+        cosine = dot(links[2], self.tool)
+        if self.roll:
+            # Rotation vector from the skew part, angle from sine and trace: exact when small.
+            (x, y), (goal_x, goal_y) = tool_axes(theta, links), self.roll
+            turn = scale(add(add(turn, cross(x, goal_x)), cross(y, goal_y)), 0.5)
+            cosine = (cosine + dot(x, goal_x) + dot(y, goal_y) - 1.0) / 2.0
+        return position_error, atan2(length(turn), cosine)
+
+
+def tip(arm: CanonicalArm, links: Chain) -> Vector:
+    """Return the tool tip, m."""
+    (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), *_ = links
+    a, b, c = arm.upper, arm.fore, arm.tool
+    return (a * ux + b * fx + c * tx, a * uy + b * fy + c * ty, a * uz + b * fz + c * tz)
+
+
+def tool_axes(theta: Angles, links: Chain) -> tuple[Vector, Vector]:
+    """Return the tool's x and y axes."""
+    tilt_axis, tool = links[5], links[2]
+    across = cross(tilt_axis, tool)
+    c, s = cos(theta[6]), sin(theta[6])
+    return (
+        add(scale(across, c), scale(tilt_axis, s)),
+        add(scale(across, -s), scale(tilt_axis, c)),
+    )
