@@ -22,7 +22,10 @@ class ConnectionOwner(Protocol):
     limits: Limits
 
     def connected(self, connection: Connection) -> None:
-        """Answer a new connection."""
+        """Accept a new connection, or drop it."""
+
+    def opened(self, connection: Connection) -> None:
+        """Begin to send to a connection whose header version is known."""
 
     def received(self, connection: Connection, message: Message) -> None:
         """Take one valid message."""
@@ -37,7 +40,9 @@ class ConnectionOwner(Protocol):
 class Connection(asyncio.BufferedProtocol):
     """One peer.
 
-    Messages go out with header version 2 until the peer sends one with version 1.
+    Messages go out with the header version that the peer speaks. A peer of version 1 could not
+    even pass over one of version 2: so nothing is sent before the peer's first message, or some
+    tenths of a second in which a mere listener has sent none.
 
     Attributes:
         name: address of the peer, or what it called itself.
@@ -58,6 +63,7 @@ class Connection(asyncio.BufferedProtocol):
         self._queue = OutgoingQueue(self._limits.waiting_messages, self._limits.waiting_bytes)
         self._flush_is_due = False
         self._is_paused = False
+        self._open_soon: asyncio.TimerHandle | None = None
         self._drop_slow: asyncio.TimerHandle | None = None
         self._drop_stalled: asyncio.TimerHandle | None = None
         self._reason = ""
@@ -89,6 +95,7 @@ class Connection(asyncio.BufferedProtocol):
         _set_up_socket(transport.get_extra_info("socket"), self._limits)
         host, port = transport.get_extra_info("peername")[:2]
         self.name = f"{host}:{port}"
+        self._open_soon = self._loop.call_later(self._limits.first_message_s, self._open)
         self._owner.connected(self)
 
     def get_buffer(self, sizehint: int) -> bytearray:  # noqa: ARG002
@@ -99,6 +106,7 @@ class Connection(asyncio.BufferedProtocol):
         """Read what arrived."""
         for message in self._reader.feed(self._piece[:nbytes]):
             self.header_version = message.version
+            self._open()
             self._owner.received(self, message)
         if self._reader.errors:
             self._owner.bad_bytes(self, self._reader.errors)
@@ -124,12 +132,18 @@ class Connection(asyncio.BufferedProtocol):
 
     def connection_lost(self, error: Exception | None) -> None:
         """Report, once."""
-        for timer in (self._drop_slow, self._drop_stalled):
+        for timer in (self._open_soon, self._drop_slow, self._drop_stalled):
             if timer is not None:
                 timer.cancel()
         self._transport = None
         self.closed.set()
         self._owner.disconnected(self, self._reason or (str(error) if error else ""))
+
+    def _open(self) -> None:
+        if self._open_soon is not None:
+            self._open_soon.cancel()
+            self._open_soon = None
+            self._owner.opened(self)
 
     def _flush_soon(self) -> None:
         if self._queue.is_overfull:

@@ -11,6 +11,8 @@ class Limits:
 
     Attributes:
         clients: connections at once; further ones are closed at once.
+        first_message_s: time that a client has to show by its first message which header version
+            it speaks; then it is taken for a listener of version 2.
         slow_client_s: time after which a client that does not read is dropped.
         half_message_s: time after which a client is dropped that leaves a message half sent.
         silent_peer_s: time after which a peer is dropped whose machine does not answer any more.
@@ -23,6 +25,7 @@ class Limits:
     """
 
     clients: int = 128
+    first_message_s: float = 0.25
     slow_client_s: float = 5.0
     half_message_s: float = 10.0
     silent_peer_s: float = 20.0

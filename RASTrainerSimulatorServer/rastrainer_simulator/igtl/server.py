@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import Protocol
 
 from rastrainer.errors import InputError
@@ -41,12 +41,13 @@ class IgtlServer:
         self._handler = handler
         self._log = LinkLog()
         self._connections: set[Connection] = set()
+        self._opened: set[Connection] = set()
         self._listener: asyncio.AbstractServer | None = None
 
     @property
-    def connections(self) -> Iterable[Connection]:
-        """The clients of this moment."""
-        return tuple(self._connections)
+    def clients(self) -> Collection[Connection]:
+        """The connections that may be sent to, at this moment."""
+        return tuple(self._opened)
 
     async def listen(self, host: str, port: int) -> int:
         """Listen and return the port, which is any free one where `port` is 0.
@@ -81,9 +82,10 @@ class IgtlServer:
         """Stop listening and end every connection."""
         if self._listener is not None:
             self._listener.close()
-        for connection in self.connections:
+        connections = tuple(self._connections)
+        for connection in connections:
             connection.drop()
-        await asyncio.gather(*(connection.closed.wait() for connection in self.connections))
+        await asyncio.gather(*(connection.closed.wait() for connection in connections))
         self._log.close()
 
     def connected(self, connection: Connection) -> None:
@@ -92,6 +94,10 @@ class IgtlServer:
             connection.drop(f"There are {self.limits.clients} clients already.")
             return
         self._connections.add(connection)
+
+    def opened(self, connection: Connection) -> None:
+        """Hand on a connection that may be sent to."""
+        self._opened.add(connection)
         self._handler.connected(connection)
 
     def received(self, connection: Connection, message: Message) -> None:
@@ -107,6 +113,7 @@ class IgtlServer:
         """Forget a connection."""
         if reason:
             self._log.note(f"{connection.name} was disconnected: {reason}")
-        if connection in self._connections:
-            self._connections.discard(connection)
+        self._connections.discard(connection)
+        if connection in self._opened:
+            self._opened.discard(connection)
             self._handler.disconnected(connection)

@@ -61,7 +61,7 @@ class SimulatorLink:
         """
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
-        self.offers = TrialOffers(unacknowledged, lambda: self.server.connections)
+        self.offers = TrialOffers(unacknowledged, lambda: self.server.clients)
         self._told = Phase.IDLE
         self._submit_command = submit
         self._commands = CommandHandler(self._submit, self.server.limits)
@@ -100,14 +100,14 @@ class SimulatorLink:
         while True:
             await asyncio.sleep(1.0 / Rate.HEARTBEAT_HZ)
             beat = self._heartbeat(details())
-            for connection in self.server.connections:
+            for connection in self.server.clients:
                 connection.send_latest(beat)
             seconds += 1
             if seconds % Rate.OFFER_PERIOD_S == 0:
                 self.offers.repeat()
 
     def _heartbeat(self, details: Mapping[str, Any]) -> Outgoing:
-        clients = len(tuple(self.server.connections))
+        clients = len(self.server.clients)
         return Outgoing(devices.heartbeat({"clients": clients, **details}))
 
     def _submit(

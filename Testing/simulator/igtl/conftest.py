@@ -21,8 +21,8 @@ def start(loop_thread):
     """Starts servers of a kind with given limits, and ends them."""
     started = []
 
-    def start_one(kind, **limits):
-        server = kind(loop_thread, Limits(**limits))
+    def start_one(kind, first_message_s=0.02, **limits):
+        server = kind(loop_thread, Limits(first_message_s=first_message_s, **limits))
         started.append(server)
         return server
 

@@ -105,7 +105,7 @@ def test_commands_of_a_client_are_carried_out_in_their_order(client, link_server
     count = 300
     for number in range(count):
         body = json.dumps({"velocityMmS": [number, 0, 0]})
-        client.send(Message("command", Command(number, "Jog", body)))
+        client.send(Message("command", Command(1000 + number, "Jog", body)))
     client.send_command("ListTasks")
     jogs = [given for name, given, _ in link_server.simulated.commands if name == "Jog"]
     assert [given["velocityMmS"][0] for given in jogs] == list(range(count))
@@ -121,7 +121,7 @@ def test_simulation_is_given_few_commands_of_one_client_at_once(start):
 
     server.link._submit_command = hold
     with Client(port=server.port) as client:
-        for number in range(20):
+        for number in range(1000, 1020):
             client.send(Message("command", Command(number, "Capture")))
         client.send_command("Fly")
         assert len(given) == 4

@@ -73,7 +73,7 @@ def test_every_type_reaches_every_client(plain_server):
         plain_server.handler.wait_until(lambda: len(plain_server.handler.connections) == 2)
         for message in EVERY_MESSAGE:
             outgoing = Outgoing(message)
-            for connection in plain_server.server.connections:
+            for connection in plain_server.server.clients:
                 plain_server.thread.call(connection.send, outgoing)
         for client in (first, second):
             for message in EVERY_MESSAGE:
@@ -131,8 +131,8 @@ def test_client_that_does_not_read_is_dropped_and_disturbs_no_other(start):
     server = start(LinkServer, slow_client_s=0.2)
     with good_client(server) as good, connect(server.port, receive_buffer=4096):
         good.wait_for("SimServer")
-        while len(server.server.connections) == 2:
-            for connection in server.server.connections:
+        while len(server.server.clients) == 2:
+            for connection in server.server.clients:
                 server.thread.call(connection.send_latest, LONG_TEXT)
         assert good.is_open
 
@@ -141,7 +141,7 @@ def test_client_that_lets_too_many_answers_wait_is_dropped_at_once(start):
     server = start(PlainServer, slow_client_s=60, waiting_bytes=200_000)
     with connect(server.port, receive_buffer=4096):
         server.handler.wait_until(lambda: server.handler.connections)
-        (connection,) = server.server.connections
+        (connection,) = server.server.clients
         for _ in range(200):
             server.thread.call(connection.send, LONG_TEXT)
         server.handler.wait_until(lambda: server.handler.left == [connection])
@@ -151,7 +151,7 @@ def test_state_of_a_client_that_reads_slowly_is_replaced_not_piled_up(start):
     server = start(PlainServer, waiting_bytes=200_000)
     with connect(server.port, receive_buffer=4096) as peer, peer.makefile("rb") as stream:
         server.handler.wait_until(lambda: server.handler.connections)
-        (connection,) = server.server.connections
+        (connection,) = server.server.clients
         texts = [Outgoing(Message("Text", String(f"{i:03}" * 20_000))) for i in range(200)]
         for text in texts:
             server.thread.call(connection.send_latest, text)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import Phase
+from rastrainer.protocol import PROTOCOL_VERSION, Phase
 from rastrainer_simulator.igtl.trial_offers import MOST_AT_ONCE
 from rastrainer_simulator.state import TrainingState
 from Testing.simulator.igtl.servers import LinkServer, at_rest
@@ -25,16 +25,21 @@ class Collector(Client):
         self.offers = []
         self.server = server
         super().__init__(port=server.port, on_message=self._keep)
+        self._say_hello()
 
     def _keep(self, message):
         if message.device == "command":
             assert message.content.name == "TrialCompleted"
             self.offers.append(message.content)
 
+    def _say_hello(self):
+        """What was sent before the answer has then arrived."""
+        self.send_command("Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "collector"})
+
     def after(self, action) -> list[str]:
         """Return the trials that were offered up to now, once `action` has been carried out."""
         self.server.thread.call(action)
-        self.send_command("Hello", {"protocolVersion": 1, "client": "collector"})
+        self._say_hello()
         offered = [json.loads(offer.body)["trialId"] for offer in self.offers]
         self.offers.clear()
         return offered
@@ -43,7 +48,6 @@ class Collector(Client):
 @pytest.fixture
 def collector(link_server):
     with Collector(link_server) as collector:
-        collector.after(lambda: None)
         yield collector
 
 
