@@ -56,9 +56,11 @@ def smoothed(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
 
 
 def decimated(surface: vtk.vtkPolyData, triangle_count: int, above_mm: float) -> vtk.vtkPolyData:
-    """Return the surface with about `triangle_count` triangles above the height `above_mm`."""
+    """Return the surface with at most about `triangle_count` triangles above a height."""
     mesh = mesh_of(surface)
     count_above = np.count_nonzero(mesh.vertices[mesh.triangles[:, 0], 2] > above_mm)
+    if count_above <= triangle_count:
+        return surface
     decimation = vtk.vtkQuadricDecimation()
     decimation.SetInputData(surface)
     decimation.SetTargetReduction(1.0 - triangle_count / count_above)

@@ -1,0 +1,130 @@
+"""The head's extraction on a phantom with a known skin: an ellipsoid with what real heads have."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.head.extraction import HeadSettings, extract_head
+from rastrainer.slicer.head.volume import Volume, on_ras_grid
+
+SEMI_AXES = np.array([33.0, 38.0, 36.0])
+CENTER = np.array([4.0, -7.0, 12.0])
+LOWEST = -14.0
+
+
+def phantom(ijk_to_ras, shape):
+    """T1-like values: skin, dark skull, brain, an airway open to the front, a ring for an ear."""
+    ijk = np.indices(shape).reshape(3, -1).T
+    ras = ijk @ ijk_to_ras[:3, :3].T + ijk_to_ras[:3, 3]
+    offset = ras - CENTER
+    radius = np.linalg.norm(offset / SEMI_AXES, axis=1)
+    values = np.clip((1 - radius) * SEMI_AXES.mean() + 0.5, 0, 1) * 90.0
+    values[(radius < 0.88) & (radius > 0.78)] = 8.0
+    airway = (np.hypot(offset[:, 0], offset[:, 2] + 10) < 2.5) & (offset[:, 1] > 0)
+    values[airway] = 0.0
+    ring = np.hypot(offset[:, 1], offset[:, 2]) - 6.0
+    ear = (np.hypot(ring, offset[:, 0] - SEMI_AXES[0] - 3.0) < 2.5) & (offset[:, 0] > 0)
+    values[ear] = 90.0
+    return Volume(values.reshape(shape).astype(np.float32), ijk_to_ras)
+
+
+def axes(spacing, turn_deg=0.0, flip=(1, 1, 1)):
+    c, s = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.diag(spacing) @ np.diag(flip)
+    return matrix
+
+
+def around_head(matrix, shape):
+    """Place a grid so that its middle is the head's in x and y, and its lowest slice at LOWEST."""
+    middle = matrix[:3, :3] @ ((np.array(shape) - 1) / 2)
+    matrix[:3, 3] = CENTER - middle
+    half_height = abs(matrix[2, 2]) * (shape[2] - 1) / 2
+    matrix[2, 3] += LOWEST + half_height - CENTER[2]
+    return matrix
+
+
+def skin_errors(mesh):
+    """Distances of the vertices to the ellipsoid, without the base, the airway and the ear."""
+    offset = mesh.vertices - CENTER
+    radius = np.linalg.norm(offset / SEMI_AXES, axis=1)
+    gradient = np.linalg.norm(offset / SEMI_AXES**2, axis=1) / np.maximum(radius, 1e-9)
+    base = mesh.vertices[:, 2] < LOWEST + 3
+    airway = (np.hypot(offset[:, 0], offset[:, 2] + 10) < 8) & (offset[:, 1] > 0)
+    ear = (offset[:, 0] > 0) & (np.hypot(offset[:, 1], offset[:, 2]) < 16)
+    return np.abs((radius - 1) / gradient)[~(base | airway | ear)]
+
+
+@pytest.mark.parametrize(
+    ("spacing", "turn_deg", "flip"),
+    [
+        pytest.param((1, 1, 1), 0, (-1, -1, 1), id="cubic, LPS"),
+        pytest.param((0.9, 1.1, 2.0), 12, (1, 1, 1), id="anisotropic, oblique"),
+    ],
+)
+def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_deg, flip):
+    shape = tuple(
+        int(np.ceil(extent / s)) for extent, s in zip((96, 100, 70), spacing, strict=True)
+    )
+    volume = phantom(around_head(axes(spacing, turn_deg, flip), shape), shape)
+    mesh = extract_head(volume, HeadSettings(opening_mm=8))
+    errors = skin_errors(mesh)
+    assert len(errors) > 10_000
+    assert errors.mean() < 0.5
+    assert np.percentile(errors, 95) < 1.0
+    assert mesh.is_closed
+    assert mesh.euler_characteristic == 2
+    assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=1e-4)
+    on_base = np.isclose(mesh.vertices[:, 2], LOWEST + 1.0, atol=1e-4)
+    assert (mesh.vertices[~on_base, 2] > LOWEST + 1.001).all()
+
+
+def test_a_nose_cut_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
+    shape = (80, 60, 60)
+    volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
+    edge = volume.ijk_to_ras[1, 3] + shape[1] - 1
+    mesh = extract_head(volume, HeadSettings(opening_mm=8))
+    assert edge + 2 < mesh.vertices[:, 1].max() < edge + 10
+    assert mesh.euler_characteristic == 2
+
+
+def test_the_same_volume_gives_the_same_head():
+    shape = (84, 90, 60)
+    volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
+    first, second = (extract_head(volume, HeadSettings(opening_mm=8)) for _ in range(2))
+    assert np.array_equal(first.vertices, second.vertices)
+    assert np.array_equal(first.triangles, second.triangles)
+
+
+def test_progress_is_told_and_may_cancel():
+    class CancelledError(Exception):
+        pass
+
+    told = []
+
+    def progress(step, share):
+        told.append(share)
+        if step == "Filling cavities":
+            raise CancelledError
+
+    volume = phantom(around_head(axes((1, 1, 1)), (84, 90, 60)), (84, 90, 60))
+    with pytest.raises(CancelledError):
+        extract_head(volume, progress=progress)
+    assert told == sorted(told)
+    assert told[0] == 0.0
+
+
+def test_a_volume_without_a_head_is_refused_with_a_sentence():
+    empty = Volume(np.zeros((40, 40, 40), np.float32), np.eye(4))
+    with pytest.raises(InputError, match="No head was found"):
+        extract_head(empty)
+
+
+def test_a_grid_along_ras_is_kept_as_it_is():
+    values = ndimage.gaussian_filter(np.random.default_rng(1).normal(size=(12, 14, 10)), 1)
+    matrix = np.eye(4)
+    matrix[:3, 3] = [-3, 5, 7]
+    grid = on_ras_grid(Volume(values.astype(np.float32), matrix), 1.0)
+    assert np.allclose(grid.values, values, atol=1e-6)
+    assert np.array_equal(grid.ijk_to_ras, matrix)

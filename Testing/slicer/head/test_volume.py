@@ -1,0 +1,35 @@
+import numpy as np
+import pytest
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.head.volume import read_volume, volume_from_node
+
+
+def test_a_voxel_is_found_where_slicer_says_that_it_is(scene):
+    values = np.zeros((5, 6, 7), np.int16)
+    values[1, 2, 3] = 100
+    image = vtk.vtkImageData()
+    image.SetDimensions(5, 6, 7)
+    image.GetPointData().SetScalars(numpy_to_vtk(values.ravel(order="F"), deep=True))
+    node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
+    node.SetAndObserveImageData(image)
+    node.SetSpacing(2.0, 3.0, 4.0)
+    node.SetOrigin(-10.0, 20.0, 30.0)
+    node.SetIJKToRASDirections(0, -1, 0, 1, 0, 0, 0, 0, 1)
+    volume = volume_from_node(node)
+    assert np.argwhere(volume.values == 100).tolist() == [[1, 2, 3]]
+    assert (volume.ijk_to_ras @ [1, 2, 3, 1])[:3].tolist() == [-10 - 6, 20 + 2, 30 + 12]
+
+
+def test_a_missing_volume_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"none\.nii\.gz does not exist"):
+        read_volume(tmp_path / "none.nii.gz")
+
+
+def test_a_file_that_is_no_volume_is_refused_with_a_sentence(tmp_path):
+    path = tmp_path / "noise.nii.gz"
+    path.write_bytes(b"not an image" * 100)
+    with pytest.raises(InputError, match="could not be read as a volume"):
+        read_volume(path)
