@@ -140,6 +140,25 @@ class SimulationState:
 
 
 @dataclass(frozen=True)
+class StartingPoint:
+    """Where a simulation takes up: from another one's state, or from a trial's journal.
+
+    `tick` and `sim_time` (s) are those of the last step before, `revision` that of the training
+    state; `camera` is the view, None for the one at the start.
+    """
+
+    tick: int = 0
+    sim_time: float = 0.0
+    revision: int = 0
+    camera: str | None = None
+
+    @classmethod
+    def after(cls, state: SimulationState) -> StartingPoint:
+        """Return the point that follows a state."""
+        return cls(state.tick, state.sim_time, state.training.revision, state.camera)
+
+
+@dataclass(frozen=True)
 class StepResult:
     """What one step gives: the state, what happened, and the answers to the tick's commands."""
 

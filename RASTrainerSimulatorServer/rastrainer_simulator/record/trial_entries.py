@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import struct
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.protocol import CommandName, Phase
@@ -12,7 +13,7 @@ from rastrainer_simulator.operator_input import Command, OperatorInput
 from rastrainer_simulator.record.journal_line import FORMAT, FORMAT_VERSION
 from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.versions import versions
-from rastrainer_simulator.state import Event, EventKind, SimulationState, StepResult
+from rastrainer_simulator.state import Event, EventKind, SimulationState, StartingPoint, StepResult
 
 if TYPE_CHECKING:
     from rastrainer_simulator.simulation import Simulation
@@ -58,12 +59,7 @@ class TrialEntries:
                 "mode": training.mode,
                 "seed": self._seed,
                 "tickS": dt,
-                "before": {
-                    "tick": before.tick,
-                    "simTime": before.sim_time,
-                    "revision": before.training.revision,
-                    "camera": before.camera,
-                },
+                "before": asdict(StartingPoint.after(before)),
                 **simulation.setup.description(),
                 "versions": self._versions,
             }

@@ -89,6 +89,11 @@ class Training:
             RECORDING_FAILED: self._recording_failed,
         }
 
+    def continue_from(self, revision: int) -> None:
+        """Count revisions on from another simulation's, before the first trial."""
+        self.state = replace(self.state, revision=revision)
+        self._history = {revision: self.state}
+
     def handles(self, command: str) -> bool:
         """Return whether a command is the trial's business."""
         return command in self._handlers

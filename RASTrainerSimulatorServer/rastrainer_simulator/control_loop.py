@@ -1,0 +1,281 @@
+"""Own the time: step the simulation 250 times a second, record it, and tell what came of it."""
+
+from __future__ import annotations
+
+import itertools
+import logging
+import threading
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import RASTrainerError
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.loop_statistics import LoopStatistics, Punctuality
+from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
+from rastrainer_simulator.precise_clock import precise_timing, sleep_until
+from rastrainer_simulator.record.held_back import HeldBack
+from rastrainer_simulator.record.stamps import stamp
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
+
+CATCH_UP_S = 0.1
+"""How far behind the loop may fall and still make up for it tick by tick."""
+COMMANDS_PER_TICK = 16
+
+_OF_ANY_TRIAL = (
+    CommandName.GET_TRIAL,
+    CommandName.ACKNOWLEDGE_TRIAL,
+    CommandName.TRIAL_SCORED,
+)
+_PASSING = frozenset(
+    {
+        CommandName.JOG,
+        CommandName.MOVE_TIP_TO,
+        CommandName.SET_CAMERA,
+        CommandName.PLAN_TARGET,
+        CommandName.LIST_TASKS,
+        CommandName.GET_TRIAL,
+    }
+)
+"""Commands that do not change the trial; all others are carried out one at a time."""
+
+_log = logging.getLogger(__name__)
+
+
+class ControlLoop:
+    """Runs a simulation in a thread of its own.
+
+    Every tick has its time, counted from the first, so that delays do not add up; a tick that is
+    late is counted in `statistics`. What a trial has gained is told to nobody before it is on the
+    disk; only then is its answer given.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        records: Path,
+        rate_hz: float = 250.0,
+        speed: float | None = 1.0,
+    ) -> None:
+        """Prepare the loop; `start` sets it going.
+
+        Args:
+            simulation: belongs to the loop from now on.
+            records: folder of the trials' journals; it is created with the first trial.
+            rate_hz: ticks in a simulated second.
+            speed: simulated seconds in a second; None runs as fast as the machine can.
+        """
+        self._simulation = simulation
+        self._dt = 1.0 / rate_hz
+        self._period = 0.0 if speed is None else self._dt / speed
+        self._archive = TrialArchive(records)
+        self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="journal")
+        self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt)
+        self._state = simulation.state
+        self._held = HeldBack(self._state.training)
+        self._sticks = HANDS_OFF
+        self._arrived: deque[Command] = deque()
+        self._tickets = itertools.count(1)
+        self._answers: dict[int, Future[Answer]] = {}
+        self._refused: str | None = None
+        self._successor: tuple[Simulation, Future[Answer]] | None = None
+        self._subscribers: tuple[Callable[[StepResult], None], ...] = ()
+        self._punctuality = Punctuality()
+        self._thread = threading.Thread(target=self._run, name="control loop", daemon=True)
+        self._is_stopping = threading.Event()
+        self.latest: SimulationState = self._state
+        """What may be told of the last tick; the same as the subscribers got."""
+
+    def __enter__(self) -> ControlLoop:
+        self.start()
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Begin to tick."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop ticking, and return when everything recorded is on the disk."""
+        self._is_stopping.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        self._recorder.stop(self._state)
+        self._writer.shutdown(wait=True)
+        self._tell_the_rest()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it ticks."""
+        return self._thread.is_alive()
+
+    @property
+    def statistics(self) -> LoopStatistics:
+        """How punctual it has been."""
+        return self._punctuality.told()
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Sentences about journals in the records folder that cannot be used."""
+        return tuple(self._archive.problems)
+
+    def unacknowledged(self) -> tuple[TrialRecord, ...]:
+        """Return the registered trials that no client has acknowledged, the oldest first."""
+        return self._archive.unacknowledged()
+
+    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
+        """Have `callback` called in the loop's thread after each tick; it must return at once.
+
+        Returns what ends the subscription.
+        """
+        self._subscribers = (*self._subscribers, callback)
+
+        def unsubscribe() -> None:
+            self._subscribers = tuple(c for c in self._subscribers if c is not callback)
+
+        return unsubscribe
+
+    def hold_sticks(self, sticks: OperatorInput) -> None:
+        """Take the sticks as they are from now on; the commands in it are ignored."""
+        self._sticks = replace(sticks, commands=())
+
+    def submit(
+        self, name: str, arguments: Mapping[str, Any] | None = None, sender: str = ""
+    ) -> Future[Answer]:
+        """Carry out a command in one of the next ticks.
+
+        `arguments` have passed `rastrainer.protocol.check_arguments`. The answer comes once what it
+        says is on the disk.
+        """
+        future: Future[Answer] = Future()
+        ticket = next(self._tickets)
+        self._answers[ticket] = future
+        arguments = dict(arguments or {})
+        if name == CommandName.START_TASK:
+            # Drawn outside of the simulation: a seed used twice must not make one trial of two.
+            arguments.setdefault("trialId", str(uuid.uuid4()))
+        self._arrived.append(Command(name, arguments, ticket, sender))
+        return future
+
+    def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
+        """Go on with another simulation, such as one of another scenario, between two trials."""
+        future: Future[Answer] = Future()
+        self._successor = (simulation, future)
+        return future
+
+    def _run(self) -> None:
+        try:
+            with precise_timing():
+                self._tick_on_time()
+        except Exception:
+            _log.exception("The control loop has stopped")
+
+    def _tick_on_time(self) -> None:
+        due = time.monotonic()
+        while not self._is_stopping.is_set():
+            self._punctuality.began(time.monotonic() - due if self._period else 0.0)
+            self._tick()
+            due += self._period
+            behind = time.monotonic() - due
+            if self._period and behind > CATCH_UP_S:
+                skipped = int(behind / self._period)
+                self._punctuality.skip(skipped)
+                due += skipped * self._period
+            sleep_until(due)
+
+    def _tick(self) -> None:
+        if self._successor is not None:
+            self._succeed(*self._successor)
+        operator_input = replace(self._sticks, commands=self._commands())
+        result = self._simulation.step(self._dt, operator_input)
+        written = self._recorder.record(self._simulation, self._state, operator_input, result)
+        self._state = result.state
+        told, self._refused = self._held.pass_on(result, written)
+        self._tell(told)
+
+    def _commands(self) -> tuple[Command, ...]:
+        """Take what has arrived; a change of the trial waits until the last is on the disk."""
+        commands: list[Command] = []
+        if self._refused is not None:
+            arguments = {"revision": self._held.revision, "reason": self._refused}
+            commands.append(Command(RECORDING_FAILED, arguments))
+        while self._arrived and len(commands) < COMMANDS_PER_TICK:
+            command = self._arrived[0]
+            changes_trial = command.name not in _PASSING
+            if changes_trial and self._held.is_waiting:
+                break
+            self._arrived.popleft()
+            if self._is_for_the_archive(command):
+                self._ask_archive(command)
+                continue
+            commands.append(command)
+            if changes_trial:
+                break
+        return tuple(commands)
+
+    def _is_for_the_archive(self, command: Command) -> bool:
+        """Return whether a command is about a trial whose record is written, and not its score."""
+        if command.name not in _OF_ANY_TRIAL:
+            return False
+        training = self._state.training
+        if command.name == CommandName.ACKNOWLEDGE_TRIAL:
+            return True
+        is_present = command.arguments["trialId"] == training.trial_id
+        if command.name == CommandName.TRIAL_SCORED:
+            return not is_present
+        return not is_present or training.phase in (Phase.REGISTERED, Phase.SCORED)
+
+    def _ask_archive(self, command: Command) -> None:
+        times = stamp(self._state.tick, self._state.sim_time)
+
+        def ask() -> None:
+            try:
+                data = self._archive.answer(command.name, command.arguments, times)
+            except RASTrainerError as error:
+                self._give(Answer(command.ticket, False, str(error)))
+            else:
+                self._give(Answer(command.ticket, True, data=data))
+
+        self._writer.submit(ask)
+
+    def _succeed(self, simulation: Simulation, future: Future[Answer]) -> None:
+        self._successor = None
+        phase = self._state.training.phase
+        if self._held.is_waiting or phase in (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE):
+            sentence = "A trial is running: Register or Abort it before another scenario."
+            future.set_result(Answer(0, False, sentence))
+            return
+        simulation.continue_from(StartingPoint.after(self._state))
+        self._simulation = simulation
+        future.set_result(Answer(0, True))
+
+    def _tell(self, result: StepResult) -> None:
+        self.latest = result.state
+        for answer in result.answers:
+            self._give(answer)
+        for callback in self._subscribers:
+            callback(result)
+
+    def _give(self, answer: Answer) -> None:
+        future = self._answers.pop(answer.ticket, None)
+        if future is not None and future.set_running_or_notify_cancel():
+            future.set_result(answer)
+
+    def _tell_the_rest(self) -> None:
+        """Answer what was still on its way to the disk, and refuse what came too late."""
+        for answer in self._held.pass_on(StepResult(self._state), None)[0].answers:
+            self._give(answer)
+        for ticket in tuple(self._answers):
+            self._give(Answer(ticket, False, "The simulator is shutting down."))

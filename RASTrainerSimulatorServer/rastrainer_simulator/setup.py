@@ -1,0 +1,69 @@
+"""What a simulation is made from: the scenario, the robot and the settings."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rastrainer.scenario import Scenario, load_scenario
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.robot.model import RobotModel, load_robot
+from rastrainer_simulator.settings import SimulationSettings, settings_to_json
+
+DEFAULT_SCENARIO = ("scenarios", "colin27")
+
+
+@dataclass(frozen=True)
+class SimulationSetup:
+    """Everything that a simulation starts from, besides its seed.
+
+    Attributes:
+        scenario: head, tasks and cameras.
+        robot: the arm and its tool.
+        settings: how it behaves.
+        scenario_sha256: of the scenario's files, so that a journal tells which it was.
+    """
+
+    scenario: Scenario
+    robot: RobotModel
+    settings: SimulationSettings = field(default_factory=SimulationSettings)
+    scenario_sha256: str = ""
+
+    def description(self) -> dict[str, Any]:
+        """Return what a journal's header tells of it, ready for JSON."""
+        return {
+            "scenario": {"name": self.scenario.name, "sha256": self.scenario_sha256},
+            "robot": self.robot.name,
+            "settings": settings_to_json(self.settings),
+        }
+
+
+def load_setup(
+    scenario_folder: Path | None = None,
+    settings: SimulationSettings | None = None,
+    urdf_path: Path | None = None,
+    robot_meshes: Path | None = None,
+) -> SimulationSetup:
+    """Load a scenario and a robot; by default those that come with RASTrainer.
+
+    Raises:
+        InputError: a file of theirs cannot be used.
+    """
+    folder = scenario_folder or asset_path(*DEFAULT_SCENARIO)
+    return SimulationSetup(
+        scenario=load_scenario(folder),
+        robot=load_robot(urdf_path, robot_meshes),
+        settings=settings or SimulationSettings(),
+        scenario_sha256=folder_sha256(folder),
+    )
+
+
+def folder_sha256(folder: Path) -> str:
+    """Return one hash of a folder's files: their names and contents, in the names' order."""
+    whole = hashlib.sha256()
+    for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+        whole.update(path.relative_to(folder).as_posix().encode())
+        whole.update(hashlib.sha256(path.read_bytes()).digest())
+    return whole.hexdigest()

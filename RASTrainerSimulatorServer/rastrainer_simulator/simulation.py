@@ -1,0 +1,192 @@
+"""One tick of everything: input, trial, motion, contact, state. No clock, no socket, no file."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.protocol import CommandName, Phase, Proximity
+from rastrainer_simulator.arm import Arm, Posture
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.motion_command import MM, commanded_motion
+from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer_simulator.scene_view import SceneView
+from rastrainer_simulator.setup import SimulationSetup
+from rastrainer_simulator.state import (
+    Answer,
+    Event,
+    EventKind,
+    Motion,
+    PlannedTarget,
+    SimulationState,
+    StartingPoint,
+    StepResult,
+)
+from rastrainer_simulator.teleoperation.commanded_motion import Outcome
+from rastrainer_simulator.teleoperation.teleoperation import Teleoperation, Wish
+from rastrainer_simulator.teleoperation.tool_steering import Surface
+from rastrainer_simulator.training.phase_rules import refusal
+from rastrainer_simulator.training.texts import Texts
+from rastrainer_simulator.training.training import Moment, Reply, Training
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.vectors import add
+
+
+class Simulation:
+    """The robot, the head and the trial.
+
+    `step` is deterministic: the same setup, seed and inputs give the same states to the last bit.
+    A trial always starts with the arm at home, and with nothing left over from before: a replay
+    needs nothing but the trial's own inputs.
+    """
+
+    def __init__(self, setup: SimulationSetup, seed: int, texts: Texts | None = None) -> None:
+        """Build the scene; takes about a second, most of it for the head's surface."""
+        settings = setup.settings
+        self.setup = setup
+        self._texts = texts or Texts()
+        self._training = Training(setup.scenario, seed, settings.training, self._texts)
+        self._view = SceneView(setup.scenario, settings.camera, settings.axes)
+        self._teleoperation = Teleoperation(settings.teleoperation)
+        self._arm = Arm(setup.robot)
+        head = read_head_mesh(setup.scenario.head_mesh)
+        self._collision = Collision(setup.robot, head.vertices / MM, head.triangles)
+        self._operator = ""
+        self._is_within_reach = True
+        self._put_in_place()
+        self.state = self._state(0, 0.0, Motion.NONE)
+
+    @property
+    def truth(self) -> Truth:
+        """Where the head is: secret until the trial is scored."""
+        return self._training.truth
+
+    @property
+    def trial_seed(self) -> int:
+        """The seed of the head's pose in the present trial: as secret as the pose."""
+        return self._training.trial_seed
+
+    def continue_from(self, point: StartingPoint) -> None:
+        """Count ticks, time and revisions on from another simulation, before the first step."""
+        self._training.continue_from(point.revision)
+        self._view.camera = point.camera or self._view.camera
+        self.state = self._state(point.tick, point.sim_time, Motion.NONE)
+
+    def step(self, dt: float, operator_input: OperatorInput) -> StepResult:
+        """Carry out the commands at the state reached, then move on by `dt` seconds."""
+        before = self.state
+        events: list[Event] = []
+        answers: list[Answer] = []
+        for command in operator_input.commands:
+            reply = self._carry_out(command, before.sim_time)
+            events.extend(reply.events)
+            answers.append(Answer(command.ticket, reply.ok, reply.message, reply.data))
+            if self._training.truth is not self._placed:
+                self._put_in_place()
+        wish = self._wish(dt, operator_input)
+        sim_time = before.sim_time + dt
+        if wish.ended is not None:
+            events.append(_ended(wish.ended, sim_time))
+        if wish.motion is not Motion.NONE:
+            events.extend(self._move(dt, wish, sim_time))
+            if wish.motion is Motion.STICK:
+                self._operator = operator_input.operator
+        self.state = self._state(before.tick + 1, sim_time, wish.motion)
+        if self.state.proximity is not before.proximity:
+            events.append(_proximity(before.proximity, self.state, sim_time))
+        return StepResult(self.state, tuple(events), tuple(answers))
+
+    def _carry_out(self, command: Command, sim_time: float) -> Reply:
+        if self._training.handles(command.name):
+            return self._training.handle(command, Moment(sim_time, self._posture.tip.position))
+        sentence = refusal(command, self._training.state, self._texts)
+        if sentence is not None:
+            return Reply(False, sentence)
+        arguments = command.arguments
+        if command.name == CommandName.LIST_TASKS:
+            return Reply(True, data={"tasks": self._tasks()})
+        if command.name == CommandName.SET_CAMERA:
+            self._view.camera = arguments["camera"]
+            return Reply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
+        if command.name == CommandName.PLAN_TARGET:
+            position = tuple(value / MM for value in arguments["positionMm"])
+            self._view.planned_target = PlannedTarget(arguments["name"], position)
+            return Reply(True, events=(Event(EventKind.PLAN, sim_time, dict(arguments)),))
+        tool = self._posture.tool_axes
+        self._teleoperation.start(commanded_motion(command, self._view.camera_axes, tool))
+        self._operator = command.sender
+        return Reply(True)
+
+    def _tasks(self) -> list[dict[str, object]]:
+        return [
+            {"name": task.name, "title": task.title, "complexity": task.complexity}
+            for task in self.setup.scenario.tasks
+        ]
+
+    def _wish(self, dt: float, operator_input: OperatorInput) -> Wish:
+        """Return what the operator wants; while the trial is paused the arm stands still."""
+        if self._training.state.phase is Phase.PAUSED:
+            stopped = self._teleoperation.stop()
+            return Wish(Motion.NONE, ended=Outcome.STOPPED if stopped else None)
+        axes = self._view.stick_axes
+        return self._teleoperation.step(dt, operator_input, self._posture.tip, axes, self._surface)
+
+    def _put_in_place(self) -> None:
+        """Put the head where the trial has it, and the arm at home."""
+        self._placed = self._training.truth
+        head_to_world = np.array(self._placed.head_to_world)
+        head_to_world[:3, 3] /= MM
+        self._collision.set_head_pose(head_to_world)
+        self._teleoperation.stop()
+        self._view.planned_target = None
+        self._is_within_reach = True
+        self._take(self._arm.home)
+
+    def _move(self, dt: float, wish: Wish, sim_time: float) -> list[Event]:
+        """Follow the wish as far as arm and head allow."""
+        position = add(self._posture.tip.position, wish.displacement)
+        q, is_within_reach = self._arm.toward(self._posture, position, wish.direction, dt)
+        self._take(self._arm.posture(q))
+        if is_within_reach == self._is_within_reach:
+            return []
+        self._is_within_reach = is_within_reach
+        return [Event(EventKind.REACH, sim_time, {"isWithinReach": is_within_reach})]
+
+    def _take(self, posture: Posture) -> None:
+        self._posture = posture
+        self._clearance = self._collision.check(posture.link_to_world)
+
+    @property
+    def _surface(self) -> Surface:
+        return Surface(self._clearance.tip.distance_m, self._clearance.tip.normal)
+
+    def _state(self, tick: int, sim_time: float, motion: Motion) -> SimulationState:
+        posture = self._posture
+        return SimulationState(
+            tick=tick,
+            sim_time=sim_time,
+            q=posture.q,
+            tool_tip_to_world=posture.tool_tip_to_world,
+            link_to_world=posture.links,
+            proximity=Proximity.FREE,
+            clearance=self._clearance.tool_m,
+            training=self._training.state,
+            elapsed=self._training.elapsed(sim_time),
+            motion=motion,
+            operator=self._operator,
+            camera=self._view.camera,
+            planned_target=self._view.planned_target,
+        )
+
+
+def _ended(outcome: Outcome, sim_time: float) -> Event:
+    return Event(EventKind.MOTION, sim_time, {"outcome": outcome.value})
+
+
+def _proximity(before: Proximity, state: SimulationState, sim_time: float) -> Event:
+    data = {
+        "from": before.value,
+        "to": state.proximity.value,
+        "clearanceMm": MM * state.clearance,
+    }
+    return Event(EventKind.PROXIMITY, sim_time, data)
