@@ -1,0 +1,153 @@
+"""The arm's motion in one tick, stopped by what it touches and led along it.
+
+A tick of the simulation is
+
+    moved = contact.move(q, displacement, to_joints)
+
+with `displacement` what the operator wants of the tip (World, m) and `to_joints(displacement)` the
+caller's way from an allowed displacement to joint angles: inverse kinematics with the wanted
+direction of the tool, then the joints' velocity limit. `moved` holds the new joint angles, where
+the links are, all clearances, and what stopped the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer_simulator.collision.clearance import Clearance
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.half_spaces import HalfSpace, nearest_inside
+from rastrainer_simulator.collision.sliding import RECOVERY, REST, Slide, slide
+from rastrainer_simulator.robot.kinematics import Kinematics
+from rastrainer_simulator.vectors import Vector, dot, length, subtract
+
+TOLERANCE = 2e-5
+"""Deepest overlap, m, of tip or shaft that is let pass: the next tick takes it back."""
+
+_CORRECTIONS = 3
+_SHORTEST_SHARE = 0.05
+_CAUTION = 0.9
+
+Joints = tuple[float, ...]
+ToJoints = Callable[[Vector], Sequence[float]]
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Where a motion ended.
+
+    Attributes:
+        q: joint angles, rad.
+        link_to_world: (4, 4) float, m, by the names of the links.
+        clearance: of this posture.
+        stopped_by: "shaft", "links", "self" or "table" where the motion was cut short because of
+            it, else "". Sliding along the surface is no stop.
+    """
+
+    q: Joints
+    link_to_world: Mapping[str, np.ndarray]
+    clearance: Clearance
+    stopped_by: str = ""
+
+
+class Contact:
+    """Keeps the arm out of the head, of itself, of the table and of the head's stand.
+
+    The same question has the same answer: what is kept from the last tick only saves time.
+    """
+
+    def __init__(self, collision: Collision, kinematics: Kinematics) -> None:
+        self._collision = collision
+        self._kinematics = kinematics
+        self._last: Moved | None = None
+
+    def head_has_moved(self) -> None:
+        """Forget the last posture's clearances; to be called after `Collision.set_head_pose`."""
+        self._last = None
+
+    def at(self, q: Sequence[float]) -> Moved:
+        """Return the links and clearances of a posture, wherever it may be."""
+        joints = tuple(q)
+        if self._last is None or self._last.q != joints:
+            links = self._kinematics.links(joints)
+            self._last = Moved(joints, links, self._collision.check(links))
+        return self._last
+
+    def move(self, q: Sequence[float], displacement: Vector, to_joints: ToJoints) -> Moved:
+        """Return where a motion from `q` ends that shall move the tip by `displacement`.
+
+        The tip stops 0.01 mm above the head and slides along it, and so does the shaft. Where a
+        link, the table or the arm itself is in the way, the motion is cut short. What overlaps
+        already may move, but not deeper.
+        """
+        start = self.at(q)
+        self._last = moved = self._move(start, displacement, to_joints)
+        return moved
+
+    def _move(self, start: Moved, displacement: Vector, to_joints: ToJoints) -> Moved:
+        tip = self._tip(start)
+        way = self._slide(start, tip, displacement)
+        for _ in range(_CORRECTIONS):
+            end = self.at(to_joints(subtract(way.position, tip)))
+            broken = _broken(start.clearance, end.clearance)
+            if broken not in ("tip", "shaft"):
+                break
+            corrected = _pushed_back(way, start, end, broken)
+            if corrected is None:
+                break
+            way = corrected
+        return end if not broken else self._shortened(start, end, broken)
+
+    def _slide(self, start: Moved, tip: Vector, displacement: Vector) -> Slide:
+        clearance, reach = start.clearance, length(displacement) + REST
+        above = tip[2] - self._collision.table_height
+        others = []
+        if clearance.shaft_m < reach:
+            gap = min(REST - clearance.shaft_m, RECOVERY)
+            others.append(_shifted(clearance.shaft.normal, gap, tip))
+        if above < reach:
+            others.append(_shifted((0.0, 0.0, 1.0), min(REST - above, RECOVERY), tip))
+        return slide(self._collision.nearest_to_point, tip, clearance.tip, displacement, others)
+
+    def _shortened(self, start: Moved, end: Moved, broken: str) -> Moved:
+        """Return the part of a motion that ends before the overlap, or the start."""
+        before = max(_value(start.clearance, broken), 0.0)
+        share = _CAUTION * before / (before - _value(end.clearance, broken))
+        if share > _SHORTEST_SHARE:
+            part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
+            if not _broken(start.clearance, part.clearance):
+                return Moved(part.q, part.link_to_world, part.clearance, broken)
+        return Moved(start.q, start.link_to_world, start.clearance, broken)
+
+    def _tip(self, moved: Moved) -> Vector:
+        return tuple(moved.link_to_world[self._kinematics.model.tip.name][:3, 3].tolist())
+
+
+def _broken(start: Clearance, end: Clearance) -> str:
+    """Return the first part that overlaps more than it may, "" where none does."""
+    for part in ("tip", "shaft", "links", "self", "table"):
+        allowed = -TOLERANCE if part in ("tip", "shaft") else 0.0
+        if _value(end, part) < min(_value(start, part), allowed):
+            return part
+    return ""
+
+
+def _value(clearance: Clearance, part: str) -> float:
+    return getattr(clearance, f"{part}_m")
+
+
+def _pushed_back(way: Slide, start: Moved, end: Moved, broken: str) -> Slide | None:
+    """Return the way with the overlap at its end taken back, None where that cannot be."""
+    nearest = end.clearance.tip if broken == "tip" else end.clearance.shaft
+    gap = min(REST, _value(start.clearance, broken) + RECOVERY) - nearest.distance_m
+    planes = (*way.half_spaces, _shifted(nearest.normal, gap, way.position))
+    position = nearest_inside(way.position, planes)
+    return None if position is None else Slide(position, planes)
+
+
+def _shifted(normal: Vector, gap: float, position: Vector) -> HalfSpace:
+    """Return the half-space that begins `gap` beyond a position along a normal."""
+    return HalfSpace(normal, dot(normal, position) + gap)

@@ -1,0 +1,119 @@
+"""The arm's capsules against the head, without asking again about those that are far."""
+
+from __future__ import annotations
+
+import math
+
+import fcl
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.collision.clearance import Nearest
+from rastrainer_simulator.collision.head_surface import HeadSurface
+from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
+from rastrainer_simulator.collision.thin_segment import thin_segment
+from rastrainer_simulator.vectors import Vector
+
+_RIGID = 1e-6
+_ROUNDING = 1e-9
+
+
+class HeadClearance:
+    """Distances of the tip, the tool and the links to a head that stands somewhere in World.
+
+    No point of a segment moves farther than the farther of its two ends, so a distance found
+    earlier, less that motion, is a lower bound now. Only capsules whose bound is below the best
+    distance found in this tick are queried. The answer is the same as that of querying all.
+    """
+
+    def __init__(self, head: HeadSurface, arm: ArmCapsules) -> None:
+        self._head = head
+        self._arm = arm
+        self._segments = [thin_segment(c.start, c.end) for c in arm.capsules]
+        self._known = np.zeros(len(arm.capsules))
+        self._known_at = np.zeros((len(arm.capsules), 2, 3))
+        self.set_pose(np.eye(4))
+
+    def set_pose(self, head_to_world: np.ndarray) -> None:
+        """Put the head where HeadToWorld (4, 4) float, m, says.
+
+        Raises:
+            InputError: the matrix is not a rigid transform.
+        """
+        pose = np.array(head_to_world, dtype=float)
+        if pose.shape != (4, 4) or not np.isfinite(pose).all():
+            raise InputError("HeadToWorld should be a 4 × 4 matrix of finite numbers.")
+        rotation = pose[:3, :3]
+        bent = np.abs(rotation @ rotation.T - np.eye(3)).max()
+        if bent > _RIGID or np.linalg.det(rotation) < 0.0 or (pose[3] != [0, 0, 0, 1]).any():
+            raise InputError("HeadToWorld should be rigid: a rotation and a translation only.")
+        self._world_to_head = np.eye(4)
+        self._world_to_head[:3, :3] = rotation.T
+        self._world_to_head[:3, 3] = -rotation.T @ pose[:3, 3]
+        self._head_to_world_rows = pose[:3].tolist()
+        self._world_to_head_rows = self._world_to_head[:3].tolist()
+        self._known[:] = -math.inf
+
+    def nearest_to_point(self, point: Vector) -> Nearest:
+        """Return the place of the head nearest to a point, World, m."""
+        return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
+
+    def nearest_to_arm(self, posed: PosedArm) -> tuple[Nearest, Nearest, str]:
+        """Return what is nearest to the shaft, what to the links, and the name of that link."""
+        moved = posed.ends - self._known_at
+        motion = np.sqrt(np.einsum("nki,nki->nk", moved, moved)).max(axis=1)
+        bounds = (self._known - motion - self._arm.radii - _ROUNDING).tolist()
+        count = self._arm.link_count
+        links, row = self._nearest(posed, bounds, range(count))
+        shaft, _ = self._nearest(posed, bounds, range(count, len(bounds)))
+        return shaft, links, self._arm.names[row]
+
+    def _nearest(self, posed: PosedArm, bounds: list[float], rows: range) -> tuple[Nearest, int]:
+        best, best_row = None, -1
+        for row in sorted(rows, key=bounds.__getitem__):
+            if best is not None and bounds[row] >= best.distance_m:
+                break
+            found = self._query(posed, row)
+            if best is None or found.distance_m < best.distance_m:
+                best, best_row = found, row
+        return self._in_world(best), best_row
+
+    def _query(self, posed: PosedArm, row: int) -> Nearest:
+        pose = self._world_to_head @ posed.poses[self._arm.body[row]]
+        segment = self._segments[row]
+        segment.setTransform(fcl.Transform(pose[:3, :3], pose[:3, 3]))
+        start, end = (_moved(self._world_to_head_rows, point) for point in posed.ends[row].tolist())
+        radius = self._arm.capsules[row].radius
+        found = self._head.nearest_to_segment(segment, start, end, radius)
+        self._known[row] = found.distance_m + radius
+        self._known_at[row] = posed.ends[row]
+        return found
+
+    def _in_world(self, nearest: Nearest) -> Nearest:
+        return Nearest(
+            nearest.distance_m,
+            _moved(self._head_to_world_rows, nearest.point),
+            _turned(self._head_to_world_rows, nearest.normal),
+            nearest.triangle,
+        )
+
+
+def _moved(rows: list[list[float]], point: Vector) -> Vector:
+    """Return a point under the rigid transform with these three rows."""
+    x, y, z = point
+    a, b, c = rows
+    return (
+        a[0] * x + a[1] * y + a[2] * z + a[3],
+        b[0] * x + b[1] * y + b[2] * z + b[3],
+        c[0] * x + c[1] * y + c[2] * z + c[3],
+    )
+
+
+def _turned(rows: list[list[float]], direction: Vector) -> Vector:
+    x, y, z = direction
+    a, b, c = rows
+    return (
+        a[0] * x + a[1] * y + a[2] * z,
+        b[0] * x + b[1] * y + b[2] * z,
+        c[0] * x + c[1] * y + c[2] * z,
+    )

@@ -1,0 +1,90 @@
+"""Exact signed distances to the head, in the head's frame."""
+
+from __future__ import annotations
+
+import math
+
+import fcl
+import numpy as np
+
+from rastrainer_simulator.collision.clearance import Nearest
+from rastrainer_simulator.collision.closed_surface import ClosedSurface
+from rastrainer_simulator.vectors import Vector
+
+_REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
+# Nearer than this, the line to the nearest point has no direction of its own.
+_TOUCHING = 1e-9
+_BASE_THICKNESS = 0.001
+
+
+class HeadSurface:
+    """The head as a bounding volume hierarchy of its triangles, and as a closed surface.
+
+    fcl gives the exact distance without sign; the sign is that of the pseudonormal at the nearest
+    point. All lengths in m, all points in the head's frame.
+    """
+
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
+        """Take (n, 3) float vertices and (m, 3) int triangles.
+
+        Raises:
+            InputError: the surface is not closed, or holds unusable numbers.
+        """
+        self._surface = ClosedSurface(vertices, triangles)
+        vertices, triangles = self._surface.vertices, self._surface.triangles
+        base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]
+        self.base = (base.min(axis=0) + base.max(axis=0)) / 2.0
+        """(3,) float: the middle of the lowest millimetre, on which the head stands."""
+        mesh = fcl.BVHModel()
+        mesh.beginModel(len(triangles), len(vertices))
+        mesh.addSubModel(vertices, triangles)
+        mesh.endModel()
+        self._head = fcl.CollisionObject(mesh)
+        # A radius of zero makes fcl's sphere an exact point.
+        self._point = fcl.CollisionObject(fcl.Sphere(0.0))
+
+    def nearest_to_point(self, point: Vector) -> Nearest:
+        """Return the nearest place of the surface, the distance below zero inside the head."""
+        self._point.setTranslation(np.array(point))
+        distance, on_head, triangle = self._query(self._point)
+        return self._signed(point, distance, on_head, triangle)
+
+    def nearest_to_segment(
+        self, segment: fcl.CollisionObject, start: Vector, end: Vector, radius: float
+    ) -> Nearest:
+        """Return the place of the surface nearest to a capsule.
+
+        `segment` is its axis from `start` to `end`, its pose already set. Where the axis itself
+        goes through the surface, the distance is −radius: at least so deep is the capsule.
+        """
+        distance, on_head, triangle = self._query(segment)
+        found = self._signed(_foot(start, end, on_head), distance, on_head, triangle)
+        return Nearest(found.distance_m - radius, found.point, found.normal, triangle)
+
+    def _query(self, other: fcl.CollisionObject) -> tuple[float, np.ndarray, int]:
+        result = fcl.DistanceResult()
+        distance = fcl.distance(self._head, other, _REQUEST, result)
+        return max(distance, 0.0), result.nearest_points[0], result.b1
+
+    def _signed(
+        self, point: Vector, distance: float, on_head: np.ndarray, triangle: int
+    ) -> Nearest:
+        nx, ny, nz = self._surface.pseudonormal(triangle, on_head)
+        x, y, z = foot = tuple(on_head.tolist())
+        dx, dy, dz = point[0] - x, point[1] - y, point[2] - z
+        if distance < _TOUCHING:
+            size = math.sqrt(nx * nx + ny * ny + nz * nz)
+            return Nearest(distance, foot, (nx / size, ny / size, nz / size), triangle)
+        if nx * dx + ny * dy + nz * dz < 0.0:
+            distance = -distance
+        return Nearest(distance, foot, (dx / distance, dy / distance, dz / distance), triangle)
+
+
+def _foot(start: Vector, end: Vector, point: np.ndarray) -> Vector:
+    """Return the point of the segment from `start` to `end` that is nearest to `point`."""
+    (ax, ay, az), (bx, by, bz), (px, py, pz) = start, end, point.tolist()
+    ux, uy, uz = bx - ax, by - ay, bz - az
+    size = ux * ux + uy * uy + uz * uz
+    share = ((px - ax) * ux + (py - ay) * uy + (pz - az) * uz) / size if size > 0.0 else 0.0
+    share = min(max(share, 0.0), 1.0)
+    return (ax + share * ux, ay + share * uy, az + share * uz)

@@ -1,0 +1,51 @@
+"""Where the arm's capsules are in one posture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer_simulator.collision.robot_shape import RobotShape
+from rastrainer_simulator.vectors import Vector
+
+
+@dataclass(frozen=True)
+class PosedArm:
+    """The arm's n capsules in World, m; the rows are those of `ArmCapsules`."""
+
+    poses: np.ndarray  # (links + 1, 4, 4) float: LinkToWorld of each link, ToolTipToWorld last
+    ends: np.ndarray  # (n, 2, 3) float: start and end of each axis
+    middles: np.ndarray  # (n, 3) float
+    tip: Vector
+
+
+class ArmCapsules:
+    """The capsules of a robot in one row: those of the links, from the base, then the tool's."""
+
+    def __init__(self, shape: RobotShape) -> None:
+        bodies = (*shape.links, shape.tool)
+        rows = [(row, capsule) for row, body in enumerate(bodies) for capsule in body.capsules]
+        self.capsules = tuple(capsule for _, capsule in rows)
+        self.body = np.array([row for row, _ in rows])
+        self.names = tuple(bodies[row].name for row in self.body)
+        self.joints = np.array([bodies[row].joint for row in self.body])
+        self.radii = np.array([capsule.radius for capsule in self.capsules])
+        self.link_count = len(rows) - len(shape.tool.capsules)
+        """How many of the capsules belong to links; the rest are the tool's."""
+        starts = np.array([capsule.start for capsule in self.capsules])
+        ends = np.array([capsule.end for capsule in self.capsules])
+        self.reach = np.linalg.norm(ends - starts, axis=1) / 2.0 + self.radii
+        """(n,) float: radius of the sphere about each capsule, m."""
+        self._frames = (*(link.name for link in shape.links), shape.tip_name)
+        self._ends = np.ones((len(rows), 4, 2))
+        self._ends[:, :3] = np.stack([starts, ends], axis=2)
+
+    def pose(self, link_to_world: Mapping[str, np.ndarray]) -> PosedArm:
+        """Return the capsules in World; `link_to_world` holds (4, 4) float by link, the tip too."""
+        poses = np.array([link_to_world[name] for name in self._frames])
+        ends = (poses[self.body] @ self._ends)[:, :3].swapaxes(1, 2)
+        return PosedArm(
+            poses, ends, (ends[:, 0] + ends[:, 1]) / 2.0, tuple(poses[-1, :3, 3].tolist())
+        )

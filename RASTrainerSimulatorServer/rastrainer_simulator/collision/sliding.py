@@ -1,0 +1,95 @@
+"""How far the tip may go: up to the surface, and along it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from rastrainer_simulator.collision.clearance import Nearest
+from rastrainer_simulator.collision.half_spaces import HalfSpace, nearest_inside
+from rastrainer_simulator.vectors import Vector, add, distance, dot, length, shortened, subtract
+
+REST = 1e-5
+"""Clearance, m, at which a pressed tip rests: it never crosses, yet counts as touching."""
+
+LONGEST_STEP = 5e-4
+"""The tip passes near surfaces in steps, m, so short that it cannot jump through an ear."""
+
+RECOVERY = 2e-4
+"""How far, m a tick, a tip that is inside (the head was put there) is moved toward the outside."""
+
+_TRIALS = 5
+_STANDSTILL = 1e-9
+_EXACT = 1e-8
+
+
+@dataclass(frozen=True)
+class Slide:
+    """Where the tip may go, and the planes (World) that limit it there."""
+
+    position: Vector
+    half_spaces: tuple[HalfSpace, ...]
+
+
+def slide(
+    nearest_to_point: Callable[[Vector], Nearest],
+    tip: Vector,
+    here: Nearest,
+    displacement: Vector,
+    others: Sequence[HalfSpace],
+) -> Slide:
+    """Return the way of a tip at `tip` (World, m) that shall move by `displacement`.
+
+    `here` is the head's surface nearest to the tip, `others` what limits the tip besides. At each
+    step the tip goes to the point nearest to its goal that is on the free side of the surface's
+    tangent planes: at the tip, and wherever a trial ended inside. In a groove two planes hold it,
+    in a pit three, so that it comes to rest there instead of jumping from wall to wall (the god
+    object of Zilles and Salisbury 1995, 10.1109/IROS.1995.525876).
+    """
+    goal = add(tip, displacement)
+    rest = min(REST, here.distance_m + RECOVERY)
+    position, planes = tip, tuple(others)
+    remaining = math.ceil(length(displacement) / LONGEST_STEP)
+    while remaining > 0 and position != goal:
+        free = here.distance_m - rest
+        way = shortened(subtract(goal, position), max(free, LONGEST_STEP))
+        planes = (_tangent(here, rest), *others)
+        reached = nearest_inside(add(position, way), planes)
+        if reached is None:
+            break
+        if reached == goal and distance(position, goal) <= free:
+            return Slide(goal, planes)
+        found = _corrected(nearest_to_point, add(position, way), reached, planes, rest)
+        if found is None:
+            break
+        reached, here, planes = found
+        moved = distance(position, reached)
+        if moved < _STANDSTILL:
+            break
+        remaining -= max(1, int(moved / LONGEST_STEP))
+        position = reached
+    return Slide(position, planes)
+
+
+def _corrected(
+    nearest_to_point: Callable[[Vector], Nearest],
+    goal: Vector,
+    trial: Vector,
+    planes: tuple[HalfSpace, ...],
+    rest: float,
+) -> tuple[Vector, Nearest, tuple[HalfSpace, ...]] | None:
+    """Return a trial, moved by further tangent planes until it is outside the surface."""
+    for _ in range(_TRIALS):
+        there = nearest_to_point(trial)
+        if there.distance_m >= rest - _EXACT:
+            return trial, there, planes
+        planes = (*planes, _tangent(there, rest))
+        trial = nearest_inside(goal, planes)
+        if trial is None:
+            break
+    return None
+
+
+def _tangent(nearest: Nearest, rest: float) -> HalfSpace:
+    return HalfSpace(nearest.normal, dot(nearest.normal, nearest.point) + rest)
