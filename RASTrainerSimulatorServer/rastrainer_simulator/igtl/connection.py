@@ -84,17 +84,24 @@ class Connection(asyncio.BufferedProtocol):
 
     def drop(self, reason: str = "") -> None:
         """End the connection at once, whatever still waits; no reason is no trouble."""
-        if self._transport is not None and not self._transport.is_closing():
-            self._reason = reason
+        if self._transport is not None:
+            self._reason = self._reason or reason
             self._transport.abort()
+
+    def finish(self) -> None:
+        """End the connection once the peer has taken what still waits."""
+        self._flush()
+        if self._is_open:
+            self._transport.close()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Set the socket up and report."""
         self._transport = transport
         transport.set_write_buffer_limits(high=self._limits.buffer_bytes)
         _set_up_socket(transport.get_extra_info("socket"), self._limits)
-        host, port = transport.get_extra_info("peername")[:2]
-        self.name = f"{host}:{port}"
+        # A peer that is gone already has no address.
+        address = transport.get_extra_info("peername") or ("a client",)
+        self.name = ":".join(str(part) for part in address[:2])
         self._open_soon = self._loop.call_later(self._limits.first_message_s, self._open)
         self._owner.connected(self)
 
@@ -139,6 +146,10 @@ class Connection(asyncio.BufferedProtocol):
         self.closed.set()
         self._owner.disconnected(self, self._reason or (str(error) if error else ""))
 
+    @property
+    def _is_open(self) -> bool:
+        return self._transport is not None and not self._transport.is_closing()
+
     def _open(self) -> None:
         if self._open_soon is not None:
             self._open_soon.cancel()
@@ -155,7 +166,7 @@ class Connection(asyncio.BufferedProtocol):
     def _flush(self) -> None:
         """Write all that gathered since the last round of the event loop in few pieces."""
         self._flush_is_due = False
-        while self._queue and not self._is_paused and self._transport is not None:
+        while self._queue and not self._is_paused and self._is_open:
             self._transport.write(self._queue.take(self._limits.buffer_bytes))
 
     def _watch_half_message(self) -> None:

@@ -14,6 +14,7 @@ from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.link_log import LinkLog
 
 _CONNECT_TIMEOUT_S = 5.0
+_CLOSE_TIMEOUT_S = 0.5
 
 
 class LinkHandler(Protocol):
@@ -79,13 +80,18 @@ class IgtlServer:
             await asyncio.sleep(self.limits.reconnect_s)
 
     async def close(self) -> None:
-        """Stop listening and end every connection."""
+        """Stop listening, let the clients have what still waits for them, and end."""
         if self._listener is not None:
             self._listener.close()
         connections = tuple(self._connections)
         for connection in connections:
+            connection.finish()
+        closed = [asyncio.create_task(connection.closed.wait()) for connection in connections]
+        if closed:
+            await asyncio.wait(closed, timeout=_CLOSE_TIMEOUT_S)
+        for connection in connections:
             connection.drop()
-        await asyncio.gather(*(connection.closed.wait() for connection in connections))
+        await asyncio.gather(*closed)
         self._log.close()
 
     def connected(self, connection: Connection) -> None:

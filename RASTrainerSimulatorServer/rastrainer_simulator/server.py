@@ -1,0 +1,177 @@
+"""The simulator's process: the control loop, its clients and the clean end of both."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import gc
+import itertools
+import logging
+import secrets
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import RASTrainerError
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.igtl.limits import Limits
+from rastrainer_simulator.igtl.simulator_link import SimulatorLink
+from rastrainer_simulator.igtl.state_feed import StateFeed
+from rastrainer_simulator.scenario_loader import ScenarioLoader
+from rastrainer_simulator.setup import load_setup
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.state import Answer
+
+_log = logging.getLogger(__name__)
+
+_LOOK_AFTER_LOOP_S = 1.0
+
+
+@dataclass(frozen=True)
+class ServerOptions:
+    """What the simulator is started with.
+
+    Attributes:
+        records: folder of the trials' journals.
+        host: address to listen on.
+        port: to listen on; 0 is any free one.
+        connect_to: host and port of a listening Slicer, in place of listening.
+        speed: simulated seconds in a second.
+        seed: of the heads' poses in the trials; by default one that nobody can guess.
+        scenario: folder; None is the one that comes with RASTrainer.
+        robot_meshes: folder of the robot's official meshes; None is our own.
+        limits: what one client may cost.
+    """
+
+    records: Path
+    host: str = DEFAULT_HOST
+    port: int = DEFAULT_PORT
+    connect_to: tuple[str, int] | None = None
+    speed: float = 1.0
+    seed: int = field(default_factory=lambda: secrets.randbits(63))
+    scenario: Path | None = None
+    robot_meshes: Path | None = None
+    limits: Limits = field(default_factory=Limits)
+
+
+class SimulatorServer:
+    """One simulation and everyone who watches or commands it."""
+
+    def __init__(self, options: ServerOptions):
+        """Load the scenario and the robot, which takes about a second.
+
+        Raises:
+            InputError: one of their files cannot be used.
+        """
+        self._options = options
+        self._seeds = itertools.count(options.seed)
+        self._control_loop = ControlLoop(
+            self._make_simulation(options.scenario), options.records, speed=options.speed
+        )
+        self._scenarios = ScenarioLoader(
+            self._control_loop, self._make_simulation, _is_loopback(options.host)
+        )
+
+    async def run(self, on_ready: Callable[[str], None]) -> None:
+        """Serve until SIGTERM or Ctrl-C; `on_ready` is told once where.
+
+        Raises:
+            InputError: the address cannot be listened on.
+            RASTrainerError: the control loop has broken down.
+        """
+        for problem in self._control_loop.problems:
+            _log.warning("%s", problem)
+        loop = asyncio.get_running_loop()
+        link = SimulatorLink(
+            latest=lambda: self._control_loop.latest,
+            submit=self._submit,
+            unacknowledged=self._control_loop.unacknowledged,
+            limits=self._options.limits,
+        )
+        feed = StateFeed(link.publisher.is_due, link.tell, loop)
+        unsubscribe = self._control_loop.subscribe(feed)
+        tasks = [loop.create_task(link.beat(self._details))]
+        with _stop_on_signals(loop) as stop:
+            self._control_loop.start()
+            try:
+                on_ready(await self._open(link, tasks))
+                await self._until(stop)
+            finally:
+                for task in tasks:
+                    task.cancel()
+                unsubscribe()
+                # What was commanded is still answered, and then the connections are closed.
+                await loop.run_in_executor(None, self._stop)
+                await link.server.close()
+
+    def _make_simulation(self, scenario: Path | None) -> Simulation:
+        setup = load_setup(scenario, robot_meshes=self._options.robot_meshes)
+        simulation = Simulation(setup, next(self._seeds))
+        # What was loaded stays: no garbage collection needs to look at it between two ticks.
+        gc.collect()
+        gc.freeze()
+        return simulation
+
+    async def _open(self, link: SimulatorLink, tasks: list[asyncio.Task[None]]) -> str:
+        """Listen, or connect to a listening Slicer; return where."""
+        if self._options.connect_to is None:
+            port = await link.server.listen(self._options.host, self._options.port)
+            return f"ready on {self._options.host}:{port}"
+        host, port = self._options.connect_to
+        tasks.append(asyncio.create_task(link.server.keep_connected_to(host, port)))
+        return f"ready; it connects to {host}:{port}"
+
+    async def _until(self, stop: asyncio.Event) -> None:
+        while not stop.is_set():
+            with contextlib.suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(stop.wait(), _LOOK_AFTER_LOOP_S)
+            if not self._control_loop.is_running:
+                raise RASTrainerError("The control loop has broken down: the log says why.")
+
+    def _stop(self) -> None:
+        self._scenarios.close()
+        self._control_loop.stop()
+
+    def _submit(self, name: str, arguments: Mapping[str, Any], sender: str) -> Future[Answer]:
+        if name == CommandName.LOAD_SCENARIO:
+            return self._scenarios.load(arguments["folder"])
+        return self._control_loop.submit(name, arguments, sender)
+
+    def _details(self) -> dict[str, Any]:
+        """Return what the heartbeat tells of the control loop."""
+        statistics = self._control_loop.statistics
+        return {
+            "ticks": statistics.ticks,
+            "lateTicks": statistics.late,
+            "skippedTicks": statistics.skipped,
+            "worstDelayMs": round(1000.0 * statistics.worst_delay_s, 3),
+        }
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+@contextlib.contextmanager
+def _stop_on_signals(loop: asyncio.AbstractEventLoop) -> Iterator[asyncio.Event]:
+    """Set the event on SIGTERM and Ctrl-C, in place of what these do otherwise."""
+    stop = asyncio.Event()
+
+    def ask(*_signal: object) -> None:
+        loop.call_soon_threadsafe(stop.set)
+
+    # Not by the event loop's own means, which Windows lacks.
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,104 @@
+"""`rastrainer simulator`: the robot, the head and the trial, for Slicer and the views to join."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
+
+FASTEST = 1000.0
+LARGEST_SEED = 2**63 - 1
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "simulator",
+        help="run the simulator, which Slicer and the views connect to",
+        description="Serves OpenIGTLink until Ctrl-C. Not for clinical use.",
+    )
+    parser.add_argument(
+        "--host", default=DEFAULT_HOST, help=f"address to listen on (default: {DEFAULT_HOST})"
+    )
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=DEFAULT_PORT,
+        help=f"port to listen on, 0 for any free one (default: {DEFAULT_PORT})",
+    )
+    parser.add_argument(
+        "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
+    )
+    parser.add_argument(
+        "--speed", type=float, default=1.0, help="simulated seconds a second (default: 1)"
+    )
+    parser.add_argument(
+        "--seed", type=int, help="of the heads' poses (default: one that nobody can guess)"
+    )
+    parser.add_argument(
+        "--records",
+        type=Path,
+        metavar="DIR",
+        default=Path.home() / "RASTrainer" / "trials",
+        help="folder of the trials' journals (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--scenario", type=Path, metavar="DIR", help="a scenario of your own (default: Colin27)"
+    )
+    parser.add_argument(
+        "--robot-meshes", type=Path, metavar="DIR", help="the robot's official meshes"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the simulator until it is asked to stop and return the exit status.
+
+    Raises:
+        InputError: an argument, a file or the address cannot be used.
+    """
+    import asyncio
+    import logging
+
+    options = _options(arguments)
+    logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    # Only here: the robot and the scenario take time to import.
+    from rastrainer_simulator.server import SimulatorServer
+
+    server = SimulatorServer(options)
+    asyncio.run(server.run(lambda where: print(f"RASTrainer simulator {where}", flush=True)))
+    return 0
+
+
+def _options(arguments: argparse.Namespace):
+    from rastrainer_simulator.server import ServerOptions
+
+    if not 0 <= arguments.port < 65536:
+        raise InputError("--port must be a number from 0 to 65535.")
+    if not 0.0 < arguments.speed <= FASTEST:
+        raise InputError(f"--speed must be above 0 and at most {FASTEST:g}.")
+    chosen = {}
+    if arguments.seed is not None:
+        if not 0 <= arguments.seed <= LARGEST_SEED:
+            raise InputError(f"--seed must be from 0 to {LARGEST_SEED}.")
+        chosen["seed"] = arguments.seed
+    if arguments.connect is not None:
+        chosen["connect_to"] = _address(arguments.connect)
+    return ServerOptions(
+        records=arguments.records,
+        host=arguments.host,
+        port=arguments.port,
+        speed=arguments.speed,
+        scenario=arguments.scenario,
+        robot_meshes=arguments.robot_meshes,
+        **chosen,
+    )
+
+
+def _address(text: str) -> tuple[str, int]:
+    host, _colon, port = text.rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise InputError("--connect must be HOST:PORT, such as 127.0.0.1:18945.")
+    return host, int(port)
