@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.point_list import COORDINATE_LIMIT_MM
 from rastrainer.registration_fits import AFFINE, KINDS, MINIMUM_POINTS
 
-COORDINATE_LIMIT_MM = 1e6
 POINT_LIMIT = 1000
 FLAT = 1e-3
 """A set is taken for a line (a plane) when its extent across is this small against that along."""

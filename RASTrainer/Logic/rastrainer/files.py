@@ -1,0 +1,121 @@
+"""Reading files that may hold anything, and writing files that are whole or not there."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import shutil
+import stat
+import uuid
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+
+
+def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
+    """Return the UTF-8 text of a file, without its byte order mark.
+
+    Raises:
+        InputError: no such file, no regular file, not readable, larger than the limit (told before
+            it is read), or not UTF-8 text.
+    """
+    try:
+        # Opening a pipe would wait for its writer.
+        flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+        with os.fdopen(os.open(path, flags), "rb") as file:
+            _check_kind(path, os.fstat(file.fileno()), limit_bytes)
+            content = file.read(limit_bytes + 1)
+    except InputError:
+        raise
+    except FileNotFoundError:
+        raise InputError(f"There is no file {path}.") from None
+    except IsADirectoryError:
+        raise InputError(f"{path} is a folder; a file is needed.") from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"The file {_printable(path)} cannot be read: {_reason(error)}.") from None
+    if len(content) > limit_bytes:
+        raise _too_large(path, limit_bytes)
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"The file {path} is not UTF-8 text.") from None
+    if "\0" in text:
+        raise InputError(f"The file {path} is not a text file.")
+    return text
+
+
+def read_json(path: str | os.PathLike[str], limit_bytes: int) -> Any:
+    """Return the decoded JSON of a file; its numbers are finite.
+
+    Raises:
+        InputError: as `read_text`, or the text is not JSON, too deeply nested or holds NaN.
+    """
+    text = read_text(path, limit_bytes)
+    try:
+        return json.loads(text, parse_constant=_refuse_constant, parse_float=_finite_float)
+    except (ValueError, RecursionError):
+        raise InputError(f"The file {path} is not JSON with finite numbers.") from None
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a UTF-8 text file as a whole: after a crash the old or the new one is there.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    target = Path(path)
+    partial = target.with_name(f".{uuid.uuid4().hex}.partial")
+    try:
+        with partial.open("x", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        if target.exists():
+            shutil.copymode(target, partial)
+        partial.replace(target)
+    except (OSError, ValueError) as error:
+        with contextlib.suppress(OSError, ValueError):
+            partial.unlink()
+        raise InputError(
+            f"The file {_printable(path)} cannot be written: {_reason(error)}."
+        ) from None
+
+
+def _check_kind(path: object, status: os.stat_result, limit_bytes: int) -> None:
+    if stat.S_ISDIR(status.st_mode):
+        raise InputError(f"{path} is a folder; a file is needed.")
+    if not stat.S_ISREG(status.st_mode):
+        raise InputError(f"{path} is not a regular file.")
+    if status.st_size > limit_bytes:
+        raise _too_large(path, limit_bytes)
+    if status.st_size == 0:
+        raise InputError(f"The file {path} is empty.")
+
+
+def _too_large(path: object, limit_bytes: int) -> InputError:
+    return InputError(
+        f"The file {path} is larger than {limit_bytes / 2**20:g} MiB, the most that is read."
+    )
+
+
+def _reason(error: Exception) -> str:
+    strerror = getattr(error, "strerror", None)
+    return strerror.lower() if strerror else "its name is not valid"
+
+
+def _printable(path: object) -> str:
+    return ascii(str(path)) if not str(path).isprintable() else str(path)
+
+
+def _refuse_constant(_word: str) -> float:
+    raise ValueError
+
+
+def _finite_float(digits: str) -> float:
+    value = float(digits)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
