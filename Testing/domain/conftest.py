@@ -2,6 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import settings
+
+settings.register_profile("seeded", derandomize=True, deadline=None, max_examples=300)
+settings.load_profile("seeded")
 
 
 def random_rotation(rng):
