@@ -1,0 +1,126 @@
+"""Motion metrics agree with values that others computed or that follow by hand."""
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from rastrainer.errors import InputError
+from rastrainer.metrics import idle_time, movements, path_efficiency, path_length
+from rastrainer.signals import low_pass, resample, speeds
+from rastrainer.smoothness import log_dimensionless_jerk, sparc
+from rastrainer.throughput import effective_throughput
+
+RATE_HZ = 100.0
+BELL = np.exp(-5 * np.arange(-1, 1, 0.01) ** 2)
+
+
+def test_sparc_of_the_published_example():
+    """Balasubramanian et al. 2015: fc 10 Hz, threshold 0.05, pad level 4."""
+    assert sparc(BELL, RATE_HZ) == pytest.approx(-1.41403, abs=5e-6)
+
+
+def test_log_dimensionless_jerk_of_the_published_example():
+    assert log_dimensionless_jerk(BELL, RATE_HZ) == pytest.approx(-5.81636, abs=5e-6)
+
+
+def test_log_dimensionless_jerk_of_a_minimum_jerk_reach_is_the_analytical_one():
+    t = np.linspace(0, 1, 20_001)
+    speed = 30 * t**2 - 60 * t**3 + 30 * t**4
+    assert log_dimensionless_jerk(speed, 20_000) == pytest.approx(-5.322, abs=1e-3)
+
+
+@pytest.mark.parametrize("smoothness", [sparc, log_dimensionless_jerk])
+def test_smoothness_does_not_depend_on_size_and_falls_with_submovements(smoothness):
+    halting = BELL * (1 + 0.5 * np.sin(np.linspace(0, 40, len(BELL))))
+    assert smoothness(BELL * 7, RATE_HZ) == pytest.approx(smoothness(BELL, RATE_HZ))
+    assert smoothness(halting, RATE_HZ) < smoothness(BELL, RATE_HZ) - 0.1
+
+
+@pytest.mark.parametrize("speed", [np.zeros(50), np.ones(3), np.full(50, np.nan)])
+def test_smoothness_of_no_movement_is_refused(speed):
+    for smoothness in (sparc, log_dimensionless_jerk):
+        with pytest.raises(InputError, match="at least four samples"):
+            smoothness(speed, RATE_HZ)
+
+
+def test_low_pass_agrees_with_scipys_zero_phase_butterworth():
+    rng = np.random.default_rng(0)
+    t = np.arange(0, 10, 1 / RATE_HZ)
+    values = np.column_stack([np.sin(2 * np.pi * t), 50 * t + rng.normal(size=len(t))])
+    expected = scipy.signal.sosfiltfilt(
+        scipy.signal.butter(2, 6.0, fs=RATE_HZ, output="sos"), values, axis=0
+    )
+    difference = low_pass(values, RATE_HZ, 6.0) - expected
+    assert np.abs(difference[50:-50]).max() < 0.05
+
+
+def test_low_pass_keeps_lines_and_removes_tremor():
+    t = np.arange(0, 5, 1 / RATE_HZ)
+    line = np.column_stack([3 * t - 1, np.full_like(t, 7.0)])
+    np.testing.assert_allclose(low_pass(line, RATE_HZ), line, atol=1e-9)
+    tremor = np.sin(2 * np.pi * 25 * t)[:, None]
+    assert np.abs(low_pass(tremor, RATE_HZ)[100:-100]).max() < 0.005
+
+
+def test_resampling_gives_equal_steps_on_the_recorded_lines():
+    times = np.array([1.0, 1.1, 1.5, 2.0])
+    values = np.column_stack([10 * times, -times])
+    even = resample(times, values, 20.0)
+    np.testing.assert_allclose(even[:, 0], 10 * (1 + np.arange(21) / 20))
+    with pytest.raises(InputError, match="times rise"):
+        resample(np.array([0.0, 0.0]), np.zeros((2, 3)), 20.0)
+
+
+def test_the_speed_of_uniform_motion_is_its_speed():
+    t = np.arange(0, 1, 1 / RATE_HZ)
+    np.testing.assert_allclose(speeds(np.outer(t, [3.0, 0.0, 4.0]), RATE_HZ), 5.0)
+
+
+def test_path_length_and_efficiency():
+    square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], dtype=float)
+    assert path_length(square) == 30.0
+    assert path_efficiency(30.0, 15.0) == 0.5
+    with pytest.raises(InputError, match="two lengths above 0"):
+        path_efficiency(0.0, 1.0)
+
+
+def test_idle_time_counts_rests_longer_than_the_threshold_only():
+    speed = np.full(1000, 20.0)
+    speed[100:125] = 0.0
+    speed[200:260] = 0.5
+    speed[940:] = 0.0
+    assert idle_time(speed, RATE_HZ) == pytest.approx(1.2)
+
+
+def test_movements_run_from_touch_to_touch():
+    times = np.arange(0, 10, 0.5)
+    parts = movements(times, np.array([1.0, 3.0, 3.7, 9.5]))
+    assert [(times[p][0], times[p][-1]) for p in parts] == [(1.0, 3.0), (3.0, 3.5), (4.0, 9.5)]
+    with pytest.raises(InputError, match="within the recorded trajectory"):
+        movements(times, np.array([1.0, 12.0]))
+
+
+def test_throughput_follows_iso_9241_411_along_the_task_axis():
+    targets = np.array([[0, 0, 0], [100, 0, 0], [100, 60, 0], [100, 60, 80]], dtype=float)
+    touches = targets + np.array([[0, 0, 0], [1, 5, 5], [5, -1, 5], [5, 5, 3]])
+    result = effective_throughput(targets, touches, np.array([0.0, 2.0, 3.0, 5.0]))
+    width = 4.133 * np.std([1, -1, 3], ddof=1)
+    distances = np.array([101.0, 54.0, 78.0])
+    difficulties = np.log2(distances / width + 1)
+    assert result.effective_width_mm == pytest.approx(width)
+    np.testing.assert_allclose(result.effective_distances_mm, distances)
+    assert result.bits_per_s == pytest.approx(np.mean(difficulties / [2.0, 1.0, 2.0]))
+
+
+@pytest.mark.parametrize(
+    ("touches", "times", "words"),
+    [
+        (np.zeros((3, 3)), [0, 1, 2, 3], "at least four touches"),
+        (np.eye(4, 3), [0, 1, 1, 2], "times rise"),
+        (np.arange(12.0).reshape(4, 3), [0, 1, 2, 3], "scatter"),
+    ],
+)
+def test_throughput_without_movements_is_refused(touches, times, words):
+    targets = np.arange(12.0).reshape(4, 3)
+    with pytest.raises(InputError, match=words):
+        effective_throughput(targets, touches, np.array(times, dtype=float))
