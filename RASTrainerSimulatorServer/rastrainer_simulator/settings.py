@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any, TypeVar, get_type_hints
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.collision.proximity import ProximitySettings
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
 from rastrainer_simulator.training.training import TrainingSettings
@@ -22,12 +23,16 @@ class SimulationSettings:
     Attributes:
         teleoperation: how the arm answers to the operator.
         training: what counts as a touch.
+        proximity: where proximity and contact begin and end.
+        start_height: of the tip above the head's target when a trial starts, m.
         axes: whose right, forward and up the sticks follow.
         camera: the view at the start.
     """
 
     teleoperation: TeleoperationSettings = dataclasses.field(default_factory=TeleoperationSettings)
     training: TrainingSettings = dataclasses.field(default_factory=TrainingSettings)
+    proximity: ProximitySettings = dataclasses.field(default_factory=ProximitySettings)
+    start_height: float = 0.25
     axes: AxesChoice = AxesChoice.CAMERA
     camera: str = "close-up"
 

@@ -6,12 +6,18 @@ import numpy as np
 
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
-from rastrainer_simulator.arm import Arm, Posture
 from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.contact import Contact
+from rastrainer_simulator.collision.proximity import next_proximity
+from rastrainer_simulator.collision.table_clearance import Surroundings
+from rastrainer_simulator.joint_motion import JointMotion, Joints
 from rastrainer_simulator.motion_command import MM, commanded_motion
 from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer_simulator.posture import Postures
+from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene_view import SceneView
 from rastrainer_simulator.setup import SimulationSetup
+from rastrainer_simulator.start_posture import start_joints
 from rastrainer_simulator.state import (
     Answer,
     Event,
@@ -24,12 +30,11 @@ from rastrainer_simulator.state import (
 )
 from rastrainer_simulator.teleoperation.commanded_motion import Outcome
 from rastrainer_simulator.teleoperation.teleoperation import Teleoperation, Wish
-from rastrainer_simulator.teleoperation.tool_steering import Surface
 from rastrainer_simulator.training.phase_rules import refusal
 from rastrainer_simulator.training.texts import Texts
 from rastrainer_simulator.training.training import Moment, Reply, Training
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import add
+from rastrainer_simulator.vectors import Vector, add
 
 
 class Simulation:
@@ -48,11 +53,12 @@ class Simulation:
         self._training = Training(setup.scenario, seed, settings.training, self._texts)
         self._view = SceneView(setup.scenario, settings.camera, settings.axes)
         self._teleoperation = Teleoperation(settings.teleoperation)
-        self._arm = Arm(setup.robot)
-        head = read_head_mesh(setup.scenario.head_mesh)
-        self._collision = Collision(setup.robot, head.vertices / MM, head.triangles)
+        self._joint_motion = JointMotion(setup.robot)
+        self._collision = _collision(setup)
+        self._contact = Contact(self._collision, make_kinematics(setup.robot))
+        self._postures = Postures(setup.robot)
+        self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
         self._operator = ""
-        self._is_within_reach = True
         self._put_in_place()
         self.state = self._state(0, 0.0, Motion.NONE)
 
@@ -129,36 +135,41 @@ class Simulation:
             stopped = self._teleoperation.stop()
             return Wish(Motion.NONE, ended=Outcome.STOPPED if stopped else None)
         axes = self._view.stick_axes
-        return self._teleoperation.step(dt, operator_input, self._posture.tip, axes, self._surface)
+        posture = self._posture
+        return self._teleoperation.step(dt, operator_input, posture.tip, axes, posture.surface)
 
     def _put_in_place(self) -> None:
-        """Put the head where the trial has it, and the arm at home."""
+        """Put the head where the trial has it, and the arm where trials start."""
         self._placed = self._training.truth
         head_to_world = np.array(self._placed.head_to_world)
         head_to_world[:3, 3] /= MM
         self._collision.set_head_pose(head_to_world)
+        self._contact.head_has_moved()
+        self._posture = self._postures.of(self._contact.at(self._start))
+        self._proximity = Proximity.FREE
+        self._is_within_reach = True
         self._teleoperation.stop()
         self._view.planned_target = None
-        self._is_within_reach = True
-        self._take(self._arm.home)
 
     def _move(self, dt: float, wish: Wish, sim_time: float) -> list[Event]:
-        """Follow the wish as far as arm and head allow."""
-        position = add(self._posture.tip.position, wish.displacement)
-        q, is_within_reach = self._arm.toward(self._posture, position, wish.direction, dt)
-        self._take(self._arm.posture(q))
-        if is_within_reach == self._is_within_reach:
+        """Follow the wish as far as arm, head and table allow."""
+        start = self._posture
+        was_within_reach = self._is_within_reach
+
+        def to_joints(displacement: Vector) -> Joints:
+            position = add(start.tip.position, displacement)
+            q, self._is_within_reach = self._joint_motion.toward(
+                start.q, position, wish.direction, dt
+            )
+            return q
+
+        moved = self._contact.move(start.q, wish.displacement, to_joints)
+        self._posture = self._postures.of(moved)
+        settings = self.setup.settings.proximity
+        self._proximity = next_proximity(self._proximity, moved.clearance, settings)
+        if self._is_within_reach == was_within_reach:
             return []
-        self._is_within_reach = is_within_reach
-        return [Event(EventKind.REACH, sim_time, {"isWithinReach": is_within_reach})]
-
-    def _take(self, posture: Posture) -> None:
-        self._posture = posture
-        self._clearance = self._collision.check(posture.link_to_world)
-
-    @property
-    def _surface(self) -> Surface:
-        return Surface(self._clearance.tip.distance_m, self._clearance.tip.normal)
+        return [Event(EventKind.REACH, sim_time, {"isWithinReach": self._is_within_reach})]
 
     def _state(self, tick: int, sim_time: float, motion: Motion) -> SimulationState:
         posture = self._posture
@@ -168,8 +179,8 @@ class Simulation:
             q=posture.q,
             tool_tip_to_world=posture.tool_tip_to_world,
             link_to_world=posture.links,
-            proximity=Proximity.FREE,
-            clearance=self._clearance.tool_m,
+            proximity=self._proximity,
+            clearance=posture.clearance.tool_m,
             training=self._training.state,
             elapsed=self._training.elapsed(sim_time),
             motion=motion,
@@ -177,6 +188,12 @@ class Simulation:
             camera=self._view.camera,
             planned_target=self._view.planned_target,
         )
+
+
+def _collision(setup: SimulationSetup) -> Collision:
+    head = read_head_mesh(setup.scenario.head_mesh)
+    surroundings = Surroundings(stand_radius=setup.scenario.furniture.stand_diameter / 2.0 / MM)
+    return Collision(setup.robot, head.vertices / MM, head.triangles, surroundings)
 
 
 def _ended(outcome: Outcome, sim_time: float) -> Event:
