@@ -10,6 +10,7 @@ from rastrainer.slicer import registration_nodes
 from rastrainer.slicer.control_points import labelsOf, localPoints, setPoints, worldPoints
 from rastrainer.slicer.registration_nodes import registerNodes, showRegistration
 from rastrainer.slicer.result_tables import showFits, showResiduals
+from rastrainer.target_error import target_error
 
 LABELS = tuple(str(i + 1) for i in range(15))
 
@@ -118,8 +119,8 @@ def test_deleted_lists_are_no_trouble(scene, moving, fixed):
 @pytest.mark.parametrize(
     ("labels", "words"),
     [
-        (("A", *LABELS[1:]), 'touched point "A" has no fiducial'),
-        (("2", *LABELS[1:]), 'touched points have the label "2" twice'),
+        (("A", *LABELS[1:]), "A is only in the moving list"),
+        (("2", *LABELS[1:]), 'label "2" is given to two points'),
     ],
 )
 def test_labels_that_do_not_pair_get_a_sentence(scene, fixed, points, labels, words):
@@ -147,7 +148,14 @@ def test_the_residual_table_has_a_row_a_fiducial_and_units_in_its_columns(scene,
 
 def test_the_fits_are_compared_side_by_side(scene, moving, fixed):
     fits = [registerNodes(moving, fixed, kind) for kind in ("rigid", "similarity", "affine")]
-    table = showFits(scene, fits, expectedTreMm=0.5)
+    errors = [target_error(fit, np.array([10.0, 20.0, -30.0])) for fit in fits]
+    table = showFits(scene, fits, errors)
     fre = slicer.util.arrayFromTableColumn(table, "FRE (mm)")
     assert fre[0] >= fre[1] >= fre[2]
+    low, expected, high = (
+        slicer.util.arrayFromTableColumn(table, name)
+        for name in ("TRE from, 95 % (mm)", "expected TRE (mm)", "TRE to, 95 % (mm)")
+    )
+    assert (low < expected).all()
+    assert (expected < high).all()
     assert [table.GetCellText(row, 0) for row in range(3)] == ["rigid", "similarity", "affine"]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
 import slicer
 
-from rastrainer.errors import InputError
+from rastrainer.point_list import PointList, pair
 from rastrainer.registration import RIGID, Registration, register
 from rastrainer.slicer.control_points import labelsOf, localPoints, worldPoints
 from rastrainer.slicer.scene import Role, findOrAddNode
@@ -26,26 +25,13 @@ def registerNodes(moving: Any, fixed: Any, kind: str = RIGID) -> Registration:
     result is applied to them; the fixed points are taken where Slicer shows them.
 
     Raises:
-        InputError: the labels do not pair up, or the points cannot be registered.
+        InputError: the lists do not pair up, or the points cannot be registered.
     """
-    labels = labelsOf(moving)
-    rows = _rowsOf(labels, labelsOf(fixed))
-    return register(localPoints(moving), worldPoints(fixed)[rows], kind, labels)
-
-
-def _rowsOf(labels: tuple[str, ...], fixedLabels: tuple[str, ...]) -> list[int]:
-    """Return for each moving label the row of the fixed point of that label."""
-    for name, given in (("touched", labels), ("fixed", fixedLabels)):
-        doubled = sorted({label for label in given if given.count(label) > 1})
-        if doubled:
-            raise InputError(f"The {name} points have the label {json.dumps(doubled[0])} twice.")
-    missing = [label for label in labels if label not in fixedLabels]
-    if missing:
-        raise InputError(
-            f"The touched point {json.dumps(missing[0])} has no fiducial; "
-            f"the fiducials are {', '.join(fixedLabels)}."
-        )
-    return [fixedLabels.index(label) for label in labels]
+    labels, movingPoints, fixedPoints = pair(
+        PointList(labelsOf(moving), localPoints(moving)),
+        PointList(labelsOf(fixed), worldPoints(fixed)),
+    )
+    return register(movingPoints, fixedPoints, kind, labels)
 
 
 def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:

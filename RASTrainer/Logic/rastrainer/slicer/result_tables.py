@@ -10,6 +10,7 @@ import vtk
 
 from rastrainer.registration import Registration
 from rastrainer.slicer.scene import Role, findOrAddNode
+from rastrainer.target_error import TargetError
 
 
 @dataclass(frozen=True)
@@ -37,12 +38,17 @@ def showResiduals(scene: Any, registration: Registration) -> Any:
     )
 
 
-def showFits(scene: Any, fits: Sequence[Registration], expectedTreMm: float) -> Any:
+def showFits(
+    scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError]
+) -> Any:
     """Compare fits of the same points in a `vtkMRMLTableNode` and return it.
 
-    The expected TRE is known for the rigid fit alone, which is the one that is scored; the others
-    get an empty cell (NaN).
+    Args:
+        scene: the scene.
+        fits: one a row.
+        targetErrors: of each fit, what to expect at the target.
     """
+    ends = [error.interval_mm for error in targetErrors]
     return _show(
         scene,
         Role.FITS,
@@ -50,11 +56,10 @@ def showFits(scene: Any, fits: Sequence[Registration], expectedTreMm: float) -> 
         [
             Column("fit", [fit.kind for fit in fits]),
             Column("FRE (mm)", [fit.fre_mm for fit in fits]),
-            Column("largest residual (mm)", [float(fit.residuals_mm.max()) for fit in fits]),
-            Column(
-                "expected TRE at target (mm)",
-                [expectedTreMm if fit.kind == "rigid" else float("nan") for fit in fits],
-            ),
+            Column("largest residual (mm)", [fit.residuals_mm.max() for fit in fits]),
+            Column("expected TRE (mm)", [error.expected_mm for error in targetErrors]),
+            Column("TRE from, 95 % (mm)", [low for low, _high in ends]),
+            Column("TRE to, 95 % (mm)", [high for _low, high in ends]),
         ],
     )
 
