@@ -98,6 +98,11 @@ def test_a_write_that_fails_keeps_the_old_file(tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["a.txt"]
 
 
-def test_a_folder_that_is_missing_is_told(tmp_path):
+def test_a_place_that_cannot_hold_the_file_is_told(tmp_path):
     with pytest.raises(InputError, match="cannot be written: no such file or directory"):
         write_text(tmp_path / "missing" / "a.txt", "x")
+    with pytest.raises(InputError, match="cannot be written: is a directory"):
+        write_text(tmp_path, "x")
+    with pytest.raises(InputError, match="cannot be written"):
+        write_text(tmp_path / "nul\0", "x")
+    assert list(tmp_path.iterdir()) == []

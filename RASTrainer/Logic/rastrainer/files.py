@@ -67,7 +67,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         InputError: the file cannot be written.
     """
     target = Path(path)
-    partial = target.with_name(f".{uuid.uuid4().hex}.partial")
+    partial = target.parent / f".{uuid.uuid4().hex}.partial"
     try:
         with partial.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)

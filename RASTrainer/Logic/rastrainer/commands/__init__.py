@@ -1,0 +1,1 @@
+"""Commands for files: each module has `add_parser`, and its `run` returns the exit status."""
