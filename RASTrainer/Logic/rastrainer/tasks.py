@@ -1,0 +1,63 @@
+"""A task: fifteen numbered fiducials on the head, to be touched in order."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.markups import read_markups
+from rastrainer.protocol import FIDUCIAL_COUNT
+
+LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
+LIMIT_MM = 1000.0
+_NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a trainee has to touch.
+
+    Attributes:
+        name: such as "trial-run" or "task-1"; commands and records use it.
+        title: what people read.
+        labels: "1" to "15", in the order to touch.
+        fiducials: (15, 3) float, RAS mm, in that order.
+        complexity: the index of `rastrainer.complexity`.
+    """
+
+    name: str
+    title: str
+    labels: tuple[str, ...]
+    fiducials: np.ndarray
+    complexity: float
+
+
+def read_task(path: Path, name: str, title: str, complexity: float) -> Task:
+    """Read a task's fiducials from a `.mrk.json` file.
+
+    Raises:
+        InputError: the file cannot be used, or does not hold fifteen different points that are
+            labeled "1" to "15" in this order.
+    """
+    points = read_markups(path)
+    if tuple(points.labels) != LABELS:
+        raise InputError(
+            f'{path} must hold {FIDUCIAL_COUNT} points labeled "1" to "{FIDUCIAL_COUNT}", in the '
+            "order to touch."
+        )
+    fiducials = np.array(points.points, dtype=float)
+    if not np.all(np.abs(fiducials) <= LIMIT_MM):
+        raise InputError(f"{path} has a point that is not within ±{LIMIT_MM:g} mm.")
+    if len(np.unique(fiducials, axis=0)) != FIDUCIAL_COUNT:
+        raise InputError(f"{path} has two points at the same place.")
+    fiducials.setflags(write=False)
+    return Task(name, title, LABELS, fiducials, complexity)
+
+
+def is_task_name(name: str) -> bool:
+    """Tell whether a name can stand in commands and file names: lower case, digits, hyphens."""
+    return len(name) <= 40 and _NAME.fullmatch(name) is not None
