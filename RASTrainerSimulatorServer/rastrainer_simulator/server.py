@@ -7,7 +7,6 @@ import contextlib
 import gc
 import itertools
 import logging
-import secrets
 import signal
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
@@ -38,22 +37,22 @@ class ServerOptions:
 
     Attributes:
         records: folder of the trials' journals.
+        seed: of the heads' poses in the trials; who knows it knows the truth.
         host: address to listen on.
         port: to listen on; 0 is any free one.
         connect_to: host and port of a listening Slicer, in place of listening.
         speed: simulated seconds in a second.
-        seed: of the heads' poses in the trials; by default one that nobody can guess.
         scenario: folder; None is the one that comes with RASTrainer.
         robot_meshes: folder of the robot's official meshes; None is our own.
         limits: what one client may cost.
     """
 
     records: Path
+    seed: int
     host: str = DEFAULT_HOST
     port: int = DEFAULT_PORT
     connect_to: tuple[str, int] | None = None
     speed: float = 1.0
-    seed: int = field(default_factory=lambda: secrets.randbits(63))
     scenario: Path | None = None
     robot_meshes: Path | None = None
     limits: Limits = field(default_factory=Limits)
@@ -96,6 +95,9 @@ class SimulatorServer:
         feed = StateFeed(link.publisher.is_due, link.tell, loop)
         unsubscribe = self._control_loop.subscribe(feed)
         tasks = [loop.create_task(link.beat(self._details))]
+        # What was loaded stays: no garbage collection needs to look at it between two ticks.
+        gc.collect()
+        gc.freeze()
         with _stop_on_signals(loop) as stop:
             self._control_loop.start()
             try:
@@ -111,11 +113,7 @@ class SimulatorServer:
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:
         setup = load_setup(scenario, robot_meshes=self._options.robot_meshes)
-        simulation = Simulation(setup, next(self._seeds))
-        # What was loaded stays: no garbage collection needs to look at it between two ticks.
-        gc.collect()
-        gc.freeze()
-        return simulation
+        return Simulation(setup, next(self._seeds))
 
     async def _open(self, link: SimulatorLink, tasks: list[asyncio.Task[None]]) -> str:
         """Listen, or connect to a listening Slicer; return where."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import secrets
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -59,42 +60,37 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: an argument, a file or the address cannot be used.
     """
+    _check(arguments)
+    connect_to = None if arguments.connect is None else _address(arguments.connect)
+    # Only here: the robot and the scenario take time to import.
     import asyncio
     import logging
 
-    options = _options(arguments)
-    logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
-    # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.server import SimulatorServer
+    from rastrainer_simulator.server import ServerOptions, SimulatorServer
 
+    logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    options = ServerOptions(
+        records=arguments.records,
+        host=arguments.host,
+        port=arguments.port,
+        connect_to=connect_to,
+        speed=arguments.speed,
+        scenario=arguments.scenario,
+        robot_meshes=arguments.robot_meshes,
+        seed=secrets.randbits(63) if arguments.seed is None else arguments.seed,
+    )
     server = SimulatorServer(options)
     asyncio.run(server.run(lambda where: print(f"RASTrainer simulator {where}", flush=True)))
     return 0
 
 
-def _options(arguments: argparse.Namespace):
-    from rastrainer_simulator.server import ServerOptions
-
+def _check(arguments: argparse.Namespace) -> None:
     if not 0 <= arguments.port < 65536:
         raise InputError("--port must be a number from 0 to 65535.")
     if not 0.0 < arguments.speed <= FASTEST:
         raise InputError(f"--speed must be above 0 and at most {FASTEST:g}.")
-    chosen = {}
-    if arguments.seed is not None:
-        if not 0 <= arguments.seed <= LARGEST_SEED:
-            raise InputError(f"--seed must be from 0 to {LARGEST_SEED}.")
-        chosen["seed"] = arguments.seed
-    if arguments.connect is not None:
-        chosen["connect_to"] = _address(arguments.connect)
-    return ServerOptions(
-        records=arguments.records,
-        host=arguments.host,
-        port=arguments.port,
-        speed=arguments.speed,
-        scenario=arguments.scenario,
-        robot_meshes=arguments.robot_meshes,
-        **chosen,
-    )
+    if arguments.seed is not None and not 0 <= arguments.seed <= LARGEST_SEED:
+        raise InputError(f"--seed must be from 0 to {LARGEST_SEED}.")
 
 
 def _address(text: str) -> tuple[str, int]:

@@ -1,0 +1,172 @@
+"""The plain client against a server of a few lines, good and bad."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import threading
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Client, LinkError
+from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.content import String, Transform
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.stream import MessageReader
+
+TIP = Message("Tip", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 6, 7)), timestamp=1)
+SUCCESS = {"Status": "SUCCESS"}
+
+
+class Peer:
+    """A server for one client that does to each message what `answer` says."""
+
+    def __init__(self, answer=lambda _peer, _message: None, greeting: bytes = b""):
+        self._answer = answer
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listener.getsockname()[1]
+        self._greeting = greeting
+        self._thread = threading.Thread(target=self._serve, daemon=True)
+        self._thread.start()
+
+    def send(self, *messages: Message) -> None:
+        self._connection.sendall(b"".join(pack(message) for message in messages))
+
+    def hang_up(self) -> None:
+        self._connection.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        self._listener.close()
+        self._thread.join(10)
+
+    def _serve(self) -> None:
+        reader = MessageReader()
+        self._connection, _address = self._listener.accept()
+        with self._connection, contextlib.suppress(OSError):
+            self._connection.sendall(self._greeting)
+            while data := self._connection.recv(65_536):
+                for message in reader.feed(data):
+                    self._answer(self, message)
+
+
+@pytest.fixture
+def peer():
+    """Makes servers, and ends them."""
+    peers = []
+
+    def make(*arguments, **options):
+        peers.append(Peer(*arguments, **options))
+        return peers[-1]
+
+    yield make
+    for one in peers:
+        one.close()
+
+
+def reply_to(message: Message, body: str = "{}", metadata=SUCCESS) -> Message:
+    command = message.content
+    return Message("command", CommandReply(command.command_id, command.name, body), metadata)
+
+
+def test_answer_is_that_of_the_same_number_in_whatever_order(peer):
+    held, has_first = [], threading.Event()
+
+    def answer_backwards(server, message):
+        held.append(message)
+        has_first.set()
+        if len(held) == 2:
+            server.send(*(reply_to(m, f'{{"to": "{m.content.name}"}}') for m in reversed(held)))
+
+    with Client(port=peer(answer_backwards).port) as client:
+        first = []
+        thread = threading.Thread(target=lambda: first.append(client.send_command("A")))
+        thread.start()
+        has_first.wait(10)
+        assert client.send_command("B").data == {"to": "B"}
+        thread.join()
+        assert first[0].data == {"to": "A"}
+
+
+def test_refusal_comes_back_with_its_sentence(peer):
+    fail = {"Status": "FAIL", "ErrorMessage": "Begin with StartTask."}
+    server = peer(lambda server, message: server.send(reply_to(message, metadata=fail)))
+    with Client(port=server.port) as client:
+        reply = client.send_command("Capture")
+        assert (reply.ok, reply.error) == (False, "Begin with StartTask.")
+
+
+def test_other_messages_arrive_while_an_answer_is_awaited(peer):
+    server = peer(lambda server, message: server.send(TIP, reply_to(message)))
+    seen = []
+    with Client(port=server.port, on_message=seen.append) as client:
+        client.send_command("Capture")
+        assert (seen, client.latest["Tip"]) == ([TIP], TIP)
+
+
+def test_missing_answer_is_said_in_one_sentence(peer):
+    with (
+        Client(port=peer().port) as client,
+        pytest.raises(LinkError, match=r"No answer to Capture within 0\.05 s"),
+    ):
+        client.send_command("Capture", timeout=0.05)
+
+
+def test_lost_connection_ends_the_wait_for_an_answer(peer):
+    server = peer(lambda server, _message: server.hang_up())
+    with Client(port=server.port) as client:
+        with pytest.raises(LinkError, match="The connection is lost"):
+            client.send_command("Capture")
+        with pytest.raises(LinkError, match="The connection is lost"):
+            client.wait_for("Tip")
+        assert not client.is_open
+
+
+def test_what_was_received_is_still_given_after_the_connection_is_lost(peer):
+    server = peer(lambda server, message: (server.send(TIP, reply_to(message)), server.hang_up()))
+    with Client(port=server.port) as client:
+        client.send_command("Capture")
+        assert client.wait_for("Tip") == TIP
+
+
+@pytest.mark.parametrize("body", ["[]", "no JSON", '{"x": NaN}'])
+def test_answer_that_is_no_json_object_is_an_error_and_the_link_goes_on(peer, body):
+    bodies = [body, "{}"]
+    server = peer(lambda server, message: server.send(reply_to(message, bodies.pop(0))))
+    with Client(port=server.port) as client:
+        with pytest.raises(LinkError, match="must be a JSON object"):
+            client.send_command("Capture")
+        assert client.send_command("Capture").ok
+
+
+def test_answer_without_a_status_is_no_success(peer):
+    server = peer(lambda server, message: server.send(reply_to(message, metadata={})))
+    with Client(port=server.port) as client:
+        assert not client.send_command("Capture").ok
+
+
+def test_server_that_sends_no_openigtlink_is_left(peer):
+    server = peer(greeting=b"x" * 200_000)
+    with Client(port=server.port) as client, pytest.raises(LinkError):
+        client.wait_for("Tip")
+
+
+def test_wait_for_takes_only_what_fits(peer):
+    def count_up(server, message):
+        server.send(*(Message("Note", String(str(i))) for i in range(5)), reply_to(message))
+
+    with Client(port=peer(count_up).port) as client:
+        client.send(Message("command", Command(99, "Go")))
+        assert client.wait_for("Note", lambda note: note.content.text == "4").content.text == "4"
+
+
+def test_nobody_listening_is_said_in_one_sentence():
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    with pytest.raises(LinkError, match=f"No connection to 127.0.0.1:{port}: "):
+        Client(port=port)
+
+
+def test_message_that_cannot_travel_is_not_sent(peer):
+    with Client(port=peer().port) as client, pytest.raises(InputError):
+        client.send(Message("A name of more than 20", TIP.content))

@@ -1,0 +1,51 @@
+"""The simulator as its own process, as a user starts it."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+READY = "RASTrainer simulator ready on 127.0.0.1:"
+
+
+class SimulatorProcess:
+    """`rastrainer simulator` on a free port; ended by the `with` statement.
+
+    Attributes:
+        port: where it listens.
+    """
+
+    def __init__(self, records: Path, *arguments: str):
+        self._process = subprocess.Popen(
+            [*COMMAND, "--port", "0", "--records", str(records), *arguments],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.ready = self._process.stdout.readline().strip()
+        if not self.ready:
+            raise AssertionError(self._process.communicate()[1])
+        self.port = int(self.ready.removeprefix(READY)) if self.ready.startswith(READY) else 0
+
+    def __enter__(self) -> SimulatorProcess:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        if self._process.poll() is None:
+            self.kill()
+
+    def stop(self, number: int = signal.SIGTERM) -> tuple[int, str]:
+        """Ask it to stop; return its exit status and what it has said on stderr."""
+        self._process.send_signal(number)
+        errors = self._process.communicate(timeout=20)[1]
+        return self._process.returncode, errors
+
+    def kill(self) -> None:
+        """End it as a crash would."""
+        self._process.kill()
+        self._process.communicate()
+
+
+COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli", "simulator"]

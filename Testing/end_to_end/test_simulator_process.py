@@ -1,0 +1,66 @@
+"""The simulator's process: how it starts, how it ends, and what it says when it cannot start."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import subprocess
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.stream import MessageReader
+from rastrainer_simulator.cli import main
+from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
+
+
+def test_simulator_ends_cleanly_on_ctrl_c_while_a_client_is_connected(tmp_path):
+    with SimulatorProcess(tmp_path) as simulator, Client(port=simulator.port) as client:
+        client.wait_for("ToolTipToWorld", timeout=20)
+        assert simulator.stop(signal.SIGINT) == (0, "")
+
+
+def test_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as slicer:
+        address = "{}:{}".format(*slicer.getsockname())
+        with SimulatorProcess(tmp_path, "--connect", address) as simulator:
+            assert simulator.ready == f"RASTrainer simulator ready; it connects to {address}"
+            slicer.settimeout(20)
+            connection, _address = slicer.accept()
+            with connection:
+                connection.settimeout(20)
+                connection.sendall(pack(Message("command", Command(1, "ListTasks"))))
+                reader, reply = MessageReader(), None
+                while reply is None:
+                    for message in reader.feed(connection.recv(65_536)):
+                        if type(message.content) is CommandReply:
+                            reply = message
+    assert reply.metadata["Status"] == "SUCCESS"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--port", "99999"], "--port must be a number from 0 to 65535."),
+        (["--speed", "0"], "--speed must be above 0 and at most 1000."),
+        (["--speed", "nan"], "--speed must be above 0 and at most 1000."),
+        (["--seed", "-1"], "--seed must be from 0 to 9223372036854775807."),
+        (["--connect", "slicer"], "--connect must be HOST:PORT, such as 127.0.0.1:18945."),
+        (["--scenario", "nowhere"], "The scenario's folder nowhere does not exist."),
+    ],
+)
+def test_wrong_argument_ends_with_one_sentence_and_status_2(capsys, arguments, sentence):
+    assert main(["simulator", *arguments]) == 2
+    assert capsys.readouterr().err == f"rastrainer: {sentence}\n"
+
+
+def test_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = str(other.getsockname()[1])
+        command = [*COMMAND, "--records", str(tmp_path), "--port", port]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"rastrainer: Cannot listen on 127.0.0.1:{port}")
+    assert len(done.stderr.splitlines()) == 1

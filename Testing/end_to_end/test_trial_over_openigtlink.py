@@ -1,0 +1,181 @@
+"""A whole trial over OpenIGTLink, against the simulator as its own process."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.points import Point
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.registration import register
+from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.simulator_process import SimulatorProcess
+
+TASK = "task-1"
+SEED = 5
+SPEED = "8"
+ABOVE_MM = 40.0
+NEAR_MM = 1.5
+
+
+class Player(Client):
+    """A client that greets, and keeps the trials that it is offered."""
+
+    def __init__(self, port: int):
+        self.offers: list[dict] = []
+        super().__init__(port=port, on_message=self._keep)
+        self.do("Hello", protocolVersion=PROTOCOL_VERSION, client="player")
+
+    def _keep(self, message):
+        if message.device == "command":
+            assert message.content.name == "TrialCompleted"
+            self.offers.append(json.loads(message.content.body))
+
+    def do(self, name: str, **arguments) -> dict:
+        reply = self.send_command(name, arguments, timeout=20)
+        assert reply.ok, f"{name}: {reply.error}"
+        return dict(reply.data)
+
+    def move_to(self, position: np.ndarray) -> None:
+        self.do("MoveTipTo", positionMm=position.tolist(), speedMmS=400)
+        self.wait_for("ToolTipToWorld", lambda tip: distance(tip, position) < NEAR_MM, 20)
+
+    def next_offer(self) -> dict:
+        count = len(self.offers)
+        for _ in range(10):
+            self.wait_for_heartbeats(1)
+            if len(self.offers) > count:
+                return self.offers[-1]
+        raise AssertionError("no trial was offered")
+
+    def wait_for_heartbeats(self, count: int) -> None:
+        """Wait for so many, one a second."""
+        for _ in range(count):
+            last = self.latest.get("SimServer")
+            self.wait_for("SimServer", lambda beat, last=last: beat is not last, 20)
+
+
+def distance(tip, position: np.ndarray) -> float:
+    return float(np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - position))
+
+
+def play(player: Player, scenario: Scenario) -> dict:
+    """Play one trial up to its registration; return what the commands answered."""
+    head_to_world = scenario.perturbed_head_to_world(SEED)
+    fiducials = transforms.apply(head_to_world, scenario.task(TASK).fiducials)
+    center = transforms.apply(head_to_world, scenario.target_position[None])[0]
+    answers = {"StartTask": player.do("StartTask", task=TASK, trainee="anna", seed=SEED)}
+    for fiducial in fiducials:
+        outward = (fiducial - center) / np.linalg.norm(fiducial - center)
+        player.move_to(fiducial + ABOVE_MM * outward)
+        player.move_to(fiducial)
+        player.do("Capture")
+        player.move_to(fiducial + ABOVE_MM * outward)
+    points = player.wait_for("CapturedPoints", lambda m: len(m.content.points) == 15, 20)
+    answers["points"] = points.content.points
+    answers["Register"] = player.do("Register")
+    return answers
+
+
+@pytest.fixture(scope="module")
+def scenario() -> Scenario:
+    return load_scenario(asset_path("scenarios", "colin27"))
+
+
+@pytest.fixture(scope="module")
+def trial(scenario, tmp_path_factory) -> dict:
+    """What clients saw of a trial whose simulator crashes twice before it is put away."""
+    records = tmp_path_factory.mktemp("records")
+    with SimulatorProcess(records, "--speed", SPEED) as simulator, Player(simulator.port) as player:
+        seen = {"tasks": player.do("ListTasks")["tasks"]}
+        seen |= play(player, scenario)
+        seen["offers"] = [player.next_offer(), player.next_offer()]
+        trial_id = seen["StartTask"]["trialId"]
+        seen["before"] = player.do("GetTrial", trialId=trial_id)
+        seen["TrialScored"] = player.do("TrialScored", **score(trial_id, seen["points"], scenario))
+        seen["phase"] = phase_of(player, "scored")
+        simulator.kill()
+    with SimulatorProcess(records) as simulator, Player(simulator.port) as player:
+        seen["offer after a crash"] = player.next_offer()
+        player.do("AcknowledgeTrial", trialId=trial_id)
+        simulator.kill()
+    with SimulatorProcess(records) as simulator, Player(simulator.port) as player:
+        seen["after"] = player.do("GetTrial", trialId=trial_id)
+        player.wait_for_heartbeats(3)
+        seen["offers at last"] = player.offers
+        seen["journals"] = [path.name for path in records.iterdir()]
+        seen["exit"] = simulator.stop()
+    return seen
+
+
+def score(trial_id: str, points: tuple[Point, ...], scenario: Scenario) -> dict:
+    touched = np.array([point.position for point in points])
+    registration = register(touched, scenario.task(TASK).fiducials)
+    return {
+        "trialId": trial_id,
+        "matrix": registration.matrix.ravel().tolist(),
+        "freMm": registration.fre_mm,
+        "expectedTreMm": 0.5,
+        "score": 80,
+    }
+
+
+def phase_of(player: Player, phase: str) -> str:
+    state = player.wait_for(
+        "SimState", lambda message: json.loads(message.content.text)["phase"] == phase
+    )
+    return json.loads(state.content.text)["phase"]
+
+
+def test_tasks_are_listed_by_rising_complexity(trial):
+    complexities = [task["complexity"] for task in trial["tasks"]]
+    assert len(complexities) == 6
+    assert complexities == sorted(set(complexities))
+
+
+def test_all_fifteen_points_arrive_in_order_and_near_the_fiducials(trial, scenario):
+    assert [point.label for point in trial["points"]] == [str(i) for i in range(1, 16)]
+    fiducials = transforms.apply(
+        scenario.perturbed_head_to_world(SEED), scenario.task(TASK).fiducials
+    )
+    touched = np.array([point.position for point in trial["points"]])
+    assert np.linalg.norm(touched - fiducials, axis=1).max() < 2 * NEAR_MM
+
+
+def test_finished_trial_is_offered_as_a_valid_record_until_acknowledged(trial):
+    first, again = trial["offers"]
+    record = TrialRecord.from_json(first)
+    assert first == again
+    assert record.trial_id == trial["StartTask"]["trialId"]
+    assert (record.trainee, record.task) == ("anna", TASK)
+    sent = np.array([point.position for point in trial["points"]])
+    np.testing.assert_allclose(record.positions_mm, sent, atol=1e-4)
+
+
+def test_where_the_head_was_stays_secret_until_the_trial_is_scored(trial, scenario):
+    assert "headToWorld" not in json.dumps([trial["Register"], trial["offers"], trial["before"]])
+    told = np.array(trial["TrialScored"]["headToWorld"]).reshape(4, 4)
+    np.testing.assert_allclose(told, scenario.perturbed_head_to_world(SEED), atol=1e-9)
+    assert trial["TrialScored"]["trueTreMm"] < 2 * NEAR_MM
+    assert trial["after"]["headToWorld"] == trial["TrialScored"]["headToWorld"]
+
+
+def test_views_are_told_that_the_trial_is_scored(trial):
+    assert trial["phase"] == "scored"
+
+
+def test_one_journal_is_kept_and_the_simulator_ends_cleanly(trial):
+    assert len(trial["journals"]) == 1
+    assert trial["exit"] == (0, "")
+
+
+def test_trial_is_offered_again_after_a_crash_until_it_is_acknowledged(trial):
+    assert trial["offer after a crash"] == trial["offers"][0]
+    assert trial["offers at last"] == []
+    assert trial["after"]["acknowledged"]
