@@ -14,7 +14,9 @@ class SimulatorProcess:
     """`rastrainer simulator` on a free port; ended by the `with` statement.
 
     Attributes:
-        port: where it listens.
+        ready: the line by which it says where it is ready.
+        port: where it listens; 0 where it connects.
+        pid: of the process.
     """
 
     def __init__(self, records: Path, *arguments: str):
@@ -24,6 +26,7 @@ class SimulatorProcess:
             stderr=subprocess.PIPE,
             text=True,
         )
+        self.pid = self._process.pid
         self.ready = self._process.stdout.readline().strip()
         if not self.ready:
             raise AssertionError(self._process.communicate()[1])

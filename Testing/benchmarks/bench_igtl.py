@@ -1,0 +1,128 @@
+"""The link's delay beside pyigtl's, and what the server's process costs."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Transform
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.stream import MessageReader
+from rastrainer.protocol import PROTOCOL_VERSION
+from Testing.end_to_end.simulator_process import SimulatorProcess
+
+PROBE = Message("Echo", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, 30)))
+PAUSE_S = 0.013
+"""Between two probes: about the period of a tracker, and no divisor of any server's rate."""
+TIMEOUT_S = 1.0
+
+PYIGTL_ECHO = """
+import sys, time, pyigtl
+server = pyigtl.OpenIGTLinkServer(int(sys.argv[1]))
+print("ready", flush=True)
+while True:
+    for message in server.get_latest_messages():
+        server.send_message(message, wait=False)
+    time.sleep(0.0002)
+"""
+
+
+def rows(quick: bool) -> list[dict]:
+    """Return the rows `igtl.echo`, `server.start`, `server.rss` and `server.cpu`."""
+    with tempfile.TemporaryDirectory() as records:
+        starts = [_start_time(Path(records)) for _ in range(2 if quick else 5)]
+        with SimulatorProcess(Path(records)) as simulator, Client(port=simulator.port) as slicer:
+            hello = {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"}
+            slicer.send_command("Hello", hello)
+            echoes = _echo_times(simulator.port, 100 if quick else 1000)
+            cpu = [_cpu_share(simulator.pid, 1.0) for _ in range(3 if quick else 20)]
+            rss = _resident_mb(simulator.pid)
+    peer = _pyigtl_echo_times(50 if quick else 300)
+    return [
+        _row("igtl.echo", np.array(echoes) * 1e3, "ms", "pyigtl", np.array(peer) * 1e3),
+        _row("server.start", np.array(starts), "s"),
+        _row("server.rss", np.array([rss]), "MB"),
+        _row("server.cpu", np.array(cpu) * 100.0, "%"),
+    ]
+
+
+def _row(name: str, values: np.ndarray, unit: str, peer: str | None = None, peers=None) -> dict:
+    """Return a row; a probe that was not answered is NaN and counts against `success`."""
+    answered = values[np.isfinite(values)]
+    return {
+        "name": name,
+        "median": float(np.median(answered)),
+        "p99": float(np.percentile(answered, 99)),
+        "unit": unit,
+        "peer": peer,
+        "peer_median": None if peers is None else float(np.nanmedian(peers)),
+        "peer_p99": None if peers is None else float(np.nanpercentile(peers, 99)),
+        "success": len(answered) / len(values),
+        "n": len(values),
+    }
+
+
+def _start_time(records: Path) -> float:
+    begin = time.perf_counter()
+    with SimulatorProcess(records):
+        return time.perf_counter() - begin
+
+
+def _pyigtl_echo_times(count: int) -> list[float]:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    command = [sys.executable, "-c", PYIGTL_ECHO, str(port)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as server:
+        try:
+            server.stdout.readline()
+            return _echo_times(port, count)
+        finally:
+            server.kill()
+
+
+def _echo_times(port: int, count: int) -> list[float]:
+    """Return the delay of each probe in s, NaN where no echo came."""
+    data = pack(PROBE)
+    reader = MessageReader()
+    with socket.create_connection(("127.0.0.1", port)) as peer:
+        peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        peer.settimeout(TIMEOUT_S)
+        return [_echo_time(peer, reader, data) for _ in range(count)]
+
+
+def _echo_time(peer: socket.socket, reader: MessageReader, data: bytes) -> float:
+    time.sleep(PAUSE_S)
+    begin = time.perf_counter()
+    peer.sendall(data)
+    try:
+        while True:
+            messages = reader.feed(peer.recv(65_536))
+            if any(message.device == PROBE.device for message in messages):
+                return time.perf_counter() - begin
+    except TimeoutError:
+        return float("nan")
+
+
+def _cpu_share(pid: int, seconds: float) -> float:
+    """Return the share of one core that a process used."""
+    begin, used = time.perf_counter(), _cpu_time(pid)
+    time.sleep(seconds)
+    return (_cpu_time(pid) - used) / (time.perf_counter() - begin)
+
+
+def _cpu_time(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _resident_mb(pid: int) -> float:
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
