@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import isfinite, sqrt
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.robot.canonical_arm import clamped, inside
 from rastrainer_simulator.robot.srs_geometry import SrsGeometry
 from rastrainer_simulator.vectors import Vector, cross, dot, reject, unit
 
@@ -19,10 +20,11 @@ class ArmFrame:
     def __init__(self, geometry: SrsGeometry) -> None:
         self._base = tuple(map(tuple, geometry.base.tolist()))
         self._shoulder = tuple(geometry.shoulder.tolist())
-        self._tip = tuple(map(tuple, geometry.tip_rotation.tolist()))
-        self._joints = tuple(
-            zip(geometry.signs, geometry.offsets, geometry.q_lower, geometry.q_upper, strict=True)
-        )
+        # The canonical tool's x and z axes in the tip's frame.
+        self._tip = tuple(map(tuple, geometry.tip_rotation[[0, 2]].tolist()))
+        self._turns = tuple(zip(geometry.signs, geometry.offsets, strict=True))
+        self._limits = geometry.canonical_limits
+        self._q_limits = tuple(zip(geometry.q_lower, geometry.q_upper, strict=True))
 
     def theta(self, q: Sequence[float]) -> tuple[float, ...]:
         """Return θ of q (rad), moved into the limits where it is outside."""
@@ -30,22 +32,25 @@ class ArmFrame:
             raise InputError(f"A posture has seven joint angles, not {len(q)}.")
         theta = tuple(
             [
-                sign * (lower if angle < lower else upper if angle > upper else float(angle))
-                + offset
-                for angle, (sign, offset, lower, upper) in zip(q, self._joints, strict=True)
+                sign * float(angle) + offset
+                for angle, (sign, offset) in zip(q, self._turns, strict=True)
             ]
         )
+        if inside(theta, self._limits):
+            return theta
         if not isfinite(sum(theta)):
             raise InputError("The joint angles to start from must be finite.")
-        return theta
+        return clamped(theta, self._limits)
 
     def q(self, theta: Sequence[float]) -> tuple[float, ...]:
         """Return q (rad) of θ, inside the limits to the last bit."""
-        angles = []
-        for angle, (sign, offset, lower, upper) in zip(theta, self._joints, strict=True):
-            angle = sign * (angle - offset)
-            angles.append(lower if angle < lower else upper if angle > upper else angle)
-        return tuple(angles)
+        q = tuple(
+            [
+                sign * (angle - offset)
+                for angle, (sign, offset) in zip(theta, self._turns, strict=True)
+            ]
+        )
+        return q if inside(q, self._q_limits) else clamped(q, self._q_limits)
 
     def position(self, world: Sequence[float]) -> Vector:
         """Return a point of World (m) as seen from the shoulder."""
@@ -64,22 +69,26 @@ class ArmFrame:
     def rotation(self, world: Sequence[Sequence[float]]) -> tuple[Vector, Vector, Vector]:
         """Return the tool's x, y and z axes in the arm's frame for a rotation (3, 3) of the tip."""
         try:
-            columns = list(zip(*world, strict=True))
-            right, left, ahead = (self._turned(_three(axis, "tool rotation")) for axis in columns)
+            rows = [_three(row, "rows of the tool rotation") for row in world]
+            (ax, bx, cx), (ay, by, cy), (az, bz, cz) = rows
         except (TypeError, ValueError) as error:
             raise InputError("The tool rotation must be three rows of three numbers.") from error
-        lengths = (dot(right, right), dot(left, left), dot(cross(right, left), ahead))
-        slants = (dot(right, left), dot(left, ahead), dot(ahead, right))
+        a, b, c = (ax, ay, az), (bx, by, bz), (cx, cy, cz)
+        lengths = (dot(a, a), dot(b, b), dot(cross(a, b), c))
+        slants = (dot(a, b), dot(b, c), dot(c, a))
         if max(abs(value - 1.0) for value in lengths) + max(map(abs, slants)) > _SKEW:
             raise InputError(
                 "The tool rotation is none: its columns must be perpendicular unit vectors, "
                 "the third being the first cross the second."
             )
-        x, y = (
-            tuple([a * right[i] + b * left[i] + c * ahead[i] for i in range(3)])
-            for a, b, c in self._tip[:2]
+        (fx, fy, fz), (gx, gy, gz) = self._tip
+        x = self._turned(
+            (fx * ax + fy * bx + fz * cx, fx * ay + fy * by + fz * cy, fx * az + fy * bz + fz * cz)
         )
-        tool = unit(cross(x, y))
+        z = self._turned(
+            (gx * ax + gy * bx + gz * cx, gx * ay + gy * by + gz * cy, gx * az + gy * bz + gz * cz)
+        )
+        tool = unit(z)
         x = unit(reject(x, tool))
         return x, cross(tool, x), tool
 

@@ -10,13 +10,15 @@ from __future__ import annotations
 from itertools import product
 from math import atan2, copysign, cos, inf, pi, remainder, sin, sqrt
 
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, inside
 from rastrainer_simulator.vectors import Vector
 
 TURN = 2.0 * pi
 _PI2 = pi * pi
 # A tilt below this leaves its pan free; the tip moves by less than 2e-10 m.
 _STRAIGHT = 1e-10
+# Below this the normal of two links, a small difference, is less exact than the pan it gave.
+_NEARLY_STRAIGHT = 1e-3
 # Rounding may carry an angle this far past its limit; it is then put onto the limit.
 _SLACK = 1e-11
 
@@ -58,6 +60,7 @@ def joint_angles(
         t3 = atan2(elbow * (px * fx + py * fy), px * ex + py * ey)
     else:
         t3 = last[2]
+    if s4 < _NEARLY_STRAIGHT:
         ex, ey, ez = _turned((px, py, 0.0), upper, t3)
     wx, wy, wz = (
         wrist * (fy * tz - fz * ty),
@@ -69,6 +72,7 @@ def joint_angles(
         t5 = atan2(wrist * (ex * tx + ey * ty + ez * tz), ex * wx + ey * wy + ez * wz)
     else:
         t5 = last[4]
+    if s6 < _NEARLY_STRAIGHT:
         wx, wy, wz = _turned((ex, ey, ez), fore, t5)
     t7 = last[6]
     if roll:
@@ -120,21 +124,6 @@ def nearest_branch(
             d7 -= copysign(pi, d7)
     theta = (l1 + d1, t2, l3 + d3, t4, l5 + d5, t6, l7 + d7)
     return theta if inside(theta, arm.limits) else _nearest_inside(arm, angles, last, rolls)
-
-
-def inside(theta: Angles, limits: tuple[tuple[float, float], ...]) -> bool:
-    """Tell whether each θ is within its limits."""
-    t1, t2, t3, t4, t5, t6, t7 = theta
-    (a1, b1), (a2, b2), (a3, b3), (a4, b4), (a5, b5), (a6, b6), (a7, b7) = limits
-    return (
-        a1 <= t1 <= b1
-        and a2 <= t2 <= b2
-        and a3 <= t3 <= b3
-        and a4 <= t4 <= b4
-        and a5 <= t5 <= b5
-        and a6 <= t6 <= b6
-        and a7 <= t7 <= b7
-    )
 
 
 def _nearest_inside(

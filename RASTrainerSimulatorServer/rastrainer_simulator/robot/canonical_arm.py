@@ -15,6 +15,7 @@ from rastrainer_simulator.robot.srs_geometry import SrsGeometry
 from rastrainer_simulator.vectors import Vector
 
 Angles = Sequence[float]
+Limits = tuple[tuple[float, float], ...]
 # Directions of upper arm, forearm and tool, then the axes of joints 2, 4 and 6: unit vectors.
 Chain = tuple[Vector, Vector, Vector, Vector, Vector, Vector]
 
@@ -34,12 +35,13 @@ class CanonicalArm:
     upper: float
     fore: float
     tool: float
-    limits: tuple[tuple[float, float], ...]
+    limits: Limits
     shoulder_cosines: tuple[float, float]
     elbow_cosines: tuple[float, float]
     wrist_cosines: tuple[float, float]
     nearest: float
     farthest: float
+    reach: float  # the stretched arm's
 
     @classmethod
     def of(cls, geometry: SrsGeometry) -> CanonicalArm:
@@ -56,6 +58,7 @@ class CanonicalArm:
             wrist_cosines=_cosines(tilt_range(*limits[5])),
             nearest=_third_side(geometry, elbow[1]),
             farthest=_third_side(geometry, elbow[0]),
+            reach=geometry.upper + geometry.fore + geometry.tool,
         )
 
 
@@ -63,6 +66,26 @@ def tilt_range(lower: float, upper: float) -> tuple[float, float]:
     """Return the smallest and largest angle that a tilt can make, its pan being free."""
     sizes = sorted((abs(lower), abs(upper)))
     return (0.0 if lower <= 0.0 <= upper else sizes[0], min(sizes[1], math.pi))
+
+
+def inside(theta: Angles, limits: Limits) -> bool:
+    """Tell whether each θ is within its limits."""
+    t1, t2, t3, t4, t5, t6, t7 = theta
+    (a1, b1), (a2, b2), (a3, b3), (a4, b4), (a5, b5), (a6, b6), (a7, b7) = limits
+    return (
+        a1 <= t1 <= b1
+        and a2 <= t2 <= b2
+        and a3 <= t3 <= b3
+        and a4 <= t4 <= b4
+        and a5 <= t5 <= b5
+        and a6 <= t6 <= b6
+        and a7 <= t7 <= b7
+    )
+
+
+def clamped(theta: Angles, limits: Limits) -> tuple[float, ...]:
+    """Return the angles, each moved to its nearer limit where it is beyond it."""
+    return tuple([min(max(a, low), high) for a, (low, high) in zip(theta, limits, strict=True)])
 
 
 def _cosines(tilts: tuple[float, float]) -> tuple[float, float]:

@@ -38,7 +38,7 @@ def close(
         if elbow is None:
             return None
     theta = _branch(arm, elbow, wrist, tool, roll, last)
-    if theta is not None and (farthest == inf or _near(theta, last, farthest)):
+    if theta is not None and _near(theta, last, farthest):
         return theta
     for elbow in elbows_at_limits(arm, circle, wrist, tool, roll):
         other = _branch(arm, elbow, wrist, tool, roll, last)
@@ -61,4 +61,14 @@ def _branch(
 
 
 def _near(theta: Angles, last: Angles, farthest: float) -> bool:
-    return all(-farthest <= a - b <= farthest for a, b in zip(theta, last, strict=True))
+    a1, a2, a3, a4, a5, a6, a7 = theta
+    b1, b2, b3, b4, b5, b6, b7 = last
+    return (
+        -farthest <= a1 - b1 <= farthest
+        and -farthest <= a2 - b2 <= farthest
+        and -farthest <= a3 - b3 <= farthest
+        and -farthest <= a4 - b4 <= farthest
+        and -farthest <= a5 - b5 <= farthest
+        and -farthest <= a6 - b6 <= farthest
+        and -farthest <= a7 - b7 <= farthest
+    )

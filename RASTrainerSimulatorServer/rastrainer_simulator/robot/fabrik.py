@@ -87,11 +87,8 @@ class Fabrik:
         goal = self._goal(target_position, target_direction, target_rotation)
         start = self._frame.theta(q_start)
         links = chain(start)
-        guess = predict(self._arm, start, links, goal)
-        if guess is None:
-            reached = self._reach(goal, start, links, inf)
-        else:
-            reached = self._reach(goal, guess, chain(guess), _JUMP)
+        near = predict(self._arm, start, links, goal)
+        reached = self._reach(goal, *near, _JUMP) if near else self._reach(goal, start, links, inf)
         return self._solution(goal, *reached)
 
     def _goal(

@@ -22,14 +22,18 @@ class Goal(NamedTuple):
         position_error = dist(self.position, tip(arm, links))
         if self.tool is None:
             return position_error, 0.0
-        turn = cross(links[2], self.tool)
-        cosine = dot(links[2], self.tool)
+        sine, cosine = self.turn(theta, links)
+        return position_error, atan2(length(sine), cosine)
+
+    def turn(self, theta: Angles, links: Chain) -> tuple[Vector, float]:
+        """Return axis · sine and the cosine of the rotation from θ's tool to the goal's."""
+        sine, cosine = cross(links[2], self.tool), dot(links[2], self.tool)
         if self.roll:
-            # Rotation vector from the skew part, angle from sine and trace: exact when small.
+            # From the skew part and the trace: exact for small angles too.
             (x, y), (goal_x, goal_y) = tool_axes(theta, links), self.roll
-            turn = scale(add(add(turn, cross(x, goal_x)), cross(y, goal_y)), 0.5)
+            sine = scale(add(add(sine, cross(x, goal_x)), cross(y, goal_y)), 0.5)
             cosine = (cosine + dot(x, goal_x) + dot(y, goal_y) - 1.0) / 2.0
-        return position_error, atan2(length(turn), cosine)
+        return sine, cosine
 
 
 def tip(arm: CanonicalArm, links: Chain) -> Vector:

@@ -7,12 +7,17 @@ and the exact closure has only its second-order error to remove.
 
 from __future__ import annotations
 
-import numpy as np
-
-from rastrainer_simulator.robot.branches import inside
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain
-from rastrainer_simulator.robot.goal import Goal, tool_axes
-from rastrainer_simulator.vectors import Vector, add, cross, dot, scale
+from rastrainer_simulator.robot.canonical_arm import (
+    Angles,
+    CanonicalArm,
+    Chain,
+    chain,
+    clamped,
+    inside,
+)
+from rastrainer_simulator.robot.goal import Goal
+from rastrainer_simulator.robot.least_squares import Row, damped_step
+from rastrainer_simulator.vectors import Vector, cross, dot
 
 # A goal farther than this is no continuation of the last one: the Jacobian says nothing about it.
 _NEAR_M = 0.03
@@ -20,22 +25,44 @@ _NEAR_COSINE = 0.95
 _DAMPING = 1e-6
 _LARGEST_STEP = 0.3
 _ROUNDS = 3
+_MOST_STEPS = 4
+_SMALL_TILT = 0.1
+_EXACT = 1e-10
 
 
-def predict(arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal) -> Angles | None:
-    """Return θ a Jacobian step nearer to the goal and inside the limits.
+def predict(
+    arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal
+) -> tuple[Angles, Chain] | None:
+    """Return θ nearer to the goal, inside the limits, and its chain.
 
     None where the goal is so far away that this is a cold start.
     """
-    arms = _arms(arm, links)
-    error = _error(arms[0], goal.position)
-    if error is None or (goal.tool and dot(links[2], goal.tool) < _NEAR_COSINE):
+    if goal.tool and dot(links[2], goal.tool) < _NEAR_COSINE:
         return None
-    if goal.tool is None:
-        moved = _position_step(theta, links, arms, error)
-        if moved is not None and inside(moved, arm.limits):
-            return moved
-    return _step_inside_limits(arm, theta, *_equations(theta, links, arms, error, goal))
+    for _ in range(_MOST_STEPS):
+        arms = _arms(arm, links)
+        error = _error(arms[0], goal.position)
+        if error is None:
+            return None
+        moved = _position_step(theta, links, arms, error) if goal.tool is None else None
+        free = moved is not None and inside(moved, arm.limits)
+        if free:
+            theta = moved
+        else:
+            rows, wanted = _equations(theta, links, arms, error, goal)
+            theta, free = _step_inside_limits(arm, theta, rows, wanted)
+        links = chain(theta)
+        # What a step leaves over is the closure's to remove; close to a singularity or a limit
+        # that little would still turn a pan far or leave the limits, so there it is refined.
+        if (free and _clear(theta)) or max(goal.errors(arm, theta, links)) < _EXACT:
+            break
+    return theta, links
+
+
+def _clear(theta: Angles) -> bool:
+    """Tell whether shoulder, elbow and wrist are clear of their singularities."""
+    small = _SMALL_TILT
+    return not (-small < theta[1] < small or -small < theta[3] < small or -small < theta[5] < small)
 
 
 def _arms(arm: CanonicalArm, links: Chain) -> tuple[Vector, Vector, Vector]:
@@ -99,44 +126,50 @@ def _position_step(
 
 def _equations(
     theta: Angles, links: Chain, arms: tuple[Vector, Vector, Vector], error: Vector, goal: Goal
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the Jacobian (n, 7) and the error (n,) of what the goal fixes: 3, 5 or 6 equations."""
+) -> tuple[list[Row], Row]:
+    """Return the Jacobian's rows and the errors of what the goal fixes: 3, 5 or 6 equations."""
     upper, fore, tool, axis2, axis4, axis6 = links
     tip, from_elbow, from_wrist = arms
     axes = ((0.0, 0.0, 1.0), axis2, upper, axis4, fore, axis6, tool)
     reach = (tip, tip, from_elbow, from_elbow, from_wrist, from_wrist, from_wrist)
     columns = [cross(axis, arm) for axis, arm in zip(axes, reach, strict=True)]
-    jacobian, wanted = np.array(columns).T, np.array(error)
     if goal.tool is None:
-        return jacobian, wanted
-    turn = cross(tool, goal.tool)
+        return list(zip(*columns, strict=True)), error
+    turn, _ = goal.turn(theta, links)
     if goal.roll:
-        (x, y), (goal_x, goal_y) = tool_axes(theta, links), goal.roll
-        turn = scale(add(add(turn, cross(x, goal_x)), cross(y, goal_y)), 0.5)
-        directions = np.eye(3)
-    else:
-        directions = np.array((axis6, cross(axis6, tool)))
-    return (
-        np.concatenate((jacobian, directions @ np.array(axes).T)),
-        np.concatenate((wanted, directions @ np.array(turn))),
-    )
+        return [*zip(*columns, strict=True), *zip(*axes, strict=True)], (*error, *turn)
+    # Turning about the tool itself is free: only its two components beside the tool count.
+    across = cross(axis6, tool)
+    beside = [[dot(axis, axis6) for axis in axes], [dot(axis, across) for axis in axes]]
+    wanted = (*error, dot(turn, axis6), dot(turn, across))
+    return [*zip(*columns, strict=True), *beside], wanted
 
 
 def _step_inside_limits(
-    arm: CanonicalArm, theta: Angles, jacobian: np.ndarray, error: np.ndarray
-) -> Angles:
-    """Take the damped step; a joint that would pass its limit stops there and the others go on."""
-    start, limits = np.array(theta), np.array(arm.limits)
-    step, free = np.zeros(7), np.ones(7)
-    damping = _DAMPING * np.eye(len(error))
+    arm: CanonicalArm, theta: Angles, rows: list[Row], wanted: Row
+) -> tuple[Angles, bool]:
+    """Return θ after the damped step, and whether no limit was met.
+
+    A joint that would pass its limit stops there and the others go on.
+    """
+    stopped: dict[int, float] = {}
     for _ in range(_ROUNDS):
-        moving = jacobian * free
-        rest = error - jacobian @ (step * (1.0 - free))
-        found = np.linalg.solve(moving @ moving.T + damping, rest) @ moving
-        step = np.where(free, found / max(1.0, np.abs(found).max() / _LARGEST_STEP), step)
-        inside_step = np.clip(start + step, limits[:, 0], limits[:, 1]) - start
-        stopped = inside_step != step
-        if not stopped.any():
-            break
-        step, free = np.where(stopped, inside_step, step), np.where(stopped, 0.0, free)
-    return tuple(np.clip(start + step, limits[:, 0], limits[:, 1]).tolist())
+        step = damped_step(rows, wanted, _DAMPING)
+        longest = max(map(abs, step))
+        if longest > _LARGEST_STEP:
+            step = [part * _LARGEST_STEP / longest for part in step]
+        for joint, part in stopped.items():
+            step[joint] = part
+        moved = tuple([a + b for a, b in zip(theta, step, strict=True)])
+        if inside(moved, arm.limits):
+            return moved, not stopped
+        held = clamped(moved, arm.limits)
+        outside = [j for j in range(7) if held[j] != moved[j] and j not in stopped]
+        beyond = {j: held[j] - theta[j] for j in outside}
+        stopped |= beyond
+        wanted = [
+            value - sum([row[joint] * part for joint, part in beyond.items()])
+            for row, value in zip(rows, wanted, strict=True)
+        ]
+        rows = [[0.0 if j in stopped else part for j, part in enumerate(row)] for row in rows]
+    return held, False

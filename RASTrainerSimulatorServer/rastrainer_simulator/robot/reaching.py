@@ -43,7 +43,8 @@ class Reached(NamedTuple):
 def reach_position(arm: CanonicalArm, target: Vector, start: Start, most: int) -> Reached:
     """Bring the tip to a target (m), the tool's direction being free."""
     passes = 0
-    if length(target) <= arm.upper + arm.fore + arm.tool:
+    x, y, z = target
+    if x * x + y * y + z * z <= arm.reach * arm.reach:
         theta, passes = _iterate(arm, target, start, most)
         if theta is not None:
             return Reached(theta, passes, "")
