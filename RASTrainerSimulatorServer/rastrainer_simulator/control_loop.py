@@ -93,6 +93,7 @@ class ControlLoop:
         self._punctuality = Punctuality()
         self._thread = threading.Thread(target=self._run, name="control loop", daemon=True)
         self._is_stopping = threading.Event()
+        self._is_over = False
         self.latest: SimulationState = self._state
         """What may be told of the last tick; the same as the subscribers got."""
 
@@ -112,9 +113,6 @@ class ControlLoop:
         self._is_stopping.set()
         if self._thread.is_alive():
             self._thread.join()
-        self._recorder.stop(self._state)
-        self._writer.shutdown(wait=True)
-        self._tell_the_rest()
 
     @property
     def is_running(self) -> bool:
@@ -167,6 +165,8 @@ class ControlLoop:
             # Drawn outside of the simulation: a seed used twice must not make one trial of two.
             arguments.setdefault("trialId", str(uuid.uuid4()))
         self._arrived.append(Command(name, arguments, ticket, sender))
+        if self._is_over:
+            self._refuse(ticket)
         return future
 
     def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
@@ -180,7 +180,9 @@ class ControlLoop:
             with precise_timing():
                 self._tick_on_time()
         except Exception:
-            _log.exception("The control loop has stopped")
+            _log.exception("The control loop has broken down")
+        finally:
+            self._finish()
 
     def _tick_on_time(self) -> None:
         due = time.monotonic()
@@ -273,9 +275,15 @@ class ControlLoop:
         if future is not None and future.set_running_or_notify_cancel():
             future.set_result(answer)
 
-    def _tell_the_rest(self) -> None:
-        """Answer what was still on its way to the disk, and refuse what came too late."""
+    def _refuse(self, ticket: int) -> None:
+        self._give(Answer(ticket, False, "The simulator is shutting down."))
+
+    def _finish(self) -> None:
+        """Write all, answer what was on its way to the disk, and refuse what came too late."""
+        self._is_over = True
+        self._recorder.stop(self._state)
+        self._writer.shutdown(wait=True)
         for answer in self._held.pass_on(StepResult(self._state), None)[0].answers:
             self._give(answer)
         for ticket in tuple(self._answers):
-            self._give(Answer(ticket, False, "The simulator is shutting down."))
+            self._refuse(ticket)

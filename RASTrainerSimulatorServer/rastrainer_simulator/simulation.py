@@ -89,6 +89,7 @@ class Simulation:
             answers.append(Answer(command.ticket, reply.ok, reply.message, reply.data))
             if self._training.truth is not self._placed:
                 self._put_in_place()
+        proximity = self._proximity
         wish = self._wish(dt, operator_input)
         sim_time = before.sim_time + dt
         if wish.ended is not None:
@@ -98,8 +99,8 @@ class Simulation:
             if wish.motion is Motion.STICK:
                 self._operator = operator_input.operator
         self.state = self._state(before.tick + 1, sim_time, wish.motion)
-        if self.state.proximity is not before.proximity:
-            events.append(_proximity(before.proximity, self.state, sim_time))
+        if self._proximity is not proximity:
+            events.append(_proximity(proximity, self.state, sim_time))
         return StepResult(self.state, tuple(events), tuple(answers))
 
     def _carry_out(self, command: Command, sim_time: float) -> Reply:
