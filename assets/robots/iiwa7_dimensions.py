@@ -46,7 +46,7 @@ LINK_NAMES = (*(f"{LINK_PREFIX}{number}" for number in range(len(LINK_MASSES))),
 MASSES = dict(zip(LINK_NAMES, (*LINK_MASSES, TOOL_MASS), strict=True))
 
 COLORS: dict[str, Color] = {
-    "grey": (0.80, 0.81, 0.82, 1.0),
+    "grey": (0.75, 0.76, 0.77, 1.0),
     "orange": (0.95, 0.40, 0.05, 1.0),
     "dark": (0.10, 0.10, 0.11, 1.0),
     "metal": (0.62, 0.63, 0.65, 1.0),

@@ -1,0 +1,1 @@
+"""What people see of the simulation; views draw what it says and decide nothing."""

@@ -1,0 +1,66 @@
+"""The head as it is seen: skin, numbered fiducials in the color of their state, and its stand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from vtkmodules.vtkRenderingCore import vtkActor
+
+from rastrainer.head_mesh import HeadMesh
+from rastrainer_simulator.views.actors import actor, surface
+from rastrainer_simulator.views.materials import (
+    MARK_RIM,
+    NEXT,
+    NUMBER,
+    SKIN,
+    TOUCHED,
+    WAITING,
+    Material,
+)
+from rastrainer_simulator.views.room import head_stand
+from rastrainer_simulator.views.skin_marks import skin_marks
+
+MM_TO_M = np.diag([0.001, 0.001, 0.001, 1.0])
+SKIN_CREASE_DEG = 80.0
+
+
+@dataclass(frozen=True)
+class ShownHead:
+    """The head and its fiducials, as they are to be shown.
+
+    Attributes:
+        mesh: the skin, RAS mm.
+        head_to_world: (4, 4) float, RAS mm to World mm.
+        fiducials: (n, 3) float, RAS mm.
+        labels: one for each fiducial.
+        touched: labels of those that are done.
+        next_point: label of the one to touch now.
+    """
+
+    mesh: HeadMesh
+    head_to_world: np.ndarray
+    fiducials: np.ndarray
+    labels: Sequence[str]
+    touched: frozenset[str] = frozenset()
+    next_point: str | None = None
+
+
+def head_actors(head: ShownHead) -> list[vtkActor]:
+    """Return the actors of skin, marks and stand."""
+    skin_to_world = MM_TO_M @ head.head_to_world
+    skin = surface(head.mesh.vertices, head.mesh.triangles)
+    actors = [actor(skin, SKIN, skin_to_world, SKIN_CREASE_DEG)]
+    for mark in skin_marks(head.mesh, head.fiducials, head.labels):
+        actors.append(actor(mark.rim, MARK_RIM, skin_to_world))
+        actors.append(actor(mark.dot, _state(head, mark.label), skin_to_world))
+        actors.append(actor(mark.number, NUMBER, skin_to_world))
+    in_metres = skin_to_world @ np.linalg.inv(MM_TO_M)
+    return [*actors, *head_stand(head.mesh.vertices / 1000.0, in_metres)]
+
+
+def _state(head: ShownHead, label: str) -> Material:
+    if label in head.touched:
+        return TOUCHED
+    return NEXT if label == head.next_point else WAITING
