@@ -75,6 +75,13 @@ class HeadMesh:
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         return normals / np.where(lengths > 0, lengths, 1.0)
 
+    @cached_property
+    def triangle_spheres(self) -> tuple[np.ndarray, np.ndarray]:
+        """Centers (m, 3) and radii (m,) of spheres that hold the triangles, mm."""
+        corners = self.vertices[self.triangles]
+        centers = corners.mean(axis=1)
+        return centers, np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+
     @property
     def centroid(self) -> np.ndarray:
         """(3,) float: the center of mass of the closed body, RAS mm."""

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer import transforms
 from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
+from rastrainer.head_pose import Perturbation, perturbed_pose
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.tasks import LIMIT_MM, Task, is_task_name, read_task
 
@@ -21,21 +21,6 @@ FILE_NAME = "scenario.json"
 FORMAT_VERSION = 1
 CAMERAS = ("close-up", "far")
 MOST_TASKS = 20
-
-
-@dataclass(frozen=True)
-class Perturbation:
-    """How far the head of a trial may stand from its nominal pose.
-
-    Attributes:
-        translation_mm: along each axis of World.
-        yaw_deg: about the vertical.
-        tilt_deg: about a horizontal axis of any direction.
-    """
-
-    translation_mm: float
-    yaw_deg: float
-    tilt_deg: float
 
 
 @dataclass(frozen=True)
@@ -131,15 +116,7 @@ class Scenario:
 
         The head is turned about its target, then moved. The same seed gives the same pose.
         """
-        random = np.random.default_rng(seed)
-        limits = self.perturbation
-        shift = random.uniform(-limits.translation_mm, limits.translation_mm, 3)
-        yaw = np.radians(random.uniform(-limits.yaw_deg, limits.yaw_deg))
-        toward, tilt = random.uniform([0.0, 0.0], [2.0 * np.pi, np.radians(limits.tilt_deg)])
-        lean = _rotation(np.array([np.cos(toward), np.sin(toward), 0.0]), tilt)
-        turn = lean @ _rotation(np.array([0.0, 0.0, 1.0]), yaw)
-        pivot = transforms.apply(self.head_to_world, self.target_position)
-        return transforms.rigid(turn, pivot + shift - turn @ pivot) @ self.head_to_world
+        return perturbed_pose(self.head_to_world, self.target_position, self.perturbation, seed)
 
 
 def load_scenario(folder: Path | str) -> Scenario:
@@ -230,13 +207,6 @@ def _rigid(fields: Fields, name: str) -> np.ndarray:
     if not is_rotation or np.linalg.det(rotation) < 0 or matrix[3].tolist() != [0, 0, 0, 1]:
         raise fields.error(name, "a rigid transform, 4×4, row by row, in mm")
     return matrix
-
-
-def _rotation(axis: np.ndarray, angle: float) -> np.ndarray:
-    """Return the rotation (3, 3) about a unit vector by an angle in rad (Rodrigues)."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
 
 
 def _array(values: list[float] | np.ndarray) -> np.ndarray:

@@ -51,18 +51,20 @@ class SurfaceGraph:
 
     def _from_corners(self, point: NearestPoint, needed: set[int]) -> dict[int, float]:
         """Return the distances of vertices, as far as `needed` ones are reached."""
-        waiting, done, missing = self._leaving(point), {}, set(needed)
+        waiting, missing = self._leaving(point), set(needed)
+        shortest = {vertex: length for length, vertex in waiting}
         heapq.heapify(waiting)
         while waiting and missing:
             length, vertex = heapq.heappop(waiting)
-            if vertex in done:
+            if length > shortest[vertex]:
                 continue
-            done[vertex] = length
             missing.discard(vertex)
             for way in range(self._starts[vertex], self._starts[vertex + 1]):
-                if self._ends[way] not in done:
-                    heapq.heappush(waiting, (length + self._lengths[way], self._ends[way]))
-        return done
+                end, further = self._ends[way], length + self._lengths[way]
+                if further < shortest.get(end, np.inf):
+                    shortest[end] = further
+                    heapq.heappush(waiting, (further, end))
+        return shortest
 
     def _to_point(
         self, reached: dict[int, float], first: NearestPoint, last: NearestPoint

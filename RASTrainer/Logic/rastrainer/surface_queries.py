@@ -28,13 +28,12 @@ class NearestPoint:
 
 def nearest_on_mesh(mesh: HeadMesh, point: np.ndarray) -> NearestPoint:
     """Return the point of the surface nearest to `point` (3,)."""
-    corners = mesh.vertices[mesh.triangles]
-    centers = corners.mean(axis=1)
-    reach = np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
-    to_vertex = np.linalg.norm(mesh.vertices - point, axis=1).min()
-    near = np.flatnonzero(np.linalg.norm(centers - point, axis=1) - reach <= to_vertex)
-    weights = _nearest_weights(corners[near], np.asarray(point, dtype=float))
-    positions = np.einsum("ij,ijk->ik", weights, corners[near])
+    centers, radii = mesh.triangle_spheres
+    to_centers = np.linalg.norm(centers - point, axis=1)
+    near = np.flatnonzero(to_centers - radii <= (to_centers + radii).min())
+    corners = mesh.vertices[mesh.triangles[near]]
+    weights = _nearest_weights(corners, np.asarray(point, dtype=float))
+    positions = np.einsum("ij,ijk->ik", weights, corners)
     distances = np.linalg.norm(positions - point, axis=1)
     best = int(np.argmin(distances))
     return NearestPoint(positions[best], float(distances[best]), int(near[best]), weights[best])

@@ -1,0 +1,54 @@
+"""Where the head of a trial stands: near its nominal pose, and known only to the simulator."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer import transforms
+
+
+@dataclass(frozen=True)
+class Perturbation:
+    """How far the head of a trial may stand from its nominal pose.
+
+    Attributes:
+        translation_mm: along each axis of World.
+        yaw_deg: about the vertical.
+        tilt_deg: about a horizontal axis of any direction.
+    """
+
+    translation_mm: float
+    yaw_deg: float
+    tilt_deg: float
+
+
+def perturbed_pose(
+    head_to_world: np.ndarray, pivot: np.ndarray, limits: Perturbation, seed: int
+) -> np.ndarray:
+    """Return the pose of the head in the trial of a seed, (4, 4) float, mm.
+
+    The head is turned about a point of it, then moved. The same seed gives the same pose.
+
+    Args:
+        head_to_world: (4, 4) float, the nominal pose.
+        pivot: (3,) float, RAS mm.
+        limits: how far the pose may be from it.
+        seed: 0 or above.
+    """
+    random = np.random.default_rng(seed)
+    shift = random.uniform(-limits.translation_mm, limits.translation_mm, 3)
+    yaw = np.radians(random.uniform(-limits.yaw_deg, limits.yaw_deg))
+    toward, tilt = random.uniform([0.0, 0.0], [2.0 * np.pi, np.radians(limits.tilt_deg)])
+    lean = _rotation(np.array([np.cos(toward), np.sin(toward), 0.0]), tilt)
+    turn = lean @ _rotation(np.array([0.0, 0.0, 1.0]), yaw)
+    center = transforms.apply(head_to_world, pivot)
+    return transforms.rigid(turn, center + shift - turn @ center) @ head_to_world
+
+
+def _rotation(axis: np.ndarray, angle: float) -> np.ndarray:
+    """Return the rotation (3, 3) about a unit vector by an angle in rad (Rodrigues)."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
