@@ -10,7 +10,7 @@ import numpy as np
 _LONG = 1.35  # A solid longer than this times its width gets a capsule for each half.
 _FIRST_STEP, _LAST_STEP = 0.02, 0.0003
 _SLICE = 0.0005
-_SLACK = 0.1
+_SLACK = 0.2
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ def _sphere_directions(count: int = 200) -> np.ndarray:
 def capsules_along(points: np.ndarray, start: float) -> tuple[Capsule, ...]:
     """Return a row of capsules about the z axis that hold all `points` (k, 3) float with z ≥ start.
 
-    Where the solid widens, a new capsule begins as soon as one would be more than a tenth of the
+    Where the solid widens, a new capsule begins as soon as one would be more than a fifth of the
     distance from the origin too wide: a tapered tool keeps its slender end. `points` are
     `surface_points` spaced by at most half a millimetre.
     """

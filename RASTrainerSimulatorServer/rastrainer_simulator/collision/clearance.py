@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from rastrainer_simulator.vectors import Vector
 
+FAR = 0.1
+"""Clearances of links, self and table are exact up to here, m; what is farther counts as FAR."""
 
-@dataclass(frozen=True)
-class Nearest:
+
+class Nearest(NamedTuple):
     """The place of the head's surface that is nearest to the tip or to the shaft.
 
     Attributes:
@@ -24,19 +26,18 @@ class Nearest:
     triangle: int
 
 
-@dataclass(frozen=True)
-class Clearance:
+class Clearance(NamedTuple):
     """Signed clearances of one posture, in m (below zero: overlap); points and normals in World.
 
     Attributes:
         tip: the very tip of the tool against the head.
         shaft: the rest of the tool against the head; it starts 3 mm behind the tip.
-        links_m: the links, flange included, against the head.
-        links_worst: the link that is nearest to the head.
-        self_m: the arm against itself, links at least three joints apart.
-        self_worst: the two links nearest to each other.
-        table_m: arm and tool against the table and the head's stand.
-        table_worst: the link nearest to them.
+        links_m: the links, flange included, against the head; at most FAR.
+        links_worst: the link that is nearest to the head, "" where none is within FAR.
+        self_m: the arm against itself, links at least three joints apart; at most FAR.
+        self_worst: the two links nearest to each other, () where none are within FAR.
+        table_m: arm and tool against the table and the head's stand; at most FAR.
+        table_worst: the link nearest to them, "" where none is within FAR.
     """
 
     tip: Nearest
@@ -44,7 +45,7 @@ class Clearance:
     links_m: float
     links_worst: str
     self_m: float
-    self_worst: tuple[str, str]
+    self_worst: tuple[str, ...]
     table_m: float
     table_worst: str
 

@@ -67,13 +67,13 @@ class Collision:
         them, as `Kinematics.links` gives them.
         """
         posed = self._arm.pose(link_to_world)
-        shaft, links, links_worst = self._head.nearest_to_arm(posed)
+        shaft, links_m, links_worst = self._head.nearest_to_arm(posed)
         self_m, self_worst = self._self.nearest(posed)
         table_m, table_worst = self._table.nearest(posed)
         return Clearance(
             tip=self._head.nearest_to_point(posed.tip),
             shaft=shaft,
-            links_m=links.distance_m,
+            links_m=links_m,
             links_worst=links_worst,
             self_m=self_m,
             self_worst=self_worst,

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-import fcl
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.collision.clearance import Nearest
+from rastrainer_simulator.collision.clearance import FAR, Nearest
 from rastrainer_simulator.collision.head_surface import HeadSurface
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.thin_segment import thin_segment
@@ -30,6 +29,8 @@ class HeadClearance:
         self._head = head
         self._arm = arm
         self._segments = [thin_segment(c.start, c.end) for c in arm.capsules]
+        self._bodies = arm.body.tolist()
+        # What each capsule's clearance was when it was last queried, and where its axis was then.
         self._known = np.zeros(len(arm.capsules))
         self._known_at = np.zeros((len(arm.capsules), 2, 3))
         self.set_pose(np.eye(4))
@@ -58,34 +59,41 @@ class HeadClearance:
         """Return the place of the head nearest to a point, World, m."""
         return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
 
-    def nearest_to_arm(self, posed: PosedArm) -> tuple[Nearest, Nearest, str]:
-        """Return what is nearest to the shaft, what to the links, and the name of that link."""
+    def nearest_to_arm(self, posed: PosedArm) -> tuple[Nearest, float, str]:
+        """Return what is nearest to the shaft; the links' clearance, m, and the nearest of them."""
         moved = posed.ends - self._known_at
-        motion = np.sqrt(np.einsum("nki,nki->nk", moved, moved)).max(axis=1)
-        bounds = (self._known - motion - self._arm.radii - _ROUNDING).tolist()
+        motion = np.sqrt(np.einsum("nki,nki->kn", moved, moved))
+        bounds = (self._known - np.maximum(motion[0], motion[1])).tolist()
+        poses = self._world_to_head @ posed.poses
         count = self._arm.link_count
-        links, row = self._nearest(posed, bounds, range(count))
-        shaft, _ = self._nearest(posed, bounds, range(count, len(bounds)))
-        return shaft, links, self._arm.names[row]
+        shaft, _ = self._nearest(posed, poses, bounds, range(count, len(bounds)), math.inf)
+        links, row = self._nearest(posed, poses, bounds, range(count), FAR)
+        if links is None:
+            return self._in_world(shaft), FAR, ""
+        return self._in_world(shaft), links.distance_m, self._arm.names[row]
 
-    def _nearest(self, posed: PosedArm, bounds: list[float], rows: range) -> tuple[Nearest, int]:
+    def _nearest(
+        self, posed: PosedArm, poses: np.ndarray, bounds: list[float], rows: range, limit: float
+    ) -> tuple[Nearest | None, int]:
+        """Return what is nearest to some of the capsules, and to which, if nearer than `limit`."""
         best, best_row = None, -1
         for row in sorted(rows, key=bounds.__getitem__):
-            if best is not None and bounds[row] >= best.distance_m:
+            if bounds[row] >= limit:
                 break
-            found = self._query(posed, row)
-            if best is None or found.distance_m < best.distance_m:
-                best, best_row = found, row
-        return self._in_world(best), best_row
+            found = self._query(posed, poses[self._bodies[row]], row)
+            distance = found.distance_m
+            # Of two equally near the first counts, in whatever order they were looked at.
+            if distance < limit or (distance == limit and row < best_row):
+                best, best_row, limit = found, row, distance
+        return best, best_row
 
-    def _query(self, posed: PosedArm, row: int) -> Nearest:
-        pose = self._world_to_head @ posed.poses[self._arm.body[row]]
-        segment = self._segments[row]
-        segment.setTransform(fcl.Transform(pose[:3, :3], pose[:3, 3]))
-        start, end = (_moved(self._world_to_head_rows, point) for point in posed.ends[row].tolist())
-        radius = self._arm.capsules[row].radius
+    def _query(self, posed: PosedArm, pose: np.ndarray, row: int) -> Nearest:
+        segment, radius = self._segments[row], self._arm.capsules[row].radius
+        segment.setRotation(pose[:3, :3])
+        segment.setTranslation(pose[:3, 3])
+        start, end = (_moved(self._world_to_head_rows, point) for point in posed.axes[row])
         found = self._head.nearest_to_segment(segment, start, end, radius)
-        self._known[row] = found.distance_m + radius
+        self._known[row] = found.distance_m - _ROUNDING
         self._known_at[row] = posed.ends[row]
         return found
 

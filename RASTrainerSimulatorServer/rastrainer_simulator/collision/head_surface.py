@@ -58,8 +58,7 @@ class HeadSurface:
         goes through the surface, the distance is −radius: at least so deep is the capsule.
         """
         distance, on_head, triangle = self._query(segment)
-        found = self._signed(_foot(start, end, on_head), distance, on_head, triangle)
-        return Nearest(found.distance_m - radius, found.point, found.normal, triangle)
+        return self._signed(_foot(start, end, on_head), distance, on_head, triangle, radius)
 
     def _query(self, other: fcl.CollisionObject) -> tuple[float, np.ndarray, int]:
         result = fcl.DistanceResult()
@@ -67,17 +66,23 @@ class HeadSurface:
         return max(distance, 0.0), result.nearest_points[0], result.b1
 
     def _signed(
-        self, point: Vector, distance: float, on_head: np.ndarray, triangle: int
+        self,
+        point: Vector,
+        distance: float,
+        on_head: np.ndarray,
+        triangle: int,
+        radius: float = 0.0,
     ) -> Nearest:
         nx, ny, nz = self._surface.pseudonormal(triangle, on_head)
         x, y, z = foot = tuple(on_head.tolist())
-        dx, dy, dz = point[0] - x, point[1] - y, point[2] - z
         if distance < _TOUCHING:
             size = math.sqrt(nx * nx + ny * ny + nz * nz)
-            return Nearest(distance, foot, (nx / size, ny / size, nz / size), triangle)
+            return Nearest(distance - radius, foot, (nx / size, ny / size, nz / size), triangle)
+        dx, dy, dz = point[0] - x, point[1] - y, point[2] - z
         if nx * dx + ny * dy + nz * dz < 0.0:
             distance = -distance
-        return Nearest(distance, foot, (dx / distance, dy / distance, dz / distance), triangle)
+        normal = (dx / distance, dy / distance, dz / distance)
+        return Nearest(distance - radius, foot, normal, triangle)
 
 
 def _foot(start: Vector, end: Vector, point: np.ndarray) -> Vector:

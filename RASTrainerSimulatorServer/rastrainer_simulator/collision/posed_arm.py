@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,12 +11,12 @@ from rastrainer_simulator.collision.robot_shape import RobotShape
 from rastrainer_simulator.vectors import Vector
 
 
-@dataclass(frozen=True)
-class PosedArm:
+class PosedArm(NamedTuple):
     """The arm's n capsules in World, m; the rows are those of `ArmCapsules`."""
 
     poses: np.ndarray  # (links + 1, 4, 4) float: LinkToWorld of each link, ToolTipToWorld last
     ends: np.ndarray  # (n, 2, 3) float: start and end of each axis
+    axes: list[list[Vector]]  # the same as plain floats
     middles: np.ndarray  # (n, 3) float
     tip: Vector
 
@@ -45,7 +45,6 @@ class ArmCapsules:
     def pose(self, link_to_world: Mapping[str, np.ndarray]) -> PosedArm:
         """Return the capsules in World; `link_to_world` holds (4, 4) float by link, the tip too."""
         poses = np.array([link_to_world[name] for name in self._frames])
-        ends = (poses[self.body] @ self._ends)[:, :3].swapaxes(1, 2)
-        return PosedArm(
-            poses, ends, (ends[:, 0] + ends[:, 1]) / 2.0, tuple(poses[-1, :3, 3].tolist())
-        )
+        ends = (poses.take(self.body, 0) @ self._ends)[:, :3].swapaxes(1, 2)
+        middles = (ends[:, 0] + ends[:, 1]) / 2.0
+        return PosedArm(poses, ends, ends.tolist(), middles, tuple(poses[-1, :3, 3].tolist()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rastrainer_simulator.collision.clearance import FAR
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -19,25 +20,20 @@ class SelfClearance:
         first, second = np.triu_indices(len(arm.capsules), k=1)
         apart = np.abs(arm.joints[first] - arm.joints[second]) >= APART
         self._first, self._second = first[apart], second[apart]
+        self._pairs = list(zip(self._first.tolist(), self._second.tolist(), strict=True))
         self._reaches = arm.reach[self._first] + arm.reach[self._second]
         self._radii = (arm.radii[self._first] + arm.radii[self._second]).tolist()
-        self._names = [
-            (arm.names[i], arm.names[j]) for i, j in zip(self._first, self._second, strict=True)
-        ]
+        self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
 
-    def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, str]]:
-        """Return the least signed distance, m, and the two links it is between."""
-        between = posed.middles[self._first] - posed.middles[self._second]
+    def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...]]:
+        """Return the least signed distance, m, and the two links it is between; at most FAR."""
+        between = posed.middles.take(self._first, 0) - posed.middles.take(self._second, 0)
         bounds = np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
-        pair = int(bounds.argmin())
-        best = self._distance(posed, pair)
-        for other in np.flatnonzero(bounds < best).tolist():
-            distance = self._distance(posed, other)
+        best, names = FAR, ()
+        for pair in np.flatnonzero(bounds < FAR).tolist():
+            first, second = self._pairs[pair]
+            axes = segment_distance(*posed.axes[first], *posed.axes[second])
+            distance = axes - self._radii[pair]
             if distance < best:
-                best, pair = distance, other
-        return best, self._names[pair]
-
-    def _distance(self, posed: PosedArm, pair: int) -> float:
-        first = posed.ends[self._first[pair]].tolist()
-        second = posed.ends[self._second[pair]].tolist()
-        return segment_distance(*first, *second) - self._radii[pair]
+                best, names = distance, self._names[pair]
+        return best, names

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rastrainer_simulator.collision.clearance import FAR
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -32,7 +33,9 @@ class TableClearance:
         self._table = surroundings.table_height
         self._stand_radius = surroundings.stand_radius
         self._stand: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
-        self._moving = np.where(arm.joints > 0, 0.0, math.inf)
+        fixed = np.where(arm.joints > 0, 0.0, -math.inf)
+        self._below = arm.radii + surroundings.table_height + fixed
+        self._around = arm.reach + surroundings.stand_radius + fixed
 
     def put_stand_under(self, base: np.ndarray) -> None:
         """Put the stand under the middle of the head's base (3,) float, World."""
@@ -42,25 +45,25 @@ class TableClearance:
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
 
     def nearest(self, posed: PosedArm) -> tuple[float, str]:
-        """Return the least signed distance, m, and the link that is nearest."""
-        heights = posed.ends[:, :, 2].min(axis=1) - self._arm.radii - self._table + self._moving
+        """Return the least signed distance, m, and the link that is nearest; at most FAR."""
+        heights = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
         row = int(heights.argmin())
-        best = float(heights[row])
+        best, name = min((FAR, ""), (float(heights[row]), self._arm.names[row]))
         tip = posed.tip[2] - self._table
         if tip < best:
-            best, row = tip, len(heights) - 1
-        if self._stand is not None:
-            best, row = self._nearest_to_stand(posed, best, row)
-        return best, self._arm.names[row]
+            best, name = tip, self._arm.names[-1]
+        if self._stand is None:
+            return best, name
+        return self._nearest_to_stand(posed, best, name)
 
-    def _nearest_to_stand(self, posed: PosedArm, best: float, row: int) -> tuple[float, int]:
+    def _nearest_to_stand(self, posed: PosedArm, best: float, name: str) -> tuple[float, str]:
         start, end = self._stand
-        aside = posed.middles[:, :2] - start[:2]
-        bounds = np.sqrt(np.einsum("ij,ij->i", aside, aside)) - self._arm.reach
-        bounds += self._moving - self._stand_radius
-        for other in np.flatnonzero(bounds < best).tolist():
-            axis = segment_distance(*posed.ends[other].tolist(), start, end)
-            distance = axis - self._arm.capsules[other].radius - self._stand_radius
+        away = posed.middles - end
+        np.maximum(away[:, 2], 0.0, out=away[:, 2])
+        bounds = np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around
+        for row in np.flatnonzero(bounds < best).tolist():
+            axes = segment_distance(*posed.axes[row], start, end)
+            distance = axes - self._arm.capsules[row].radius - self._stand_radius
             if distance < best:
-                best, row = distance, other
-        return best, row
+                best, name = distance, self._arm.names[row]
+        return best, name
