@@ -1,6 +1,13 @@
+import numpy as np
 import pytest
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
 
+from rastrainer import transforms
+from rastrainer.head_mesh import HeadMesh, write_head_mesh
+from rastrainer.scenario import Perturbation, Scenario
 from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.tasks import LABELS, Task
 from Testing.slicer.simulator_double import SimulatorDouble
 
 
@@ -18,3 +25,79 @@ def scene(headless_scene):
 def simulator():
     with SimulatorDouble() as double:
         yield double
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    """A ball of a head with three tasks on it."""
+    sphere = vtk.vtkSphereSource()
+    sphere.SetRadius(90.0)
+    sphere.SetThetaResolution(40)
+    sphere.SetPhiResolution(30)
+    sphere.Update()
+    surface = sphere.GetOutput()
+    vertices = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    write_head_mesh(tmp_path / "head.ply", HeadMesh(vertices, triangles))
+    names = {"trial-run": "Trial run", "task-1": "Task 1", "task-2": "Task 2"}
+    return Scenario(
+        folder=tmp_path,
+        name="ball",
+        title="Ball",
+        head_mesh=tmp_path / "head.ply",
+        target_name="center",
+        target_position=np.array([0.0, 10.0, -20.0]),
+        head_to_world=transforms.rigid(np.diag([-1.0, -1.0, 1.0]), np.array([500.0, 0.0, 300.0])),
+        perturbation=Perturbation(20.0, 10.0, 5.0),
+        tasks=tuple(
+            make_task(name, title, seed) for seed, (name, title) in enumerate(names.items())
+        ),
+        cameras={},
+        furniture=None,
+        provenance=None,
+    )
+
+
+def make_task(name, title, seed):
+    directions = np.random.default_rng(seed).normal(size=(15, 3))
+    directions[:, 2] = np.abs(directions[:, 2])
+    fiducials = 90.0 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    return Task(name, title, LABELS, fiducials, 1.0 + seed)
+
+
+@pytest.fixture
+def make_record(scenario):
+    """Returns a function that makes the record of a played trial, as JSON."""
+
+    def make(trial_id, task="task-1", seed=1, **changes):
+        random = np.random.default_rng(seed)
+        touched = transforms.apply(
+            scenario.perturbed_head_to_world(seed),
+            scenario.task(task).fiducials + random.normal(0.0, 0.7, (15, 3)),
+        )
+        points = [
+            {
+                "label": label,
+                "positionMm": position.tolist(),
+                "simTime": 6.0 * (row + 1),
+                "utc": f"2026-03-02T10:00:{row:02d}Z",
+            }
+            for row, (label, position) in enumerate(zip(LABELS, touched, strict=True))
+        ]
+        return {
+            "trialId": trial_id,
+            "trainee": "T-001",
+            "task": task,
+            "mode": "desktop",
+            "scenario": "ball",
+            "startedUtc": "2026-03-02T09:59:50Z",
+            "completedUtc": "2026-03-02T10:00:20Z",
+            "completionTimeS": 90.0,
+            "points": points,
+            "rejectedTouches": 1,
+            "undoneTouches": 1,
+            "versions": {"simulator": "0.1.0"},
+            **changes,
+        }
+
+    return make

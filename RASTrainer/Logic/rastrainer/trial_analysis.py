@@ -1,0 +1,111 @@
+"""From a trial's record to its numbers: registrations, target errors, scores."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rastrainer import ctps
+from rastrainer.errors import InputError
+from rastrainer.point_list import PointList, pair
+from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration, register
+from rastrainer.scenario import Scenario
+from rastrainer.scoring import TrialScore, score_trial, task_reference
+from rastrainer.target_error import TargetError, target_error
+from rastrainer.trial_record import TrialRecord
+
+
+@dataclass(frozen=True)
+class PublishedScore:
+    """CTPS of a trial against a cohort; see `rastrainer.ctps` for what speaks against it.
+
+    Attributes:
+        published: 100·(CT score − RMSE penalty), from which the paper's tables follow.
+        equation_3: the paper's equation 3 as printed: half of it.
+        reference: what the cohort gave to compare with.
+    """
+
+    published: float
+    equation_3: float
+    reference: ctps.CohortReference
+
+
+@dataclass(frozen=True)
+class TrialAnalysis:
+    """The numbers of one trial.
+
+    Attributes:
+        record: the trial.
+        target_name: of the scenario's target, at which the target errors are told.
+        fits: the registration of each kind that the points allow; rigid is always there.
+        target_errors: by kind, the error to expect at the target.
+        score: ours, of the rigid registration.
+        published_score: CTPS of the rigid registration; None where no cohort was given.
+    """
+
+    record: TrialRecord
+    target_name: str
+    fits: Mapping[str, Registration]
+    target_errors: Mapping[str, TargetError]
+    score: TrialScore
+    published_score: PublishedScore | None
+
+    @property
+    def rigid(self) -> Registration:
+        """The registration that is scored."""
+        return self.fits[RIGID]
+
+    @property
+    def expected_tre(self) -> TargetError:
+        """The error to expect at the target with the registration that is scored."""
+        return self.target_errors[RIGID]
+
+
+def analyze_trial(
+    record: TrialRecord, scenario: Scenario, cohort: Sequence[ctps.Trial] = ()
+) -> TrialAnalysis:
+    """Register a trial's touches to its task's fiducials, paired by label, and score it.
+
+    Args:
+        record: the trial.
+        scenario: in which it was played.
+        cohort: trials that CTPS compares with; those of the trial's own mode count.
+
+    Raises:
+        InputError: the scenario has no such task or labels, or the points cannot be registered.
+    """
+    task = scenario.task(record.task)
+    labels, moving, fixed = pair(
+        PointList(record.labels, record.positions_mm), PointList(task.labels, task.fiducials)
+    )
+    fits = {RIGID: register(moving, fixed, RIGID, labels)}
+    for kind in (SIMILARITY, AFFINE):
+        # Points in one plane allow no affine fit; it is only looked at anyway.
+        with contextlib.suppress(InputError):
+            fits[kind] = register(moving, fixed, kind, labels)
+    errors = {kind: target_error(fit, scenario.target_position) for kind, fit in fits.items()}
+    reference = task_reference(record.task)
+    return TrialAnalysis(
+        record=record,
+        target_name=scenario.target_name,
+        fits=fits,
+        target_errors=errors,
+        score=score_trial(record.completion_time_s, errors[RIGID].expected_mm, reference),
+        published_score=_published_score(record, fits[RIGID].fre_mm, cohort),
+    )
+
+
+def _published_score(
+    record: TrialRecord, fre_mm: float, cohort: Sequence[ctps.Trial]
+) -> PublishedScore | None:
+    peers = [trial for trial in cohort if trial.mode == record.mode]
+    if not peers:
+        return None
+    reference = ctps.CohortReference.of(peers)
+    time = record.completion_time_s
+    return PublishedScore(
+        ctps.published_ctps(time, fre_mm, reference),
+        ctps.equation_3_ctps(time, fre_mm, reference),
+        reference,
+    )

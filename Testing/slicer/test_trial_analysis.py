@@ -1,0 +1,93 @@
+"""A trial's record becomes numbers, and the numbers JSON."""
+
+import json
+import uuid
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_files import read_trials
+from rastrainer.trial_record import TrialRecord
+from rastrainer.trial_results import RevealedTruth, results_json
+
+PUBLISHED = Path(__file__).parents[2] / "assets" / "studies" / "published.csv"
+
+
+@pytest.fixture
+def record(make_record):
+    return TrialRecord.from_json(make_record(str(uuid.UUID(int=1))))
+
+
+def true_tre(scenario, analysis, seed):
+    there = transforms.apply(scenario.perturbed_head_to_world(seed), scenario.target_position)
+    back = transforms.apply(analysis.rigid.matrix, there)
+    return float(np.linalg.norm(back - scenario.target_position))
+
+
+def test_the_true_error_lies_in_the_interval_nearly_always(scenario, make_record):
+    hits = 0
+    for seed in range(25):
+        analysis = analyze_trial(
+            TrialRecord.from_json(make_record(str(uuid.UUID(int=seed)), seed=seed)), scenario
+        )
+        low, high = analysis.expected_tre.interval_mm
+        hits += low <= true_tre(scenario, analysis, seed) <= high
+    assert hits >= 21
+
+
+def test_touches_are_paired_with_fiducials_by_label(scenario, make_record):
+    value = make_record(str(uuid.UUID(int=1)))
+    expected = analyze_trial(TrialRecord.from_json(value), scenario).rigid
+    positions = [point["positionMm"] for point in value["points"]]
+    for point, place in zip(value["points"], np.roll(np.arange(15), 4), strict=True):
+        point["label"], point["positionMm"] = str(place + 1), positions[place]
+    turned = analyze_trial(TrialRecord.from_json(value), scenario).rigid
+    np.testing.assert_allclose(turned.matrix, expected.matrix, atol=1e-9)
+
+
+def test_all_three_kinds_are_fitted_and_the_rigid_one_is_scored(scenario, record):
+    analysis = analyze_trial(record, scenario)
+    assert set(analysis.fits) == {"rigid", "similarity", "affine"}
+    assert analysis.score.expected_tre_mm == analysis.target_errors["rigid"].expected_mm
+    assert 0 < analysis.score.score < 100
+
+
+def test_ctps_compares_with_the_published_trials_of_the_same_mode(scenario, record):
+    analysis = analyze_trial(record, scenario, read_trials(PUBLISHED))
+    score = analysis.published_score
+    fre = analysis.rigid.fre_mm
+    assert score.published == pytest.approx(100 * (90.0 / 129.435 - (fre - 1.01) / 1.01))
+    assert score.equation_3 == pytest.approx(score.published / 2)
+
+
+def test_without_a_cohort_there_is_no_ctps(scenario, record):
+    assert analyze_trial(record, scenario).published_score is None
+
+
+def test_a_task_that_the_scenario_lacks_gets_a_sentence(scenario, make_record):
+    value = make_record(str(uuid.UUID(int=1))) | {"task": "task-9"}
+    with pytest.raises(InputError, match="it has trial-run, task-1, task-2"):
+        analyze_trial(TrialRecord.from_json(value), scenario)
+
+
+def test_the_results_are_json_with_finite_numbers(scenario, record):
+    analysis = analyze_trial(record, scenario, read_trials(PUBLISHED))
+    truth = RevealedTruth(tuple(np.eye(4).ravel()), 0.3)
+    value = json.loads(json.dumps(results_json(analysis, truth), allow_nan=False))
+    assert value["fits"]["rigid"]["fre_mm"] == analysis.rigid.fre_mm
+    assert value["truth"]["true_tre_mm"] == 0.3
+    assert np.shape(value["truth"]["head_to_world"]) == (4, 4)
+    assert "not to judge" in value["ctps"]["warning"]
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [{}, {"headToWorld": [1.0] * 16}, {"headToWorld": [1.0] * 15, "trueTreMm": 1.0}],
+)
+def test_a_truth_that_is_none_gets_a_sentence(answer):
+    with pytest.raises(InputError, match="must hold headToWorld"):
+        RevealedTruth.from_json(answer)
