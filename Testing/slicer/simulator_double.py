@@ -57,7 +57,8 @@ class SimulatorDouble:
     def send_bytes(self, data: bytes) -> None:
         with self._lock:
             for peer in self._peers:
-                peer.sendall(data)
+                with contextlib.suppress(OSError):  # A peer of an earlier connection has gone.
+                    peer.sendall(data)
 
     def send_command(self, name: str, arguments: Mapping[str, Any]) -> None:
         command = Command(self._nextNumber, name, json.dumps(arguments))

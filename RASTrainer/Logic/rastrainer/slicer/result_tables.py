@@ -38,9 +38,7 @@ def showResiduals(scene: Any, registration: Registration) -> Any:
     )
 
 
-def showFits(
-    scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError]
-) -> Any:
+def showFits(scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError]) -> Any:
     """Compare fits of the same points in a `vtkMRMLTableNode` and return it.
 
     Args:

@@ -1,0 +1,182 @@
+"""What happens when a finished trial arrives: kept, acknowledged, registered, scored, told.
+
+Nothing is lost and nothing counts twice, whatever is cut on the way. The simulator offers a trial
+until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
+without its truth is scored again over the next connection.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.ctps import Trial
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.scenario import Scenario
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+from rastrainer.slicer.trial_scene import showTrial
+from rastrainer.study import Study
+from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer.trial_results import RevealedTruth
+
+_UNDER_WAY = {Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value}
+
+
+@dataclass(frozen=True)
+class ScoredTrial:
+    """A trial with its numbers and what the simulator has revealed about it."""
+
+    analysis: TrialAnalysis
+    truth: RevealedTruth
+
+
+class TrialDesk:
+    """Takes in the trials that a link hands over.
+
+    Attributes:
+        trialScored: emits each `ScoredTrial`, once its truth is in the study.
+        problemFound: emits a sentence about a trial that could not be kept or scored.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        link: Link,
+        findScenario: Callable[[str], Scenario],
+        openStudy: Callable[[], Study],
+        cohort: Sequence[Trial] = (),
+    ) -> None:
+        """The study is opened when it is first needed; `cohort` is what CTPS compares with."""
+        self.trialScored = Signal()
+        self.problemFound = Signal()
+        self._scene = scene
+        self._link = link
+        self._findScenario = findScenario
+        self._openStudy = openStudy
+        self._cohort = cohort
+        self._study: Study | None = None
+        self._told: set[str] = set()
+        self._state: Mapping[str, Any] = {}
+        self._lastProblem = ""
+        link.trialCompleted.connect(self._receive)
+        link.stateChanged.connect(self._followTraining)
+        link.opened.connect(self._resume)
+
+    def close(self) -> None:
+        """Listen to the link no more and close the study."""
+        self._link.trialCompleted.disconnect(self._receive)
+        self._link.stateChanged.disconnect(self._followTraining)
+        self._link.opened.disconnect(self._resume)
+        if self._study is not None:
+            self._study.close()
+            self._study = None
+
+    def _followTraining(self, state: Mapping[str, Any]) -> None:
+        self._state = state
+
+    def _receive(self, value: Mapping[str, Any]) -> None:
+        """Keep a delivered trial, then acknowledge it, then go on with it."""
+        try:
+            record = TrialRecord.from_json(value)
+            analysis = self._analyze(record)
+            isRevealed = self._keep(value, record, analysis)
+        except InputError as error:
+            self._complain(_("A trial could not be kept: {error}").format(error=error))
+            return
+        self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": record.trial_id})
+        if analysis is not None and not isRevealed and record.trial_id not in self._told:
+            self._show(analysis)
+            self._tellScore(analysis, self._complain)
+
+    def _analyze(self, record: TrialRecord) -> TrialAnalysis | None:
+        try:
+            return analyze_trial(record, self._findScenario(record.scenario), self._cohort)
+        except InputError as error:
+            self._complain(_("A trial is kept but cannot be scored: {error}").format(error=error))
+            return None
+
+    def _keep(
+        self, value: Mapping[str, Any], record: TrialRecord, analysis: TrialAnalysis | None
+    ) -> bool:
+        """Store a trial with its results, once; return whether its truth is known already."""
+        study = self._openedStudy()
+        if analysis is None:
+            study.add_trial(value)
+        else:
+            study.add_trial(value, analysis.fits.values(), analysis.target_errors, analysis.score)
+        return study.trial(record.trial_id).true_tre_mm is not None
+
+    def _resume(self) -> None:
+        """Go on with trials whose score was told to nobody before the connection was cut."""
+        try:
+            records = self._openedStudy().unrevealed()
+        except InputError as error:
+            self._complain(str(error))
+            return
+        for record in records:
+            analysis = self._analyze(record)
+            if analysis is not None and record.trial_id not in self._told:
+                # A trial of another simulator is none of this one's business.
+                self._tellScore(analysis, logging.info)
+
+    def _show(self, analysis: TrialAnalysis) -> None:
+        """Show a trial in the scene, unless another one is being played there."""
+        isOther = self._state.get("trialId") != analysis.record.trial_id
+        if isOther and self._state.get("phase") in _UNDER_WAY:
+            return
+        showTrial(self._scene, self._findScenario(analysis.record.scenario), analysis)
+
+    def _tellScore(self, analysis: TrialAnalysis, complain: Callable[[str], None]) -> None:
+        trialId = analysis.record.trial_id
+        self._told.add(trialId)
+
+        def takeAnswer(reply: Reply) -> None:
+            self._told.discard(trialId)
+            try:
+                if not reply.ok:
+                    raise InputError(reply.error)
+                truth = RevealedTruth.from_json(reply.data)
+                self._openedStudy().set_truth(trialId, truth.true_tre_mm, truth.head_to_world)
+            except InputError as error:
+                complain(_("The score was not taken: {error}").format(error=error))
+                return
+            self.trialScored.emit(ScoredTrial(analysis, truth))
+
+        self._link.send(CommandName.TRIAL_SCORED, _scoreArguments(analysis), takeAnswer)
+
+    def _openedStudy(self) -> Study:
+        if self._study is None:
+            self._study = self._openStudy()
+        return self._study
+
+    def _complain(self, sentence: str) -> None:
+        """Tell a problem once, though the trial is offered every two seconds."""
+        if sentence != self._lastProblem:
+            self._lastProblem = sentence
+            self.problemFound.emit(sentence)
+
+
+def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
+    published = analysis.published_score
+    return {
+        "trialId": analysis.record.trial_id,
+        "matrix": [float(value) for value in analysis.rigid.matrix.ravel()],
+        "freMm": analysis.rigid.fre_mm,
+        "expectedTreMm": analysis.expected_tre.expected_mm,
+        "score": analysis.score.score,
+        "details": {
+            "residualsMm": analysis.rigid.residuals_mm.tolist(),
+            "treIntervalMm": list(analysis.expected_tre.interval_mm),
+            "timeDesirability": analysis.score.time_desirability,
+            "accuracyDesirability": analysis.score.accuracy_desirability,
+            "ctps": None if published is None else published.published,
+            "warnings": [warning.message for warning in analysis.rigid.warnings],
+        },
+    }

@@ -1,0 +1,206 @@
+"""A finished trial is kept once, acknowledged when kept, scored, and shown."""
+
+import uuid
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.igtl.content import String
+from rastrainer.protocol import Device
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.registration_nodes import isApplied
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.slicer.trial_desk import TrialDesk
+from rastrainer.study import Study
+from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+
+TRIAL = str(uuid.UUID(int=1))
+OTHER = str(uuid.UUID(int=2))
+SEED = 1
+
+
+class Lab:
+    """A desk on a link to a simulator whose answers the test may change."""
+
+    def __init__(self, scene, scenario, folder):
+        self.scene = scene
+        self.scenario = scenario
+        self.path = folder / "study.db"
+        self.refusal = None
+        self.is_study_broken = False
+        self.simulator = SimulatorDouble(self.answer)
+        self.link = Link(scene, headlessKit)
+        self.desk = TrialDesk(scene, self.link, self.find_scenario, self.open_study)
+        self.scored = []
+        self.problems = []
+        self.desk.trialScored.connect(self.scored.append)
+        self.desk.problemFound.connect(self.problems.append)
+
+    def connect(self):
+        opened = []
+        self.link.opened.connect(lambda: opened.append(True))
+        self.link.connectTo(port=self.simulator.port)
+        self.run_until(lambda: opened)
+
+    def answer(self, name, arguments):
+        if name != "TrialScored":
+            return {}
+        if self.refusal is not None:
+            return self.refusal
+        head_to_world = self.scenario.perturbed_head_to_world(SEED)
+        target = self.scenario.target_position
+        found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
+        return {
+            "headToWorld": head_to_world.ravel().tolist(),
+            "trueTreMm": float(np.linalg.norm(transforms.apply(found, target) - target)),
+        }
+
+    def find_scenario(self, name):
+        if name != self.scenario.name:
+            raise InputError(f"The scenario {name} is not here.")
+        return self.scenario
+
+    def open_study(self):
+        if self.is_study_broken:
+            raise InputError("The disk is full.")
+        return Study.open(self.path)
+
+    def stored(self, trial_id=TRIAL):
+        with Study.open(self.path) as study:
+            return study.trial(trial_id)
+
+    def sent(self, name):
+        return [arguments for sent, arguments in self.simulator.commands if sent == name]
+
+    def run_until(self, condition):
+        def process():
+            if self.link.connector is not None:
+                self.link.connector.PeriodicProcess()
+            self.link.process()
+
+        wait_until(condition, process)
+
+    def close(self):
+        self.link.disconnect()
+        self.desk.close()
+        self.simulator.close()
+
+
+@pytest.fixture
+def lab(scene, scenario, tmp_path):
+    lab = Lab(scene, scenario, tmp_path)
+    lab.connect()
+    yield lab
+    lab.close()
+
+
+def test_a_finished_trial_is_kept_acknowledged_scored_and_its_truth_kept(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL, seed=SEED))
+    lab.run_until(lambda: lab.scored)
+    stored = lab.stored()
+    assert [name for name, _ in lab.simulator.commands] == [
+        "Hello",
+        "AcknowledgeTrial",
+        "TrialScored",
+    ]
+    assert stored.record.trial_id == TRIAL
+    assert set(stored.registrations) == {"rigid", "similarity", "affine"}
+    assert stored.score.score == lab.sent("TrialScored")[0]["score"]
+    assert stored.true_tre_mm == lab.scored[0].truth.true_tre_mm
+    expected = lab.scenario.perturbed_head_to_world(SEED)
+    np.testing.assert_allclose(np.reshape(stored.head_to_world, (4, 4)), expected)
+
+
+def test_the_trial_stands_in_the_scene(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    transform = findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    assert isApplied(transform)
+    for class_name, role in (
+        ("vtkMRMLTableNode", Role.RESIDUALS),
+        ("vtkMRMLTableNode", Role.FITS),
+        ("vtkMRMLModelNode", Role.RESIDUAL_ARROWS),
+        ("vtkMRMLModelNode", Role.HEAD_MODEL),
+    ):
+        assert findNode(lab.scene, class_name, role) is not None
+
+
+def test_twice_is_once(lab, make_record):
+    for _ in range(3):
+        lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) == 3 and lab.scored)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) == 4)
+    assert len(lab.scored) == 1
+    assert len(lab.sent("TrialScored")) == 1
+    with Study.open(lab.path) as study:
+        assert len(study.history("T-001")) == 1
+
+
+def test_a_trial_is_not_acknowledged_before_it_is_kept(lab, make_record):
+    lab.is_study_broken = True
+    lab.desk.close()
+    lab.desk = TrialDesk(lab.scene, lab.link, lab.find_scenario, lab.open_study)
+    lab.desk.problemFound.connect(lab.problems.append)
+    for _ in range(3):
+        lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    assert lab.problems == ["A trial could not be kept: The disk is full."]
+    assert not lab.sent("AcknowledgeTrial")
+    lab.is_study_broken = False
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.sent("AcknowledgeTrial"))
+    assert lab.stored().record.trial_id == TRIAL
+
+
+def test_a_record_that_is_none_is_told_and_not_acknowledged(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL, mode="cinema"))
+    lab.run_until(lambda: lab.problems)
+    assert "mode must be one of desktop, hmd" in lab.problems[0]
+    assert not lab.sent("AcknowledgeTrial")
+
+
+def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
+    record = make_record(TRIAL, scenario="elsewhere")
+    lab.simulator.send_command("TrialCompleted", record)
+    lab.run_until(lambda: lab.sent("AcknowledgeTrial"))
+    assert lab.problems == [
+        "A trial is kept but cannot be scored: The scenario elsewhere is not here."
+    ]
+    assert lab.stored().score is None
+    assert not lab.sent("TrialScored")
+
+
+def test_a_refused_score_is_told_and_the_trial_kept(lab, make_record):
+    lab.refusal = "There is no such trial."
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    assert lab.problems == ["The score was not taken: There is no such trial."]
+    assert lab.stored().true_tre_mm is None
+    assert lab.stored().score is not None
+
+
+def test_a_score_that_nobody_heard_is_told_over_the_next_connection(lab, make_record):
+    lab.refusal = "Not now."
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    lab.link.disconnect()
+    lab.refusal = None
+    lab.link.connectTo(port=lab.simulator.port)
+    lab.run_until(lambda: lab.scored)
+    assert lab.stored().true_tre_mm is not None
+
+
+def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
+    state = f'{{"trialId": "{OTHER}", "phase": "running"}}'
+    lab.simulator.send(Device.SIM_STATE, String(state))
+    states = []
+    lab.link.stateChanged.connect(states.append)
+    lab.run_until(lambda: states)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    assert findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD) is None
+    assert lab.stored().true_tre_mm is not None
