@@ -1,0 +1,172 @@
+"""Slicer's side without Slicer: receives, registers, scores and keeps trials, then writes files.
+
+    python -m rastrainer.slicer.headless --port 18944 --scenario DIR --output DIR [--trials N]
+
+Every line on standard output is one JSON object with the key `event`:
+
+    status  state, sentence, remedy              the link, whenever it changes
+    point   label, count, positionMm             a touch has appeared in the scene
+    undo    count                                the last touch has gone from the scene
+    trial   results                              a trial is registered, scored and kept
+    problem sentence                             something is wrong with a trial
+    output  scene, picture, results, study       paths of the files, at the end
+
+Exit status: 0 when all trials are kept, 1 when they did not come in time, 2 for bad arguments.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
+from rastrainer.slicer.control_points import labelsOf, localPoints
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.headless_output import writeOutput
+from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.heartbeat import LinkStatus
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.scenario import showScenario
+from rastrainer.slicer.scenario_shelf import ScenarioShelf
+from rastrainer.slicer.study_place import STUDY_FILE, openStudyIn
+from rastrainer.slicer.trial_desk import ScoredTrial, TrialDesk
+from rastrainer.trial_files import read_trials
+from rastrainer.trial_results import results_json
+
+PERIOD_S = 0.005
+
+
+class TrialsMissingError(RASTrainerError):
+    """The trials did not come in time."""
+
+
+class HeadlessHost:
+    """Plays the part of Slicer's application: owns the scene, calls whoever is due.
+
+    Attributes:
+        application: the scene and what it needs.
+        link: to the simulator.
+        trials: those that are scored, in the order in which they came.
+    """
+
+    def __init__(self, shelf: ScenarioShelf, output: Path, cohort: Path | None) -> None:
+        self.application = HeadlessScene()
+        self.link = Link(self.application.scene, headlessKit, client="headless Slicer")
+        self.trials: list[ScoredTrial] = []
+        self._touches = 0
+        self._desk = TrialDesk(
+            self.application.scene,
+            self.link,
+            shelf.find,
+            lambda: openStudyIn(output),
+            () if cohort is None else read_trials(cohort),
+        )
+        self.link.statusChanged.connect(self._tellStatus)
+        self.link.pointsChanged.connect(self._tellPoints)
+        self._desk.trialScored.connect(self._tellTrial)
+        self._desk.problemFound.connect(lambda sentence: tell("problem", sentence=sentence))
+
+    def run(self, count: int, timeoutS: float) -> None:
+        """Go on until so many trials are scored.
+
+        Raises:
+            TrialsMissingError: they did not come in time.
+        """
+        end = time.monotonic() + timeoutS
+        while len(self.trials) < count:
+            if time.monotonic() > end:
+                raise TrialsMissingError(
+                    f"{len(self.trials)} of {count} trials came within {timeoutS:g} s. "
+                    f"{self.link.status.sentence} {self.link.status.remedy}".rstrip()
+                )
+            if self.link.connector is not None:
+                self.link.connector.PeriodicProcess()
+            self.link.process()
+            time.sleep(PERIOD_S)
+
+    def close(self) -> None:
+        """Disconnect and close the study."""
+        self.link.disconnect()
+        self._desk.close()
+
+    def _tellStatus(self, status: LinkStatus) -> None:
+        tell("status", state=status.state.value, sentence=status.sentence, remedy=status.remedy)
+
+    def _tellPoints(self, node: Any) -> None:
+        labels, positions = labelsOf(node), localPoints(node)
+        for row in range(self._touches, len(labels)):
+            tell("point", label=labels[row], count=row + 1, positionMm=positions[row].tolist())
+        if len(labels) < self._touches:
+            tell("undo", count=len(labels))
+        self._touches = len(labels)
+
+    def _tellTrial(self, trial: ScoredTrial) -> None:
+        self.trials.append(trial)
+        tell("trial", results=results_json(trial.analysis, trial.truth))
+
+
+def tell(event: str, **values: Any) -> None:
+    """Write one line of JSON to standard output."""
+    print(json.dumps({"event": event, **values}, allow_nan=False), flush=True)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run and return the exit status."""
+    arguments = _parser().parse_args(argv)
+    try:
+        _run(arguments)
+    except TrialsMissingError as error:
+        print(f"rastrainer: {error}", file=sys.stderr)
+        return 1
+    except InputError as error:
+        print(f"rastrainer: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    shelf = ScenarioShelf(arguments.scenario)
+    (scenario,) = shelf.scenarios()
+    openStudyIn(arguments.output).close()  # What is wrong with it is told before anyone plays.
+    host = HeadlessHost(shelf, arguments.output, arguments.cohort)
+    showScenario(host.application.scene, scenario)
+    try:
+        if arguments.listen:
+            host.link.listenOn(arguments.port)
+        else:
+            host.link.connectTo(arguments.host, arguments.port)
+        host.run(arguments.trials, arguments.timeout)
+    finally:
+        host.close()
+    files = writeOutput(arguments.output, host.application, scenario, host.trials)
+    tell("output", **files, study=str(arguments.output / STUDY_FILE))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m rastrainer.slicer.headless",
+        description="Slicer's side without Slicer. Not for clinical use.",
+    )
+    parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
+    parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
+    parser.add_argument(
+        "--listen", action="store_true", help="wait for a simulator started with --connect"
+    )
+    parser.add_argument("--scenario", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
+    parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
+    parser.add_argument("--cohort", type=Path, metavar="CSV", help="trials that CTPS compares with")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())
