@@ -5,21 +5,27 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import socket
+import time
 from collections import Counter
 from typing import Protocol
 
-from rastrainer.igtl.message import Message
+from rastrainer.igtl.message import CONTENTS, Message
 from rastrainer.igtl.stream import MessageReader
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.outgoing import Outgoing, OutgoingQueue
+from rastrainer_simulator.igtl.reading_budget import ReadingBudget
 
-_PIECE_BYTES = 32 * 1024
+_PIECE_BYTES = 16 * 1024
 
 
 class ConnectionOwner(Protocol):
     """Who is told what happens on a connection; called in the event loop's thread."""
 
     limits: Limits
+
+    @property
+    def reading_share(self) -> float:
+        """Share of one core that reading from one connection may take."""
 
     def connected(self, connection: Connection) -> None:
         """Accept a new connection, or drop it."""
@@ -45,13 +51,14 @@ class Connection(asyncio.BufferedProtocol):
     tenths of a second in which a mere listener has sent none.
 
     Attributes:
-        name: address of the peer, or what it called itself.
+        name: what the peer called itself, at first its address.
+        host: the peer's, for the log.
         header_version: what the peer speaks.
         closed: set when the connection has ended.
     """
 
     def __init__(self, owner: ConnectionOwner):
-        self.name = "a client"
+        self.name = self.host = "a client"
         self.header_version = 2
         self.closed = asyncio.Event()
         self._owner = owner
@@ -59,11 +66,13 @@ class Connection(asyncio.BufferedProtocol):
         self._loop = asyncio.get_running_loop()
         self._transport: asyncio.Transport | None = None
         self._piece = bytearray(_PIECE_BYTES)
-        self._reader = MessageReader()
+        self._reader = MessageReader(dict.fromkeys(CONTENTS, self._limits.message_bytes))
+        self._budget = ReadingBudget(self._loop.time())
         self._queue = OutgoingQueue(self._limits.waiting_messages, self._limits.waiting_bytes)
         self._flush_is_due = False
         self._is_paused = False
         self._open_soon: asyncio.TimerHandle | None = None
+        self._read_on: asyncio.TimerHandle | None = None
         self._drop_slow: asyncio.TimerHandle | None = None
         self._drop_stalled: asyncio.TimerHandle | None = None
         self._reason = ""
@@ -100,8 +109,8 @@ class Connection(asyncio.BufferedProtocol):
         transport.set_write_buffer_limits(high=self._limits.buffer_bytes)
         _set_up_socket(transport.get_extra_info("socket"), self._limits)
         # A peer that is gone already has no address.
-        address = transport.get_extra_info("peername") or ("a client",)
-        self.name = ":".join(str(part) for part in address[:2])
+        address = transport.get_extra_info("peername") or (self.host,)
+        self.name = self.host = address[0]
         self._open_soon = self._loop.call_later(self._limits.first_message_s, self._open)
         self._owner.connected(self)
 
@@ -110,7 +119,16 @@ class Connection(asyncio.BufferedProtocol):
         return self._piece
 
     def buffer_updated(self, nbytes: int) -> None:
-        """Read what arrived."""
+        """Read what arrived, and go on at once or after a while."""
+        begin = time.thread_time()
+        self._read(nbytes)
+        spent = time.thread_time() - begin
+        pause = self._budget.charge(spent, self._owner.reading_share, self._loop.time())
+        if pause > 0.0 and self._is_open:
+            self._transport.pause_reading()
+            self._read_on = self._loop.call_later(pause, self._transport.resume_reading)
+
+    def _read(self, nbytes: int) -> None:
         for message in self._reader.feed(self._piece[:nbytes]):
             self.header_version = message.version
             self._open()
@@ -139,7 +157,7 @@ class Connection(asyncio.BufferedProtocol):
 
     def connection_lost(self, error: Exception | None) -> None:
         """Report, once."""
-        for timer in (self._open_soon, self._drop_slow, self._drop_stalled):
+        for timer in (self._open_soon, self._read_on, self._drop_slow, self._drop_stalled):
             if timer is not None:
                 timer.cancel()
         self._transport = None

@@ -1,4 +1,4 @@
-"""What one client may cost, as settings with sane defaults."""
+"""What clients may cost, as settings with sane defaults."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ class Limits:
 
     Attributes:
         clients: connections at once; further ones are closed at once.
+        message_bytes: body of a message that is waited for; a longer one is passed over.
+        reading_share: of one core for reading; the connections share it evenly.
         first_message_s: time that a client has to show by its first message which header version
             it speaks; then it is taken for a listener of version 2.
         slow_client_s: time after which a client that does not read is dropped.
@@ -25,6 +27,8 @@ class Limits:
     """
 
     clients: int = 128
+    message_bytes: int = 72 * 1024
+    reading_share: float = 0.3
     first_message_s: float = 0.25
     slow_client_s: float = 5.0
     half_message_s: float = 10.0

@@ -50,6 +50,11 @@ class IgtlServer:
         """The connections that may be sent to, at this moment."""
         return tuple(self._opened)
 
+    @property
+    def reading_share(self) -> float:
+        """Share of one core that reading from one connection may take."""
+        return self.limits.reading_share / max(1, len(self._connections))
+
     async def listen(self, host: str, port: int) -> int:
         """Listen and return the port, which is any free one where `port` is 0.
 
@@ -113,12 +118,12 @@ class IgtlServer:
     def bad_bytes(self, connection: Connection, errors: Counter) -> None:
         """Log what was no valid message."""
         for kind, times in errors.items():
-            self._log.note(f"{connection.name}: {kind.value}", times)
+            self._log.note(f"{connection.host}: {kind.value}", times)
 
     def disconnected(self, connection: Connection, reason: str) -> None:
         """Forget a connection."""
         if reason:
-            self._log.note(f"{connection.name} was disconnected: {reason}")
+            self._log.note(f"{connection.host} was disconnected: {reason}")
         self._connections.discard(connection)
         if connection in self._opened:
             self._opened.discard(connection)

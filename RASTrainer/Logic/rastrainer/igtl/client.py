@@ -121,7 +121,7 @@ class Client:
         try:
             body = json.dumps(dict(arguments or {}), allow_nan=False)
             self.send(Message(Device.COMMAND, Command(number, name, body)))
-            if not self._is_open:
+            if not self._is_open and not answer.done():
                 raise LinkError("The connection is lost.")
             return answer.result(timeout)
         except NoResult:

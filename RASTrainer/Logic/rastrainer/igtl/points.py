@@ -11,7 +11,7 @@ from rastrainer.igtl.wire import check_float32, pack_name, unpack_name
 
 _POINT = struct.Struct(">64s32s4B4f20s")
 
-MOST_POINTS = 10_000
+MOST_POINTS = 1_000
 
 
 @dataclass(frozen=True)

@@ -85,9 +85,7 @@ class MessageReader:
         if header is None:
             return self._find_next_header()
         if header.body_size > LARGEST_BODY:
-            self.refusal = (
-                f"A message claims {header.body_size} bytes; at most {LARGEST_BODY} are accepted."
-            )
+            self.refusal = f"A message claims more than {LARGEST_BODY} bytes."
             return False
         if self._is_unwanted(header):
             self._to_skip = HEADER_BYTES + header.body_size
