@@ -9,6 +9,7 @@ references are fixed per task before anyone trains, and the mode plays no part.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -88,6 +89,22 @@ class TrialScore:
             "limit_mm": self.reference.limit_mm,
             "version": self.version,
         }
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> TrialScore:
+        """Return the score that `to_json` described."""
+        return cls(
+            score=value["score"],
+            time_desirability=value["time_desirability"],
+            accuracy_desirability=value["accuracy_desirability"],
+            acceptable=value["acceptable"],
+            completion_time_s=value["completion_time_s"],
+            expected_tre_mm=value["expected_tre_mm"],
+            reference=ScoreReference(
+                value["reference_time_s"], value["reference_tre_mm"], value["limit_mm"]
+            ),
+            version=value["version"],
+        )
 
 
 def task_reference(task: str) -> ScoreReference:

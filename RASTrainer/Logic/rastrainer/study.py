@@ -1,0 +1,185 @@
+"""The study: trainees, their trials, registrations and scores, in one SQLite file.
+
+Trials are stored by UUID, so that a trial delivered twice counts once. Results are added, never
+overwritten; the latest count. Several processes may use one file at the same time.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from rastrainer import study_trainees, study_trials
+from rastrainer.ctps import Trial
+from rastrainer.registration import Registration
+from rastrainer.scoring import TrialScore
+from rastrainer.study_database import StudyDatabase
+from rastrainer.study_values import StoredRegistration, StoredTrial, Trainee
+from rastrainer.target_error import TargetError
+from rastrainer.trial_record import TrialRecord
+
+__all__ = ["StoredRegistration", "StoredTrial", "Study", "Trainee"]
+
+
+class Study:
+    """A study's file; use it in a `with` statement, or call `close`.
+
+    Every method raises `InputError` where the file cannot be read or written: read-only, kept busy
+    for half a minute by another program, damaged, disk full. One thread may use it.
+    """
+
+    def __init__(self, database: StudyDatabase) -> None:
+        self._database = database
+
+    @classmethod
+    def open(cls, path: str | os.PathLike[str]) -> Study:
+        """Open the study in a file, or begin one there.
+
+        Raises:
+            InputError: the file is no study, damaged, or of a newer RASTrainer.
+        """
+        return cls(StudyDatabase(path))
+
+    def __enter__(self) -> Study:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._database.close()
+
+    def create_trainee(self, pseudonym: str | None = None, consent: bool = False) -> Trainee:
+        """Add a trainee, by default under the next free pseudonym (`T001`, `T002`, …).
+
+        Raises:
+            InputError: the pseudonym is taken, or not printable text of 1 to 64 characters.
+        """
+        with self._database.writing() as connection:
+            return study_trainees.create(connection, pseudonym, consent)
+
+    def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
+        """Return those who train, or those who are archived, by pseudonym."""
+        with self._database.reading() as connection:
+            return study_trainees.listed(connection, archived)
+
+    def trainee(self, pseudonym: str) -> Trainee:
+        """Return a trainee; raise `InputError` if the study has none of this pseudonym."""
+        with self._database.reading() as connection:
+            return study_trainees.find(connection, pseudonym)
+
+    def set_consent(self, pseudonym: str, consent: bool) -> Trainee:
+        """Note whether a trainee agrees to research; raise `InputError` if there is none."""
+        with self._database.writing() as connection:
+            return study_trainees.change(connection, pseudonym, consent=consent)
+
+    def set_archived(self, pseudonym: str, archived: bool) -> Trainee:
+        """Hide a trainee from the list or show again; raise `InputError` if there is none."""
+        with self._database.writing() as connection:
+            return study_trainees.change(connection, pseudonym, archived=archived)
+
+    def delete_trainee(self, pseudonym: str) -> int:
+        """Delete a trainee with all trials and results, for good; return the number of trials.
+
+        Raises:
+            InputError: the study has none of this pseudonym.
+        """
+        with self._database.writing() as connection:
+            return study_trainees.delete(connection, pseudonym)
+
+    def add_trial(
+        self,
+        record: TrialRecord | Mapping[str, Any],
+        registrations: Iterable[Registration] = (),
+        target_errors: Mapping[str, TargetError] | None = None,
+        score: TrialScore | None = None,
+    ) -> bool:
+        """Store a finished trial, with its results if they are known; return whether it was new.
+
+        Of a trial that is already stored, nothing changes. A trainee whom the study does not know
+        is added without consent, so that no trial is lost.
+
+        Args:
+            record: As the simulator delivered it; unknown keys of a JSON object are kept.
+            registrations: At most one of each kind.
+            target_errors: By kind of registration.
+            score: Our score of the trial.
+
+        Raises:
+            InputError: the record is not one, or another trial has its UUID.
+        """
+        json_object = record.to_json() if isinstance(record, TrialRecord) else record
+        checked = TrialRecord.from_json(json_object)
+        with self._database.writing() as connection:
+            is_new = study_trials.add(connection, checked, json_object)
+            if is_new:
+                study_trials.add_results(
+                    connection, checked.trial_id, registrations, target_errors or {}, score
+                )
+            return is_new
+
+    def add_results(
+        self,
+        trial_id: str,
+        registrations: Iterable[Registration] = (),
+        target_errors: Mapping[str, TargetError] | None = None,
+        score: TrialScore | None = None,
+    ) -> None:
+        """Add what was computed from a stored trial; it counts from now on.
+
+        Raises:
+            InputError: the study has no such trial.
+        """
+        with self._database.writing() as connection:
+            study_trials.add_results(
+                connection, trial_id, registrations, target_errors or {}, score
+            )
+
+    def set_truth(self, trial_id: str, true_tre_mm: float, head_to_world: Sequence[float]) -> None:
+        """Store what the simulator revealed of a trial; a second time changes nothing.
+
+        Args:
+            trial_id: UUID of a stored trial.
+            true_tre_mm: True error at the scenario's target.
+            head_to_world: 16 numbers row by row, RAS to `World`, mm.
+
+        Raises:
+            InputError: the study has no such trial, or these are not finite numbers.
+        """
+        with self._database.writing() as connection:
+            study_trials.set_truth(connection, trial_id, true_tre_mm, head_to_world)
+
+    def trial(self, trial_id: str) -> StoredTrial:
+        """Return a trial; raise `InputError` if the study has no such trial."""
+        with self._database.reading() as connection:
+            return study_trials.find(connection, trial_id)
+
+    def has_trial(self, trial_id: str) -> bool:
+        """Return whether a trial of this UUID is stored."""
+        with self._database.reading() as connection:
+            return study_trials.exists(connection, trial_id)
+
+    def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
+        """Return all trials of a trainee in the order they were started.
+
+        Raises:
+            InputError: the study has no trainee of this pseudonym.
+        """
+        with self._database.reading() as connection:
+            return study_trials.history(connection, pseudonym)
+
+    def unrevealed(self) -> tuple[TrialRecord, ...]:
+        """Return the trials whose truth the simulator has not told yet, oldest first."""
+        with self._database.reading() as connection:
+            return study_trials.unrevealed(connection)
+
+    def cohort(self, mode: str | None = None) -> list[Trial]:
+        """Return what CTPS compares: all registered trials of a mode but the trial runs.
+
+        Args:
+            mode: `desktop` or `hmd`; both when left out.
+        """
+        with self._database.reading() as connection:
+            return study_trials.cohort(connection, mode)

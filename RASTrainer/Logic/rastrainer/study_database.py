@@ -1,0 +1,143 @@
+"""The SQLite file under a study: opened with care, changed in transactions, errors in sentences."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.study_schema import APPLICATION_ID, MIGRATIONS
+
+BUSY_TIMEOUT_S = 30.0
+
+
+class StudyDatabase:
+    """A connection to one file; several processes may have one each."""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Open the file, create it if it is not there, and bring its tables up to date.
+
+        Raises:
+            InputError: no such folder, not a database, another program's, damaged, or made by a
+                newer RASTrainer.
+        """
+        self.path = Path(path)
+        self._check_place()
+        with self._sentences():
+            # Transactions are begun by us alone: `isolation_level=None`.
+            self._connection = sqlite3.connect(
+                self.path, timeout=BUSY_TIMEOUT_S, isolation_level=None
+            )
+        try:
+            with self._sentences():
+                self._prepare()
+        except BaseException:
+            self._connection.close()
+            raise
+
+    def close(self) -> None:
+        """Close the connection; nothing is pending outside a transaction."""
+        self._connection.close()
+
+    @contextmanager
+    def reading(self) -> Iterator[sqlite3.Connection]:
+        """Give the connection for several reads of one state."""
+        with self._transaction("BEGIN") as connection:
+            yield connection
+
+    @contextmanager
+    def writing(self) -> Iterator[sqlite3.Connection]:
+        """Give the connection for changes that are stored together or not at all.
+
+        Raises:
+            InputError: the file is read-only, the disk is full, or another program keeps writing.
+        """
+        with self._transaction("BEGIN IMMEDIATE") as connection:
+            yield connection
+
+    @contextmanager
+    def _transaction(self, begin: str) -> Iterator[sqlite3.Connection]:
+        with self._sentences():
+            self._connection.execute(begin)
+            try:
+                yield self._connection
+                self._connection.execute("COMMIT")
+            finally:
+                if self._connection.in_transaction:
+                    self._connection.execute("ROLLBACK")
+
+    def _check_place(self) -> None:
+        if "\0" in str(self.path):
+            raise InputError("The name of a study database must not hold a null character.")
+        if self.path.is_dir():
+            raise InputError(f"{self.path} is a folder; a study database is a file.")
+        if not self.path.parent.is_dir():
+            raise InputError(f"There is no folder {self.path.parent} for the study database.")
+
+    def _prepare(self) -> None:
+        for pragma in (
+            "foreign_keys = ON",
+            # Deleted trainees leave no bytes behind in the file.
+            "secure_delete = ON",
+            "synchronous = FULL",
+            "trusted_schema = OFF",
+        ):
+            self._connection.execute(f"PRAGMA {pragma}")
+        # In one transaction: another process may just be making the first tables.
+        with self.reading():
+            self._check_origin()
+            is_old = self._number("user_version") < len(MIGRATIONS)
+        if is_old:
+            self._migrate()
+        if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
+            raise sqlite3.DatabaseError("malformed")
+        if self._connection.execute("PRAGMA foreign_key_check").fetchone() is not None:
+            raise sqlite3.DatabaseError("malformed")
+
+    def _check_origin(self) -> None:
+        tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        if self._number("application_id") != (APPLICATION_ID if tables else 0):
+            raise InputError(f"{self.path} is the database of another program.")
+        if self._number("user_version") > len(MIGRATIONS):
+            raise InputError(
+                f"The study {self.path} was made by a newer RASTrainer (format "
+                f"{self._number('user_version')}, this one knows {len(MIGRATIONS)}); update it."
+            )
+
+    def _migrate(self) -> None:
+        with self.writing() as connection:
+            # Another process may have migrated while this one waited for its turn.
+            for version in range(self._number("user_version"), len(MIGRATIONS)):
+                for statement in MIGRATIONS[version]:
+                    connection.execute(statement)
+                connection.execute(f"PRAGMA user_version = {version + 1}")
+            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+
+    def _number(self, pragma: str) -> int:
+        return self._connection.execute(f"PRAGMA {pragma}").fetchone()[0]
+
+    @contextmanager
+    def _sentences(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.IntegrityError, sqlite3.ProgrammingError, sqlite3.InterfaceError):
+            raise
+        except sqlite3.Error as error:
+            raise InputError(self._sentence(str(error).lower())) from error
+
+    def _sentence(self, text: str) -> str:
+        reasons = {
+            "not a database": f"{self.path} is not a study database.",
+            "locked": f"The study {self.path} is kept busy by another program; try again.",
+            "readonly": f"The study {self.path} is read-only; allow writing to it and its folder.",
+            "unable to open": f"The study {self.path} cannot be opened; check its permissions.",
+            "full": f"The study {self.path} cannot be written: the disk is full.",
+            "disk i/o": f"The study {self.path} cannot be read or written: the disk fails.",
+        }
+        for words, sentence in reasons.items():
+            if words in text:
+                return sentence
+        return f"The study {self.path} is damaged; restore it from a backup."

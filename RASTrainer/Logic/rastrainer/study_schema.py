@@ -1,0 +1,68 @@
+"""The tables of a study database, as the steps that led to them.
+
+A database knows how many steps it has taken (`user_version`). A step, once published, never
+changes: what comes next is a further step.
+"""
+
+from __future__ import annotations
+
+APPLICATION_ID = 0x52415354
+"""Written into the file's header (`RAST`), so that another program's database is told apart."""
+
+MIGRATIONS: tuple[tuple[str, ...], ...] = (
+    (
+        """
+        CREATE TABLE trainees (
+            id INTEGER PRIMARY KEY AUTOINCREMENT,
+            pseudonym TEXT NOT NULL UNIQUE,
+            consent INTEGER NOT NULL CHECK (consent IN (0, 1)),
+            archived INTEGER NOT NULL CHECK (archived IN (0, 1)),
+            created_utc TEXT NOT NULL
+        )
+        """,
+        """
+        CREATE TABLE trials (
+            trial_id TEXT PRIMARY KEY NOT NULL,
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            task TEXT NOT NULL,
+            mode TEXT NOT NULL,
+            scenario TEXT NOT NULL,
+            started_utc TEXT NOT NULL,
+            completion_time_s REAL NOT NULL,
+            record_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX trials_of_trainee ON trials (trainee_id)",
+        """
+        CREATE TABLE registrations (
+            id INTEGER PRIMARY KEY,
+            trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            kind TEXT NOT NULL,
+            fre_mm REAL NOT NULL,
+            registration_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX registrations_of_trial ON registrations (trial_id, kind)",
+        """
+        CREATE TABLE scores (
+            id INTEGER PRIMARY KEY,
+            trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            score REAL NOT NULL,
+            version TEXT NOT NULL,
+            score_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX scores_of_trial ON scores (trial_id)",
+        """
+        CREATE TABLE truths (
+            trial_id TEXT PRIMARY KEY NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            true_tre_mm REAL NOT NULL,
+            head_to_world_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+    ),
+)

@@ -1,0 +1,102 @@
+"""Trainees in a study's database; every function works inside the caller's transaction."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+
+from rastrainer import protocol
+from rastrainer.errors import InputError
+from rastrainer.study_clock import utc_now
+from rastrainer.study_values import Trainee
+
+TRAINEE_ID = "SELECT id FROM trainees WHERE pseudonym = ?"
+_SELECT = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
+
+
+def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool) -> Trainee:
+    """Add a trainee, by default under the next free pseudonym.
+
+    Raises:
+        InputError: the pseudonym is taken, or not printable text of 1 to 64 characters.
+    """
+    pseudonym = _next_pseudonym(connection) if pseudonym is None else pseudonym
+    try:
+        protocol.text()(pseudonym)
+    except ValueError as error:
+        raise InputError(f"A pseudonym must be {error}.") from None
+    if exists(connection, pseudonym):
+        raise InputError(f"The pseudonym {json.dumps(pseudonym)} is taken; choose another.")
+    connection.execute(
+        "INSERT INTO trainees (pseudonym, consent, archived, created_utc) VALUES (?, ?, 0, ?)",
+        (pseudonym, bool(consent), utc_now()),
+    )
+    return find(connection, pseudonym)
+
+
+def exists(connection: sqlite3.Connection, pseudonym: str) -> bool:
+    """Return whether the study has a trainee of this pseudonym."""
+    return connection.execute(TRAINEE_ID, (pseudonym,)).fetchone() is not None
+
+
+def find(connection: sqlite3.Connection, pseudonym: str) -> Trainee:
+    """Return a trainee; raise `InputError` if the study has none of this pseudonym."""
+    row = connection.execute(f"{_SELECT} WHERE pseudonym = ?", (pseudonym,)).fetchone()
+    if row is None:
+        raise InputError(f"The study has no trainee {json.dumps(str(pseudonym)[:64])}.")
+    return _trainee(row)
+
+
+def listed(connection: sqlite3.Connection, archived: bool) -> tuple[Trainee, ...]:
+    """Return those who train, or those who are archived, by pseudonym."""
+    rows = connection.execute(
+        f"{_SELECT} WHERE archived = ? ORDER BY pseudonym", (bool(archived),)
+    ).fetchall()
+    return tuple(_trainee(row) for row in rows)
+
+
+def change(
+    connection: sqlite3.Connection,
+    pseudonym: str,
+    consent: bool | None = None,
+    archived: bool | None = None,
+) -> Trainee:
+    """Change what is not None; raise `InputError` if the study has no such trainee."""
+    trainee = find(connection, pseudonym)
+    connection.execute(
+        "UPDATE trainees SET consent = ?, archived = ? WHERE pseudonym = ?",
+        (
+            trainee.consent if consent is None else bool(consent),
+            trainee.archived if archived is None else bool(archived),
+            pseudonym,
+        ),
+    )
+    return find(connection, pseudonym)
+
+
+def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
+    """Delete a trainee with all that hangs on it; return how many trials that were.
+
+    Raises:
+        InputError: the study has no such trainee.
+    """
+    find(connection, pseudonym)
+    (trials,) = connection.execute(
+        f"SELECT count(*) FROM trials WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+    ).fetchone()
+    connection.execute("DELETE FROM trainees WHERE pseudonym = ?", (pseudonym,))
+    return trials
+
+
+def _next_pseudonym(connection: sqlite3.Connection) -> str:
+    # Numbers of deleted trainees do not come back: someone else would get their name.
+    row = connection.execute("SELECT seq FROM sqlite_sequence WHERE name = 'trainees'").fetchone()
+    number = (row[0] if row else 0) + 1
+    while exists(connection, f"T{number:03d}"):
+        number += 1
+    return f"T{number:03d}"
+
+
+def _trainee(row: tuple[str, int, int, str]) -> Trainee:
+    pseudonym, consent, archived, created_utc = row
+    return Trainee(pseudonym, bool(consent), bool(archived), created_utc)

@@ -1,0 +1,217 @@
+"""Trials in a study's database; every function works inside the caller's transaction."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from rastrainer import protocol, study_trainees
+from rastrainer.ctps import Trial
+from rastrainer.errors import InputError
+from rastrainer.registration import RIGID, Registration
+from rastrainer.scoring import TrialScore
+from rastrainer.study_clock import utc_now
+from rastrainer.study_trainees import TRAINEE_ID
+from rastrainer.study_values import StoredRegistration, StoredTrial
+from rastrainer.target_error import TargetError
+from rastrainer.trial_record import TrialRecord
+
+RECORD_LIMIT_BYTES = 2**20
+TRUTH_LIMIT = 1e6
+
+Value = TypeVar("Value")
+
+
+def add(
+    connection: sqlite3.Connection, record: TrialRecord, json_object: Mapping[str, Any]
+) -> bool:
+    """Store a trial with its trainee; return False where it is already stored.
+
+    Args:
+        connection: In a transaction.
+        record: The trial.
+        json_object: As it was delivered, with keys that the record does not know.
+
+    Raises:
+        InputError: the object is larger than 1 MiB, or another trial has its UUID.
+    """
+    text = json_text(json_object)
+    if len(text) > RECORD_LIMIT_BYTES:
+        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+    if exists(connection, record.trial_id):
+        _check_same(find_record(connection, record.trial_id), record)
+        return False
+    if not study_trainees.exists(connection, record.trainee):
+        study_trainees.create(connection, record.trainee, consent=False)
+    connection.execute(
+        f"INSERT INTO trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?, ?)",
+        (
+            record.trial_id,
+            record.trainee,
+            record.task,
+            record.mode,
+            record.scenario,
+            record.started_utc,
+            record.completion_time_s,
+            text,
+            utc_now(),
+        ),
+    )
+    return True
+
+
+def add_results(
+    connection: sqlite3.Connection,
+    trial_id: str,
+    registrations: Iterable[Registration],
+    target_errors: Mapping[str, TargetError],
+    score: TrialScore | None,
+) -> None:
+    """Add what was computed from a trial; raise `InputError` if the study has no such trial."""
+    _check_exists(connection, trial_id)
+    for registration in registrations:
+        stored = StoredRegistration.of(registration, target_errors.get(registration.kind))
+        connection.execute(
+            "INSERT INTO registrations (trial_id, kind, fre_mm, registration_json, stored_utc) "
+            "VALUES (?, ?, ?, ?, ?)",
+            (trial_id, stored.kind, stored.fre_mm, json_text(stored.to_json()), utc_now()),
+        )
+    if score is not None:
+        connection.execute(
+            "INSERT INTO scores (trial_id, score, version, score_json, stored_utc) "
+            "VALUES (?, ?, ?, ?, ?)",
+            (trial_id, score.score, score.version, json_text(score.to_json()), utc_now()),
+        )
+
+
+def set_truth(
+    connection: sqlite3.Connection,
+    trial_id: str,
+    true_tre_mm: float,
+    head_to_world: Sequence[float],
+) -> None:
+    """Store what the simulator revealed; a second time changes nothing.
+
+    Raises:
+        InputError: the study has no such trial, or the truth is not 1 and 16 finite numbers.
+    """
+    _check_exists(connection, trial_id)
+    try:
+        true_tre_mm = protocol.number(0, TRUTH_LIMIT)(true_tre_mm)
+        head_to_world = protocol.numbers(16, TRUTH_LIMIT)(head_to_world)
+    except ValueError as error:
+        raise InputError(f"What the simulator reveals must be {error}.") from None
+    connection.execute(
+        "INSERT OR IGNORE INTO truths VALUES (?, ?, ?, ?)",
+        (trial_id, true_tre_mm, json_text(head_to_world), utc_now()),
+    )
+
+
+def exists(connection: sqlite3.Connection, trial_id: str) -> bool:
+    """Return whether the study has a trial of this UUID."""
+    query = "SELECT 1 FROM trials WHERE trial_id = ?"
+    return connection.execute(query, (trial_id,)).fetchone() is not None
+
+
+def find_record(connection: sqlite3.Connection, trial_id: str) -> TrialRecord:
+    """Return the record of a trial; raise `InputError` if the study has no such trial."""
+    _check_exists(connection, trial_id)
+    (text,) = connection.execute(
+        "SELECT record_json FROM trials WHERE trial_id = ?", (trial_id,)
+    ).fetchone()
+    return decoded(text, TrialRecord.from_json)
+
+
+def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
+    """Return a trial with its latest results; raise `InputError` if there is no such trial."""
+    record = find_record(connection, trial_id)
+    registrations = connection.execute(
+        "SELECT kind, registration_json FROM registrations WHERE trial_id = ? ORDER BY id",
+        (trial_id,),
+    ).fetchall()
+    score = connection.execute(
+        "SELECT score_json FROM scores WHERE trial_id = ? ORDER BY id DESC", (trial_id,)
+    ).fetchone()
+    truth = connection.execute(
+        "SELECT true_tre_mm, head_to_world_json FROM truths WHERE trial_id = ?", (trial_id,)
+    ).fetchone()
+    return StoredTrial(
+        record=record,
+        registrations={
+            kind: decoded(text, StoredRegistration.from_json) for kind, text in registrations
+        },
+        score=None if score is None else decoded(score[0], TrialScore.from_json),
+        true_tre_mm=None if truth is None else truth[0],
+        head_to_world=None if truth is None else decoded(truth[1], tuple),
+    )
+
+
+def history(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredTrial, ...]:
+    """Return a trainee's trials as they were started; raise `InputError` for an unknown one."""
+    study_trainees.find(connection, pseudonym)
+    rows = connection.execute(
+        f"SELECT trial_id FROM trials WHERE trainee_id = ({TRAINEE_ID}) "
+        "ORDER BY started_utc, rowid",
+        (pseudonym,),
+    ).fetchall()
+    return tuple(find(connection, trial_id) for (trial_id,) in rows)
+
+
+def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:
+    """Return the trials whose truth is not known yet, oldest first."""
+    rows = connection.execute(
+        "SELECT record_json FROM trials "
+        "WHERE trial_id NOT IN (SELECT trial_id FROM truths) ORDER BY rowid"
+    ).fetchall()
+    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
+
+
+def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
+    """Return what CTPS compares: registered trials but the trial runs, of one mode or all."""
+    rows = connection.execute(
+        """
+        SELECT mode, pseudonym, task, completion_time_s, fre_mm
+        FROM trials
+        JOIN trainees ON trainees.id = trainee_id
+        JOIN registrations ON registrations.id = (
+            SELECT max(id) FROM registrations AS latest
+            WHERE latest.trial_id = trials.trial_id AND kind = ?
+        )
+        WHERE task != ? AND (? IS NULL OR mode = ?)
+        ORDER BY trials.rowid
+        """,
+        (RIGID, protocol.TRIAL_RUN, mode, mode),
+    ).fetchall()
+    return [Trial(*row) for row in rows]
+
+
+def json_text(value: object) -> str:
+    """Return a value as ASCII JSON; raise `InputError` if it has no such form."""
+    try:
+        return json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError, RecursionError):
+        raise InputError("What a study stores must be JSON with finite numbers.") from None
+
+
+def decoded(text: str, read: Callable[[Any], Value]) -> Value:
+    """Return what stored JSON holds; raise `InputError` where it is not what was stored."""
+    try:
+        return read(json.loads(text))
+    except (TypeError, ValueError, KeyError, AttributeError, RecursionError):
+        raise InputError("The study holds a value that RASTrainer did not write.") from None
+
+
+def _check_exists(connection: sqlite3.Connection, trial_id: str) -> None:
+    if not exists(connection, trial_id):
+        raise InputError(f"The study has no trial {json.dumps(str(trial_id)[:64])}.")
+
+
+def _check_same(stored: TrialRecord, delivered: TrialRecord) -> None:
+    # The seed is the simulator's secret at first and may be told later.
+    if replace(stored, seed=None) != replace(delivered, seed=None):
+        raise InputError(
+            f"Another trial is stored under the UUID {stored.trial_id}; the stored one is kept."
+        )

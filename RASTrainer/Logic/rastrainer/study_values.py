@@ -1,0 +1,106 @@
+"""What a study holds, as plain values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer.registration import Registration
+from rastrainer.scoring import TrialScore
+from rastrainer.target_error import TargetError
+from rastrainer.trial_record import TrialRecord
+
+
+@dataclass(frozen=True)
+class Trainee:
+    """A person who trains, known by a pseudonym only.
+
+    Attributes:
+        pseudonym: Unique in the study.
+        consent: Whether the trainee agreed that the data are used for research.
+        archived: Whether the trainee is hidden from the list of those who train.
+        created_utc: ISO 8601.
+    """
+
+    pseudonym: str
+    consent: bool
+    archived: bool
+    created_utc: str
+
+
+@dataclass(frozen=True)
+class StoredRegistration:
+    """One registration of a trial, as it was stored.
+
+    Attributes:
+        kind: `rigid`, `similarity` or `affine`.
+        labels: The points that were used; the trial's others were left out.
+        matrix: 16 numbers row by row, `World` to RAS, mm.
+        fre_mm: Fiducial registration error.
+        residuals_mm: One for each label.
+        warnings: Each with `code`, `points` and `message`.
+        target_mm: The target of the error below, in RAS; None with the next two where the fit
+            tells nothing about targets.
+        expected_tre_mm: Expected error there.
+        tre_interval_mm: Where 95 of 100 such errors lie.
+    """
+
+    kind: str
+    labels: tuple[str, ...]
+    matrix: tuple[float, ...]
+    fre_mm: float
+    residuals_mm: tuple[float, ...]
+    warnings: tuple[dict[str, Any], ...]
+    target_mm: tuple[float, float, float] | None
+    expected_tre_mm: float | None
+    tre_interval_mm: tuple[float, float] | None
+
+    @classmethod
+    def of(cls, registration: Registration, error: TargetError | None) -> StoredRegistration:
+        """Return what is stored of a registration and of its error at the target."""
+        return cls(
+            kind=registration.kind,
+            labels=registration.labels,
+            matrix=tuple(map(float, np.ravel(registration.matrix))),
+            fre_mm=registration.fre_mm,
+            residuals_mm=tuple(map(float, registration.residuals_mm)),
+            warnings=tuple(warning.to_json() for warning in registration.warnings),
+            target_mm=None if error is None else error.target_mm,
+            expected_tre_mm=None if error is None else error.expected_mm,
+            tre_interval_mm=None if error is None else error.interval_mm,
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `from_json` reads."""
+        return dict(vars(self))
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> StoredRegistration:
+        """Return the registration that `to_json` described."""
+        return cls(
+            **{
+                name: tuple(item) if isinstance(item, list) else item
+                for name, item in value.items()
+            }
+        )
+
+
+@dataclass(frozen=True)
+class StoredTrial:
+    """A trial with the latest of everything that was computed from it.
+
+    Attributes:
+        record: The trial as the simulator delivered it.
+        registrations: By kind.
+        score: None until the trial is scored.
+        true_tre_mm: True error at the target; None until the simulator reveals it.
+        head_to_world: 16 numbers row by row, RAS to `World`, mm; None until revealed.
+    """
+
+    record: TrialRecord
+    registrations: dict[str, StoredRegistration]
+    score: TrialScore | None
+    true_tre_mm: float | None
+    head_to_world: tuple[float, ...] | None

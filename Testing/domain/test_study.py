@@ -1,0 +1,210 @@
+"""The study keeps what it is given: once, whole, and only as long as the trainee wants."""
+
+import sqlite3
+import uuid
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.registration import KINDS, register
+from rastrainer.scoring import score_trial, task_reference
+from rastrainer.study import StoredRegistration, Study
+from rastrainer.target_error import target_error
+from rastrainer.trial_record import TrialRecord
+from Testing.domain.trial_records import make_record
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "study.db"
+
+
+@pytest.fixture
+def study(path):
+    with Study.open(path) as study:
+        yield study
+
+
+@pytest.fixture
+def results(touched_head):
+    moving, fixed, _ = touched_head(0)
+    registrations = [register(moving, fixed, kind) for kind in KINDS]
+    errors = {r.kind: target_error(r, [0.0, 10.0, 20.0]) for r in registrations}
+    score = score_trial(110.0, errors["rigid"].expected_mm, task_reference("task-1"))
+    return registrations, errors, score
+
+
+def record(number=7, **changes):
+    return make_record(trialId=str(uuid.UUID(int=number)), **changes)
+
+
+def test_a_trainee_is_a_pseudonym_with_a_consent(study):
+    created = study.create_trainee("Blue Heron")
+    assert (created.pseudonym, created.consent, created.archived) == ("Blue Heron", False, False)
+    assert study.set_consent("Blue Heron", True).consent
+    assert study.trainee("Blue Heron").consent
+
+
+def test_pseudonyms_are_proposed_and_never_given_twice(study):
+    assert [study.create_trainee().pseudonym for _ in range(3)] == ["T001", "T002", "T003"]
+    study.delete_trainee("T003")
+    study.create_trainee("T005")
+    assert study.create_trainee().pseudonym == "T006"
+
+
+def test_a_pseudonym_is_unique_and_printable(study):
+    study.create_trainee("a")
+    with pytest.raises(InputError, match='"a" is taken'):
+        study.create_trainee("a")
+    with pytest.raises(InputError, match="pseudonym must be printable text"):
+        study.create_trainee("a\n")
+
+
+def test_an_archived_trainee_leaves_the_list_and_comes_back(study):
+    study.create_trainee("a")
+    study.create_trainee("b")
+    study.set_archived("a", True)
+    assert [t.pseudonym for t in study.trainees()] == ["b"]
+    assert [t.pseudonym for t in study.trainees(archived=True)] == ["a"]
+    study.set_archived("a", False)
+    assert [t.pseudonym for t in study.trainees()] == ["a", "b"]
+
+
+def test_an_unknown_trainee_or_trial_is_told(study):
+    for ask in (study.trainee, study.history, study.delete_trainee):
+        with pytest.raises(InputError, match='no trainee "x"'):
+            ask("x")
+    with pytest.raises(InputError, match='no trainee "x"'):
+        study.set_consent("x", True)
+    with pytest.raises(InputError, match='no trial "y"'):
+        study.trial("y")
+    with pytest.raises(InputError, match='no trial "y"'):
+        study.add_results("y")
+
+
+def test_a_trial_is_stored_with_all_its_results(study, results):
+    registrations, errors, score = results
+    delivered = record(weather="fine")
+    assert study.add_trial(delivered, registrations, errors, score)
+    stored = study.trial(delivered["trialId"])
+    assert stored.record == TrialRecord.from_json(delivered)
+    assert stored.registrations == {
+        r.kind: StoredRegistration.of(r, errors[r.kind]) for r in registrations
+    }
+    assert stored.registrations["rigid"].fre_mm == registrations[0].fre_mm
+    assert stored.score == score
+    assert stored.true_tre_mm is None
+
+
+def test_twice_is_once(study, results):
+    assert study.add_trial(record(), *results)
+    assert not study.add_trial(record(seed=None))
+    assert not study.add_trial(TrialRecord.from_json(record()))
+    assert len(study.history("T-001")) == 1
+    assert study.trial(record()["trialId"]).score == results[2]
+
+
+def test_another_trial_under_the_same_uuid_is_refused_and_the_first_kept(study):
+    study.add_trial(record())
+    with pytest.raises(InputError, match="Another trial is stored"):
+        study.add_trial(record(completionTimeS=1.0))
+    assert study.trial(record()["trialId"]).record.completion_time_s == 110.0
+
+
+def test_an_unknown_trainee_is_added_without_consent_so_that_no_trial_is_lost(study):
+    study.add_trial(record(trainee="new"))
+    assert not study.trainee("new").consent
+    assert len(study.history("new")) == 1
+
+
+@pytest.mark.parametrize(
+    ("bad", "words"),
+    [
+        ({}, "needs the key"),
+        (record(extra=float("nan")), "must be JSON with finite numbers"),
+        (record(extra={1, 2}), "must be JSON with finite numbers"),
+        (record(extra="x" * 2**20), "larger than 1 MiB"),
+    ],
+)
+def test_a_bad_record_is_refused_and_nothing_is_stored(bad, words, study):
+    with pytest.raises(InputError, match=words):
+        study.add_trial(bad)
+    assert study.trainees() == ()
+
+
+def test_later_results_count_and_earlier_ones_stay(study, results, path):
+    registrations, errors, score = results
+    study.add_trial(record(), registrations, errors, score)
+    fewer = registrations[0].without("3")
+    better = score_trial(50.0, 0.2, task_reference("task-1"))
+    study.add_results(record()["trialId"], [fewer], score=better)
+    stored = study.trial(record()["trialId"])
+    assert "3" not in stored.registrations["rigid"].labels
+    assert stored.registrations["rigid"].expected_tre_mm is None
+    assert stored.registrations["affine"].fre_mm == registrations[2].fre_mm
+    assert stored.score == better
+    connection = sqlite3.connect(path)
+    assert connection.execute("SELECT count(*) FROM registrations").fetchone() == (4,)
+    assert connection.execute("SELECT count(*) FROM scores").fetchone() == (2,)
+    connection.close()
+
+
+def test_the_truth_is_stored_once(study):
+    first, second = record(1), record(2)
+    study.add_trial(first)
+    study.add_trial(second)
+    matrix = tuple(map(float, np.eye(4).ravel()))
+    study.set_truth(first["trialId"], 0.75, matrix)
+    study.set_truth(first["trialId"], 9.0, matrix)
+    stored = study.trial(first["trialId"])
+    assert (stored.true_tre_mm, stored.head_to_world) == (0.75, matrix)
+    assert [r.trial_id for r in study.unrevealed()] == [second["trialId"]]
+    with pytest.raises(InputError, match="reveals must be a number"):
+        study.set_truth(second["trialId"], float("nan"), matrix)
+    with pytest.raises(InputError, match="reveals must be a list of 16"):
+        study.set_truth(second["trialId"], 1.0, matrix[:3])
+
+
+def test_the_history_is_in_the_order_of_starting(study):
+    for number, day in ((1, 19), (2, 17), (3, 18)):
+        study.add_trial(record(number, startedUtc=f"2024-05-{day}T09:30:00Z"))
+    study.add_trial(record(4, trainee="other"))
+    assert [t.record.started_utc[8:10] for t in study.history("T-001")] == ["17", "18", "19"]
+
+
+def test_the_cohort_is_every_registered_trial_but_the_trial_runs(study, results):
+    registrations, errors, score = results
+    study.add_trial(record(1), registrations, errors, score)
+    study.add_trial(record(2, task="trial-run"), registrations)
+    study.add_trial(record(3))
+    study.add_trial(record(4, mode="hmd", trainee="b"), registrations)
+    study.add_results(record(1)["trialId"], [registrations[0].without("1")])
+    (desktop,) = study.cohort("desktop")
+    assert (desktop.subject, desktop.task, desktop.completion_time_s) == ("T-001", "task-1", 110.0)
+    assert desktop.rmse_mm == registrations[0].without("1").fre_mm
+    assert {trial.mode for trial in study.cohort()} == {"desktop", "hmd"}
+
+
+def test_deleting_a_trainee_leaves_no_trace_in_the_file(study, path, results):
+    study.add_trial(record(1, trainee="Vanishing Heron"), *results)
+    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    study.add_trial(record(2, trainee="staying"), *results)
+    assert b"Vanishing Heron" in path.read_bytes()
+    assert study.delete_trainee("Vanishing Heron") == 1
+    content = path.read_bytes()
+    assert b"Vanishing Heron" not in content
+    assert record(1)["trialId"].encode() not in content
+    assert [trial.subject for trial in study.cohort()] == ["staying"]
+    assert study.trial(record(2)["trialId"]).score == results[2]
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_everything_is_there_after_opening_again(path, results):
+    with Study.open(path) as study:
+        study.create_trainee("a", consent=True)
+        study.add_trial(record(trainee="a"), *results)
+    with Study.open(path) as study:
+        assert study.trainee("a").consent
+        assert study.history("a")[0].score == results[2]
+        assert study.has_trial(record()["trialId"])
