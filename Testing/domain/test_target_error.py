@@ -105,7 +105,7 @@ def test_the_interval_holds_the_true_error_in_95_of_100_trials(kind, count, offs
 
 def test_heads_touched_with_noise_have_their_true_error_inside_the_interval(touched_head):
     inside = 0
-    for seed in range(300):
+    for seed in range(200):
         _, fixed, rng = touched_head(seed)
         target = rng.normal(size=3) * 40
         moving = fixed + rng.normal(size=fixed.shape) * rng.uniform(0.5, 1.5)
@@ -113,7 +113,8 @@ def test_heads_touched_with_noise_have_their_true_error_inside_the_interval(touc
         error = target_error(registration, target)
         true_mm = np.linalg.norm(transforms.apply(registration.matrix, target) - target)
         inside += error.interval_mm[0] <= true_mm <= error.interval_mm[1]
-    assert 0.93 <= inside / 300 <= 0.97
+    # 95 % give or take two and a half standard errors of 200 trials.
+    assert 0.91 <= inside / 200 <= 0.99
 
 
 def test_the_interval_holds_the_expectation_and_grows_with_confidence():

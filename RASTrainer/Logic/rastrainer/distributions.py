@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -61,27 +62,35 @@ def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float
         dof: Degrees of freedom of the χ² variable.
     """
     scale = float(np.sum(weights))
+    probability_up_to = _ratio_distribution(np.asarray(weights) / scale, dof)
     low, high = 0.0, 1.0
-    while _ratio_probability(high, weights / scale, dof) < probability:
+    while probability_up_to(high) < probability:
         low, high = high, 4.0 * high
     while high - low > 1e-8 * high:
         middle = (low + high) / 2
-        if _ratio_probability(middle, weights / scale, dof) < probability:
+        if probability_up_to(middle) < probability:
             low = middle
         else:
             high = middle
     return scale * (low + high) / 2
 
 
-def _ratio_probability(value: float, weights: np.ndarray, dof: float) -> float:
-    """Return P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) by Imhof's inversion formula (1961).
+def _ratio_distribution(weights: np.ndarray, dof: float) -> Callable[[float], float]:
+    """Return P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) as a function of the value.
 
-    The integral runs over u = exp(s), where the trapezoidal rule converges exponentially.
+    It is Imhof's inversion formula (1961). The integral runs over u = exp(s), where the
+    trapezoidal rule converges exponentially.
     """
     step = 0.025
     u = np.exp(np.arange(-30.0, 30.0, step))
-    terms = np.append(weights, -value / dof)[:, None] * u
-    multiplicity = np.append(np.ones(len(weights)), dof)[:, None]
-    angle = 0.5 * (multiplicity * np.arctan(terms)).sum(axis=0)
-    log_size = 0.25 * (multiplicity * np.log1p(terms**2)).sum(axis=0)
-    return 0.5 - step * float(np.sum(np.sin(angle) * np.exp(-log_size))) / math.pi
+    terms = weights[:, None] * u
+    angles = 0.5 * np.arctan(terms).sum(axis=0)
+    log_sizes = 0.25 * np.log1p(terms**2).sum(axis=0)
+
+    def probability_up_to(value: float) -> float:
+        term = value / dof * u
+        angle = angles - 0.5 * dof * np.arctan(term)
+        log_size = log_sizes + 0.25 * dof * np.log1p(term**2)
+        return 0.5 - step * float(np.sum(np.sin(angle) * np.exp(-log_size))) / math.pi
+
+    return probability_up_to
