@@ -1,0 +1,99 @@
+"""Can the robot touch a place of the head, and how?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer_simulator.collision.clearance import Clearance
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import RobotModel
+
+LEANING_DEG = (0.0, 20.0, 40.0, 55.0)
+"""How far the tool may lean away from the skin's normal; tried in this order."""
+
+AZIMUTHS = 8
+SWIVELS_DEG = (0.0, 60.0, -60.0)
+"""Turns of the first joint, undone by the third, from which the elbow's place is looked for."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A way to touch a place.
+
+    Attributes:
+        q: seven joint angles, rad.
+        direction: (3,) float, of the tool, from the wrist to the tip, World.
+        leaning_deg: between the direction and the inward normal.
+        clearance: of that posture, m.
+    """
+
+    q: tuple[float, ...]
+    direction: np.ndarray
+    leaning_deg: float
+    clearance: Clearance
+
+
+class TouchPlanner:
+    """Looks for a posture that touches a place with nothing but the tip, inside the joint limits.
+
+    Args:
+        model: the robot.
+        collision: knows the head, and where it stands.
+        clearance: of the links to the head, to each other and to the table, m. The tool's shaft
+            need only be clear of the head: next to the tip it cannot be farther away.
+    """
+
+    def __init__(self, model: RobotModel, collision: Collision, clearance: float = 0.005) -> None:
+        self._collision = collision
+        self._clearance = clearance
+        self._kinematics = make_kinematics(model)
+        self._fabrik = Fabrik(model)
+        self._starts = [_swiveled(model.home, degrees) for degrees in SWIVELS_DEG]
+
+    def touch(self, position: np.ndarray, normal: np.ndarray) -> Touch | None:
+        """Return a touch of a place of the skin, None where there is none.
+
+        The least leaning of `LEANING_DEG` that works is taken.
+
+        Args:
+            position: (3,) float, World, m.
+            normal: (3,) float, outward unit normal there, World.
+        """
+        for leaning_deg, direction in tool_directions(normal):
+            for start in self._starts:
+                solution = self._fabrik.solve(position, direction, q_start=start)
+                if not solution.converged:
+                    break
+                clearance = self._collision.check(self._kinematics.links(solution.q))
+                if self._is_clear(clearance):
+                    return Touch(solution.q, direction, leaning_deg, clearance)
+        return None
+
+    def _is_clear(self, clearance: Clearance) -> bool:
+        others = min(clearance.links_m, clearance.self_m, clearance.table_m)
+        return clearance.shaft_m > 0.0 and others >= self._clearance
+
+
+def tool_directions(normal: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
+    """Yield directions of the tool against a normal, and how far each leans, in degrees."""
+    across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    across /= np.linalg.norm(across)
+    along = np.cross(normal, across)
+    yield 0.0, -normal
+    for leaning_deg in LEANING_DEG[1:]:
+        leaning = np.radians(leaning_deg)
+        for azimuth in np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False):
+            aside = np.cos(azimuth) * across + np.sin(azimuth) * along
+            yield leaning_deg, np.sin(leaning) * aside - np.cos(leaning) * normal
+
+
+def _swiveled(home: tuple[float, ...], degrees: float) -> tuple[float, ...]:
+    q = list(home)
+    q[0] += np.radians(degrees)
+    q[2] -= np.radians(degrees)
+    return tuple(q)

@@ -1,0 +1,171 @@
+"""Picture the six tasks of the default scenario from four sides.
+
+python assets/scenarios/make_preview.py        writes colin27/preview.png
+"""
+
+from __future__ import annotations
+
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+
+from rastrainer.head_mesh import HeadMesh, read_head_mesh
+from rastrainer.scenario import load_scenario
+from rastrainer.tasks import Task
+
+FOLDER = Path(__file__).parent / "colin27"
+TILE = (300, 270)
+VIEWS = {
+    "front": (0.1, 1, 0.5),
+    "right": (1, 0.1, 0.35),
+    "left": (-1, 0.1, 0.35),
+    "back": (0, -1, 0.4),
+}
+EYE_DISTANCE_MM, VIEW_ANGLE_DEG = 560.0, 24.0
+BACKGROUND, SKIN = (0.96, 0.97, 0.98), (0.87, 0.72, 0.62)
+BALL, WAY, TEXT = (0.1, 0.35, 0.9), (0.9, 0.45, 0.1), (0.05, 0.1, 0.35)
+
+
+def main() -> int:
+    """Write the picture."""
+    scenario = load_scenario(FOLDER)
+    mesh = read_head_mesh(scenario.head_mesh)
+    window = vtk.vtkRenderWindow()
+    window.OffScreenRenderingOn()
+    window.SetMultiSamples(4)
+    window.SetSize(TILE[0] * len(scenario.tasks), TILE[1] * len(VIEWS))
+    skin = _skin(mesh)
+    for column, task in enumerate(scenario.tasks):
+        for row, (view, direction) in enumerate(VIEWS.items()):
+            renderer = _renderer(mesh, task, np.array(direction), skin)
+            renderer.AddViewProp(_caption(f"{task.title}, {view}"))
+            left, top = column / len(scenario.tasks), 1 - row / len(VIEWS)
+            renderer.SetViewport(left, top - 1 / len(VIEWS), left + 1 / len(scenario.tasks), top)
+            window.AddRenderer(renderer)
+    window.Render()
+    picture = vtk.vtkWindowToImageFilter()
+    picture.SetInput(window)
+    picture.ReadFrontBufferOff()
+    writer = vtk.vtkPNGWriter()
+    writer.SetCompressionLevel(9)
+    writer.SetInputConnection(picture.GetOutputPort())
+    writer.SetFileName(str(FOLDER / "preview.png"))
+    writer.Write()
+    return 0
+
+
+def _renderer(
+    mesh: HeadMesh, task: Task, direction: np.ndarray, skin: vtk.vtkPolyDataMapper
+) -> vtk.vtkRenderer:
+    center = mesh.centroid + np.array([0.0, 0.0, 10.0])
+    eye = center + EYE_DISTANCE_MM * direction / np.linalg.norm(direction)
+    renderer = vtk.vtkRenderer()
+    renderer.SetBackground(BACKGROUND)
+    renderer.AddActor(_actor(skin, SKIN))
+    renderer.AddActor(_actor(_tube(_way(mesh, task)), WAY))
+    for label, point in zip(task.labels, task.fiducials, strict=True):
+        renderer.AddActor(_actor(_ball(point), BALL))
+        renderer.AddActor(_number(label, point + 9.0 * (eye - point) / np.linalg.norm(eye - point)))
+    camera = renderer.GetActiveCamera()
+    camera.SetPosition(eye)
+    camera.SetFocalPoint(center)
+    camera.SetViewUp(0, 0, 1)
+    camera.SetViewAngle(VIEW_ANGLE_DEG)
+    renderer.ResetCameraClippingRange()
+    return renderer
+
+
+def _way(mesh: HeadMesh, task: Task) -> np.ndarray:
+    """Return points just above the skin from fiducial to fiducial, (n, 3) mm, to be drawn only."""
+    center = mesh.centroid
+    outward = mesh.vertices - center
+    radii = np.linalg.norm(outward, axis=1)
+    outward = outward / radii[:, None]
+    way = []
+    for start, end in pairwise(task.fiducials - center):
+        weights = np.linspace(0, 1, 24)[:, None]
+        a, b = start / np.linalg.norm(start), end / np.linalg.norm(end)
+        angle = np.arccos(np.clip(a @ b, -1, 1))
+        directions = (np.sin((1 - weights) * angle) * a + np.sin(weights * angle) * b) / np.sin(
+            angle
+        )
+        radius = [np.sort(radii[np.argsort(-(outward @ d))[:3]])[1] for d in directions]
+        way.append(center + directions * (np.array(radius)[:, None] + 1.5))
+    return np.concatenate(way)
+
+
+def _skin(mesh: HeadMesh) -> vtk.vtkPolyDataMapper:
+    points, triangles, surface = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkPolyData()
+    points.SetData(numpy_to_vtk(mesh.vertices, deep=True))
+    corners = mesh.triangles.astype(np.int64).ravel()
+    triangles.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
+    surface.SetPoints(points)
+    surface.SetPolys(triangles)
+    normals = vtk.vtkPolyDataNormals()
+    normals.SetInputData(surface)
+    normals.SetFeatureAngle(60)
+    return _mapper(normals)
+
+
+def _ball(point: np.ndarray) -> vtk.vtkPolyDataMapper:
+    ball = vtk.vtkSphereSource()
+    ball.SetCenter(point)
+    ball.SetRadius(2.6)
+    ball.SetThetaResolution(16)
+    ball.SetPhiResolution(16)
+    return _mapper(ball)
+
+
+def _tube(way: np.ndarray) -> vtk.vtkPolyDataMapper:
+    line = vtk.vtkLineSource()
+    points = vtk.vtkPoints()
+    points.SetData(numpy_to_vtk(way, deep=True))
+    line.SetPoints(points)
+    tube = vtk.vtkTubeFilter()
+    tube.SetInputConnection(line.GetOutputPort())
+    tube.SetRadius(0.8)
+    return _mapper(tube)
+
+
+def _mapper(source: vtk.vtkPolyDataAlgorithm) -> vtk.vtkPolyDataMapper:
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(source.GetOutputPort())
+    return mapper
+
+
+def _actor(mapper: vtk.vtkPolyDataMapper, color: tuple[float, float, float]) -> vtk.vtkActor:
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(color)
+    return actor
+
+
+def _number(label: str, position: np.ndarray) -> vtk.vtkBillboardTextActor3D:
+    number = vtk.vtkBillboardTextActor3D()
+    number.SetInput(label)
+    number.SetPosition(position)
+    number.SetDisplayOffset(4, 3)
+    _style(number.GetTextProperty(), 15)
+    return number
+
+
+def _caption(text: str) -> vtk.vtkTextActor:
+    caption = vtk.vtkTextActor()
+    caption.SetInput(text)
+    caption.SetPosition(8, 8)
+    _style(caption.GetTextProperty(), 13)
+    return caption
+
+
+def _style(text: vtk.vtkTextProperty, size: int) -> None:
+    text.SetFontSize(size)
+    text.SetColor(TEXT)
+    text.BoldOn()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

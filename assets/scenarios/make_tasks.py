@@ -1,0 +1,151 @@
+"""Propose the six tasks of the default scenario; write them, `scenario.json` and README's table.
+
+    python assets/scenarios/make_tasks.py
+
+Takes about two minutes. The same head, robot and seed give the same tasks.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from colin27_setup import CLOSE_UP_MM, PERTURBATION, head_to_world, scenario_json
+
+from rastrainer import transforms
+from rastrainer.files import write_text
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_pose import Perturbation, perturbed_pose
+from rastrainer.markups import write_markups
+from rastrainer.point_list import PointList
+from rastrainer.scenario import FILE_NAME
+from rastrainer.surface_queries import outward_normal
+from rastrainer.tasks import LABELS
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.planning.skin_places import smooth_places
+from rastrainer_simulator.planning.task_proposal import (
+    PLANS,
+    Proposal,
+    TaskProposer,
+    places_seen_from,
+    target_spread,
+)
+from rastrainer_simulator.planning.touch_planner import TouchPlanner
+from rastrainer_simulator.planning.touchable import MM_PER_M, touchable
+from rastrainer_simulator.robot.model import load_robot
+
+FOLDER = Path(__file__).parent / "colin27"
+README = Path(__file__).parent / "README.md"
+TABLE_START, TABLE_END = "<!-- table by make_tasks.py -->\n", "<!-- end of table -->\n"
+
+SEED = 27
+PLACE_SPACING_MM = 10.0
+POSES_TRIED, POSES_CHECKED = 80, 50
+
+WIDER = Perturbation(
+    1.3 * PERTURBATION.translation_mm, 1.3 * PERTURBATION.yaw_deg, 1.3 * PERTURBATION.tilt_deg
+)
+"""The places are tried in poses perturbed by more than a trial's: a margin."""
+
+
+class Workbench:
+    """The head on its stand before the robot."""
+
+    def __init__(self) -> None:
+        self.mesh = read_head_mesh(FOLDER / "head.ply")
+        self.center = self.mesh.centroid.round(4)
+        self.head_to_world = head_to_world(self.center)
+        self.eye = transforms.apply(transforms.inverse(self.head_to_world), CLOSE_UP_MM)
+        robot = load_robot()
+        self._collision = Collision(robot, self.mesh.vertices / MM_PER_M, self.mesh.triangles)
+        self._planner = TouchPlanner(robot, self._collision)
+
+    def touchable(
+        self, positions: np.ndarray, normals: np.ndarray, limits: Perturbation, seeds: range
+    ) -> np.ndarray:
+        """Return which places can be touched in the nominal and in all seeded poses."""
+        poses = [self.head_to_world]
+        poses += [perturbed_pose(self.head_to_world, self.center, limits, seed) for seed in seeds]
+        return touchable(self._planner, self._collision, positions, normals, poses)
+
+
+def main() -> int:
+    """Write the scenario's files; the exit status is 1 where a fiducial cannot be touched."""
+    bench = Workbench()
+    proposals = proposed(bench)
+    for proposal in proposals:
+        write_markups(FOLDER / _file(proposal), PointList(LABELS, proposal.fiducials))
+    content = scenario_json(bench.center, [entry(proposal) for proposal in proposals])
+    write_text(FOLDER / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    table = table_of(proposals, bench.center)
+    before, _, rest = README.read_text(encoding="utf-8").partition(TABLE_START)
+    after = rest.partition(TABLE_END)[2]
+    write_text(README, before + TABLE_START + table + TABLE_END + after)
+    print(table)
+    return 0 if all(is_touchable(bench, proposal) for proposal in proposals) else 1
+
+
+def proposed(bench: Workbench) -> list[Proposal]:
+    """Return the six tasks."""
+    vertices = smooth_places(bench.mesh, PLACE_SPACING_MM)
+    positions = bench.mesh.vertices[vertices].round(4)
+    normals = bench.mesh.vertex_normals[vertices]
+    can_be = bench.touchable(positions, normals, WIDER, range(1000, 1000 + POSES_TRIED))
+    print(f"{can_be.sum()} of {len(can_be)} smooth places can be touched in every pose.")
+    places = places_seen_from(bench.mesh, positions[can_be], normals[can_be], bench.eye)
+    proposer = TaskProposer(bench.mesh, places, bench.eye, bench.center)
+    return proposer.propose_rising(PLANS, SEED)
+
+
+def is_touchable(bench: Workbench, proposal: Proposal) -> bool:
+    """Tell whether all fiducials of a task can be touched in the poses of many trials."""
+    normals = np.array([outward_normal(bench.mesh, point) for point in proposal.fiducials])
+    can_be = bench.touchable(proposal.fiducials, normals, PERTURBATION, range(POSES_CHECKED))
+    missed = [label for label, can in zip(LABELS, can_be, strict=True) if not can]
+    print(f"{proposal.plan.title}: {'not ' + ', '.join(missed) if missed else 'all'} touchable.")
+    return not missed
+
+
+def entry(proposal: Proposal) -> dict[str, Any]:
+    """Return a task's entry in `scenario.json`; the parts of the complexity are for readers."""
+    parts = proposal.complexity
+    return {
+        "name": proposal.plan.name,
+        "title": proposal.plan.title,
+        "file": _file(proposal),
+        "complexity": round(parts.index, 2),
+        "complexityParts": {
+            "pathLengthMm": round(parts.path_length_mm),
+            "turningDeg": round(parts.turning_deg),
+            "hiddenPoints": parts.hidden_points,
+            "reorientationDeg": round(parts.reorientation_deg),
+        },
+    }
+
+
+def table_of(proposals: list[Proposal], center: np.ndarray) -> str:
+    """Return the numbers of the tasks as a table in Markdown."""
+    rows = [
+        "| task | path, mm | turning, ° | hidden points | re-orientation, ° | complexity index | "
+        "expected TRE / FLE |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for proposal in proposals:
+        parts, ratio = proposal.complexity, target_spread(proposal.fiducials, center) ** 0.5
+        rows.append(
+            f"| {proposal.plan.title} | {parts.path_length_mm:.0f} | {parts.turning_deg:.0f} | "
+            f"{parts.hidden_points} | {parts.reorientation_deg:.0f} | {parts.index:.2f} | "
+            f"{ratio:.2f} |"
+        )
+    return "\n".join(rows) + "\n"
+
+
+def _file(proposal: Proposal) -> str:
+    return f"tasks/{proposal.plan.name}.mrk.json"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
