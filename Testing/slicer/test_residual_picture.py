@@ -7,7 +7,12 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.registration import register
-from rastrainer.slicer.residual_glyphs import SCALARS, glyphsPolyData, showResidualArrows
+from rastrainer.slicer.residual_glyphs import (
+    SCALARS,
+    glyphsPolyData,
+    magnification,
+    showResidualArrows,
+)
 from rastrainer.slicer.residual_picture import HEIGHT, WIDTH, writeResidualPicture
 from rastrainer.slicer.residual_views import chooseTwoViews, outwardDirections
 
@@ -35,13 +40,23 @@ def registration():
     return register(fixed + random.normal(0.0, 1.0, (15, 3)), fixed)
 
 
-def test_an_arrow_is_ten_times_as_long_as_its_residual_and_carries_it(registration):
+def test_an_arrow_is_a_multiple_of_its_residual_and_carries_it(registration):
     data = glyphsPolyData(registration, [4])
     points = vtk_to_numpy(data.GetPoints().GetData())
     reach = np.linalg.norm(points - registration.fixed_mm[4], axis=1).max()
-    assert reach == pytest.approx(10.0 * registration.residuals_mm[4], rel=0.01)
+    assert reach == pytest.approx(
+        magnification(registration) * registration.residuals_mm[4], rel=0.01
+    )
     scalars = vtk_to_numpy(data.GetPointData().GetArray(SCALARS))
     np.testing.assert_allclose(scalars, registration.residuals_mm[4])
+
+
+@pytest.mark.parametrize(("shift", "expected"), [(2.0, 10.0), (6.0, 5.0), (30.0, 1.0)])
+def test_large_residuals_are_magnified_less(shift, expected):
+    fixed = np.random.default_rng(2).normal(0.0, 70.0, (15, 3))
+    moving = fixed.copy()
+    moving[3, 0] += shift
+    assert magnification(register(moving, fixed)) == expected
 
 
 def test_a_residual_of_nothing_is_no_trouble():

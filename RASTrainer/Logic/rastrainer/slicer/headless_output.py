@@ -10,6 +10,7 @@ from rastrainer.files import write_text
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.scenario import Scenario
 from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.residual_glyphs import magnification
 from rastrainer.slicer.residual_picture import writeResidualPicture
 from rastrainer.slicer.trial_desk import ScoredTrial
 from rastrainer.trial_results import results_json
@@ -46,7 +47,7 @@ def _writePicture(path: Path, scenario: Scenario, trial: ScoredTrial) -> None:
     )
     caption = [
         "Ball and number: fiducial in the MRI and its residual in mm. Arrow: towards where the "
-        "registration puts the touch, 10 times as long.",
+        f"registration puts the touch, {magnification(analysis.rigid):g} times as long.",
         f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
         f"(95 %: {low:.2f} to {high:.2f} mm), true TRE {trial.truth.true_tre_mm:.2f} mm. "
         "FRE does not predict TRE case by case.",

@@ -11,16 +11,28 @@ import vtk
 from rastrainer.registration import Registration
 from rastrainer.slicer.scene import Role, findOrAddNode
 
-MAGNIFICATION = 10.0
-"""Residuals are about a millimeter on a head of 200: true to scale they could not be seen."""
-
+LONGEST_ARROW_MM = 40.0
 SCALARS = "residual (mm)"
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
 """One of the color tables that every Slicer has; readable without color vision, too."""
 
 
+def magnification(registration: Registration) -> float:
+    """Return how many times as long as the residuals the arrows are.
+
+    Residuals are about a millimeter on a head of 200: true to scale they could not be seen.
+    """
+    largest = float(registration.residuals_mm.max())
+    return next((m for m in (10.0, 5.0, 2.0) if m * largest <= LONGEST_ARROW_MM), 1.0)
+
+
+def arrowTips(registration: Registration) -> np.ndarray:
+    """Return where the arrows end, (n, 3) float, RAS mm."""
+    return registration.fixed_mm + magnification(registration) * registration.residual_vectors_mm
+
+
 def glyphsPolyData(registration: Registration, rows: Sequence[int] | None = None) -> Any:
-    """Return a ball on each fiducial and an arrow ten times as long as its residual, in RAS mm.
+    """Return a ball on each fiducial and an arrow along its residual, in RAS mm.
 
     Args:
         registration: whose residuals are shown.
@@ -30,11 +42,11 @@ def glyphsPolyData(registration: Registration, rows: Sequence[int] | None = None
         `vtkPolyData` whose point data hold the residual in mm under the name `residual (mm)`.
     """
     append = vtk.vtkAppendPolyData()
+    tips = arrowTips(registration)
     for row in range(len(registration.labels)) if rows is None else rows:
         fixed, residual = registration.fixed_mm[row], float(registration.residuals_mm[row])
-        vector = MAGNIFICATION * registration.residual_vectors_mm[row]
         append.AddInputData(_withScalar(_ball(fixed), residual))
-        append.AddInputData(_withScalar(_arrow(fixed, vector), residual))
+        append.AddInputData(_withScalar(_arrow(fixed, tips[row] - fixed), residual))
     append.Update()
     return append.GetOutput()
 
@@ -43,7 +55,7 @@ def showResidualArrows(scene: Any, registration: Registration) -> Any:
     """Show the arrows in a `vtkMRMLModelNode` and return it."""
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS, "Residual arrows")
     node.SetAndObservePolyData(glyphsPolyData(registration))
-    node.SetDescription(f"Residuals, {MAGNIFICATION:g} times as long")
+    node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
     display = node.GetDisplayNode()
     display.SetActiveScalar(SCALARS, vtk.vtkAssignAttribute.POINT_DATA)
     display.SetAndObserveColorNodeID(COLOR_TABLE_ID)

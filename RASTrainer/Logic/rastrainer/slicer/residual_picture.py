@@ -10,14 +10,21 @@ import vtk
 
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.registration import Registration
+from rastrainer.slicer.label_placement import placeLabels
 from rastrainer.slicer.polydata import trianglesPolyData
-from rastrainer.slicer.residual_glyphs import SCALARS, glyphsPolyData, residualRange
-from rastrainer.slicer.residual_views import chooseTwoViews, outwardDirections
+from rastrainer.slicer.residual_glyphs import SCALARS, arrowTips, glyphsPolyData, residualRange
+from rastrainer.slicer.residual_views import (
+    Screen,
+    chooseTwoViews,
+    fitScreen,
+    outwardDirections,
+)
 
 WIDTH, HEIGHT = 1800, 1080
 _VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
 _LEGEND = (0.9, 0.09, 1.0, 0.92)
 _PAGE = (0.0, 0.0, 1.0, 1.0)
+_CHARACTER_WIDTH, _LABEL_HEIGHT, _LABEL_GAP = 12, 28, 10
 _MARGIN = 1.08
 _CLEARLY_FACING = 0.25
 _PAPER = (1.0, 1.0, 1.0)
@@ -57,14 +64,15 @@ def writeResidualPicture(
     outward = outwardDirections(registration.fixed_mm, center)
     directions = chooseTwoViews(outward)
     facing = directions @ outward.T
+    shown = np.vstack([head.vertices, arrowTips(registration)])
     for number, viewport in enumerate(_VIEWS):
         view = _headView(viewport, surface)
-        _look(view, head, center, directions[number])
+        screen = _look(view, shown, center, directions[number])
         window.AddRenderer(view)
         isLabeled = facing[number] == facing.max(axis=0)
         rows = np.flatnonzero((facing[number] > _CLEARLY_FACING) | isLabeled)
         glyphs = _glyphView(view, registration, rows, colors)
-        _addLabels(glyphs, registration, outward, np.flatnonzero(isLabeled))
+        _addLabels(glyphs, screen, registration, np.flatnonzero(isLabeled))
         window.AddRenderer(glyphs)
     window.AddRenderer(_legend(colors))
     window.Render()
@@ -150,15 +158,24 @@ def _actor(data: vtk.vtkPolyData) -> vtk.vtkActor:
 
 
 def _addLabels(
-    view: vtk.vtkRenderer, registration: Registration, outward: np.ndarray, rows: np.ndarray
+    view: vtk.vtkRenderer, screen: Screen, registration: Registration, rows: np.ndarray
 ) -> None:
     """Write number and residual beside the points that this view shows best."""
-    for row in rows:
+    texts = [f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}" for row in rows]
+    sizes = np.array([(_CHARACTER_WIDTH * len(text), _LABEL_HEIGHT) for text in texts])
+    starts, tips = registration.fixed_mm, arrowTips(registration)
+    along = np.linspace(0.0, 1.0, 9)[:, None, None]
+    arrows = screen.project((starts + along * (tips - starts)).reshape(-1, 3))
+    sides = placeLabels(screen.project(starts[rows]), sizes, arrows, _LABEL_GAP)
+    for text, row, (right, up) in zip(texts, rows, sides, strict=True):
         label = vtk.vtkBillboardTextActor3D()
-        label.SetInput(f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}")
-        label.SetPosition(registration.fixed_mm[row] + 3.0 * outward[row])
-        label.SetDisplayOffset(10, 10)
+        label.SetInput(text)
+        label.SetPosition(starts[row])
+        label.SetDisplayOffset(_LABEL_GAP * right, _LABEL_GAP * up)
         style = label.GetTextProperty()
+        # VTK's numbers: 0 left or bottom, 1 centered, 2 right or top.
+        style.SetJustification(1 - right)
+        style.SetVerticalJustification(1 - up)
         style.SetFontSize(22)
         style.SetBold(True)
         style.SetColor(*_INK)
@@ -167,23 +184,21 @@ def _addLabels(
         view.AddActor(label)
 
 
-def _look(view: vtk.vtkRenderer, head: HeadMesh, center: np.ndarray, direction: np.ndarray) -> None:
-    """Fill the view with the head as it is seen from a direction."""
-    right = np.cross([0.0, 0.0, 1.0], direction)
-    right /= np.linalg.norm(right)
-    across = (head.vertices - center) @ np.column_stack([right, np.cross(direction, right)])
-    middle = 0.5 * (across.min(axis=0) + across.max(axis=0))
-    halfWidth, halfHeight = 0.5 * np.ptp(across, axis=0)
-    left, bottom, rightEnd, top = view.GetViewport()
-    aspect = (rightEnd - left) * WIDTH / ((top - bottom) * HEIGHT)
-    focus = center + middle[0] * right + middle[1] * np.cross(direction, right)
+def _look(
+    view: vtk.vtkRenderer, shown: np.ndarray, center: np.ndarray, direction: np.ndarray
+) -> Screen:
+    """Fill the view with the points `shown`, (n, 3) float, as they are seen from a direction."""
+    left, bottom, right, top = view.GetViewport()
+    width, height = (right - left) * WIDTH, (top - bottom) * HEIGHT
+    screen = fitScreen(shown, center, direction, width / _MARGIN, height / _MARGIN)
     camera = view.GetActiveCamera()
     camera.ParallelProjectionOn()
-    camera.SetFocalPoint(focus)
-    camera.SetPosition(focus + 800.0 * direction)
+    camera.SetFocalPoint(screen.focus)
+    camera.SetPosition(screen.focus + 800.0 * direction)
     camera.SetViewUp(0.0, 0.0, 1.0)
-    camera.SetParallelScale(_MARGIN * max(halfHeight, halfWidth / aspect))
+    camera.SetParallelScale(0.5 * height / screen.pixelsPerMm)
     camera.SetClippingRange(1.0, 1600.0)
+    return screen
 
 
 def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkRenderer:
