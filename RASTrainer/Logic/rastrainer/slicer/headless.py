@@ -6,7 +6,7 @@ Every line on standard output is one JSON object with the key `event`:
 
     status  state, sentence, remedy              the link, whenever it changes
     point   label, count, positionMm             a touch has appeared in the scene
-    undo    count                                the last touch has gone from the scene
+    removed count                                touches have gone: taken back, or a new trial began
     trial   results                              a trial is registered, scored and kept
     problem sentence                             something is wrong with a trial
     output  scene, picture, results, study       paths of the files, at the end
@@ -103,7 +103,7 @@ class HeadlessHost:
         for row in range(self._touches, len(labels)):
             tell("point", label=labels[row], count=row + 1, positionMm=positions[row].tolist())
         if len(labels) < self._touches:
-            tell("undo", count=len(labels))
+            tell("removed", count=len(labels))
         self._touches = len(labels)
 
     def _tellTrial(self, trial: ScoredTrial) -> None:

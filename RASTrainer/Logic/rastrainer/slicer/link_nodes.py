@@ -32,16 +32,18 @@ def simStateNode(scene: Any) -> Any:
     return node
 
 
-def toolTipNode(scene: Any) -> Any:
-    """Return the transform of the tool's tip to World; made where it is missing, never saved."""
-    node = _named(scene, "vtkMRMLLinearTransformNode", Device.TOOL_TIP_TO_WORLD)
-    node.SetSaveWithScene(False)
-    return node
+def poseNodes(scene: Any) -> tuple[Any, ...]:
+    """Return the transforms of tool tip and robot links to World; made where missing, not saved."""
+    names = (Device.TOOL_TIP_TO_WORLD, *Device.LINK_TO_WORLD)
+    nodes = tuple(_named(scene, "vtkMRMLLinearTransformNode", name) for name in names)
+    for node in nodes:
+        node.SetSaveWithScene(False)
+    return nodes
 
 
 def prepareNodes(scene: Any) -> None:
     """Make the nodes that are missing; the connector adopts nodes of that name and class."""
-    for makeNode in (capturedPointsNode, simStateNode, toolTipNode):
+    for makeNode in (capturedPointsNode, simStateNode, poseNodes):
         makeNode(scene)
 
 
