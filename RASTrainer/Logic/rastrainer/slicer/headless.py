@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 import time
 from collections.abc import Sequence
@@ -133,6 +134,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> None:
+    if arguments.trials < 1:
+        raise InputError("Wait for at least one trial.")
+    if not 0 < arguments.timeout < math.inf:
+        raise InputError("The timeout must be a number of seconds above 0.")
     shelf = ScenarioShelf(arguments.scenario)
     (scenario,) = shelf.scenarios()
     openStudyIn(arguments.output).close()  # What is wrong with it is told before anyone plays.

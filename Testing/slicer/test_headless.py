@@ -1,0 +1,157 @@
+"""The headless side plays Slicer's part to the end: lines, files, exit status."""
+
+import json
+import threading
+import time
+import uuid
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.points import Point, Points
+from rastrainer.protocol import Device
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer import headless
+from rastrainer.slicer.control_points import labelsOf, worldPoints
+from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.registration_nodes import fixedNode, isApplied, matrixOf
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.study import Study
+from Testing.slicer.simulator_double import SimulatorDouble
+
+ASSETS = Path(__file__).parents[2] / "assets"
+COLIN = ASSETS / "scenarios" / "colin27"
+TRIAL = str(uuid.UUID(int=5))
+SEED = 1
+
+
+class PlayingDouble(SimulatorDouble):
+    """Plays one trial as soon as it is greeted: fifteen touches, then the record."""
+
+    def __init__(self, record):
+        super().__init__(self.respond)
+        self.record = record
+        self.scenario = load_scenario(COLIN)
+
+    def respond(self, name, arguments):
+        if name == "Hello":
+            threading.Thread(target=self.play, daemon=True).start()
+        if name != "TrialScored":
+            return {}
+        head_to_world = self.scenario.perturbed_head_to_world(SEED)
+        found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
+        target = self.scenario.target_position
+        return {
+            "headToWorld": head_to_world.ravel().tolist(),
+            "trueTreMm": float(np.linalg.norm(transforms.apply(found, target) - target)),
+        }
+
+    def play(self):
+        touched = [Point(point["label"], point["positionMm"]) for point in self.record["points"]]
+        for count in range(1, 16):
+            self.send(Device.CAPTURED_POINTS, Points(tuple(touched[:count])))
+            time.sleep(0.03)
+        self.send_command("TrialCompleted", self.record)
+
+
+@pytest.fixture
+def colin_record(make_record):
+    scenario = load_scenario(COLIN)
+    random = np.random.default_rng(SEED)
+    fiducials = scenario.task("task-1").fiducials + random.normal(0.0, 0.7, (15, 3))
+    touched = transforms.apply(scenario.perturbed_head_to_world(SEED), fiducials)
+    record = make_record(TRIAL, scenario="colin27")
+    for point, position in zip(record["points"], touched, strict=True):
+        point["positionMm"] = position.tolist()
+    return record
+
+
+def arguments(output, port, *more):
+    return [
+        "--port", str(port), "--scenario", str(COLIN), "--output", str(output), *more
+    ]  # fmt: skip
+
+
+def lines_of(text, event):
+    lines = [json.loads(line) for line in text.splitlines()]
+    return [line for line in lines if line["event"] == event]
+
+
+def test_a_trial_is_played_to_its_files(colin_record, tmp_path, capfd):
+    cohort = str(ASSETS / "studies" / "published.csv")
+    with PlayingDouble(colin_record) as simulator:
+        words = arguments(tmp_path, simulator.port, "--timeout", "30", "--cohort", cohort)
+        assert headless.main(words) == 0
+    text = capfd.readouterr().out
+    points = lines_of(text, "point")
+    assert [line["label"] for line in points] == [str(number) for number in range(1, 16)]
+    assert lines_of(text, "status")[-2]["state"] in ("greeting", "connected")
+    (trial,) = lines_of(text, "trial")
+    (written,) = json.loads((tmp_path / "results.json").read_text())["trials"]
+    assert trial["results"] == written
+    assert written["truth"]["true_tre_mm"] < 2.0
+    assert written["ctps"]["equation_3"] == written["ctps"]["published"] / 2
+    (output,) = lines_of(text, "output")
+    assert all(Path(output[name]).stat().st_size > 1000 for name in ("scene", "picture", "study"))
+    with Study.open(tmp_path / "study.db") as study:
+        assert study.trial(TRIAL).true_tre_mm == written["truth"]["true_tre_mm"]
+    check_saved_scene(tmp_path / "trial.mrb", written)
+
+
+def check_saved_scene(path, results):
+    application = HeadlessScene()
+    application.load(path)
+    scene = application.scene
+    transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    np.testing.assert_allclose(matrixOf(transform), results["fits"]["rigid"]["matrix"], atol=1e-9)
+    assert isApplied(transform)
+    touched = scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode")
+    fixed = fixedNode(transform)
+    assert labelsOf(touched) == labelsOf(fixed)
+    residuals = np.linalg.norm(worldPoints(touched) - worldPoints(fixed), axis=1)
+    np.testing.assert_allclose(residuals, results["fits"]["rigid"]["residuals_mm"], atol=2e-3)
+    head = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    assert head.GetPolyData().GetNumberOfPolys() > 40_000
+    assert findNode(scene, "vtkMRMLTableNode", Role.RESIDUALS).GetNumberOfRows() == 15
+    assert findNode(scene, "vtkMRMLTableNode", Role.FITS).GetNumberOfRows() == 3
+    assert findNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS).GetPolyData() is not None
+    assert scene.GetFirstNodeByName("ToolTipToWorld") is None
+
+
+def test_trials_that_do_not_come_end_with_status_1_and_a_sentence(simulator, tmp_path, capfd):
+    assert headless.main(arguments(tmp_path, simulator.port, "--timeout", "0.3")) == 1
+    error = capfd.readouterr().err.strip()
+    assert error.startswith("rastrainer: 0 of 1 trials came within 0.3 s.")
+    assert "\n" not in error
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (["--scenario", "nowhere"], "nowhere does not exist"),
+        (["--cohort", "nowhere.csv"], "There is no file nowhere.csv"),
+        (["--port", "0"], "port must be a number from 1 to 65535"),
+        (["--trials", "0"], "at least one trial"),
+        (["--timeout", "nan"], "seconds above 0"),
+    ],
+)
+def test_bad_arguments_end_with_status_2_and_a_sentence(changes, words, tmp_path, capfd):
+    assert headless.main(arguments(tmp_path, 18944, *changes)) == 2
+    error = capfd.readouterr().err.strip()
+    assert words in error
+    assert "Traceback" not in error
+
+
+def test_an_output_folder_that_cannot_be_is_told_before_anyone_plays(tmp_path, capfd):
+    (tmp_path / "file").write_text("x")
+    assert headless.main(arguments(tmp_path / "file" / "folder", 18944)) == 2
+    assert "cannot be made" in capfd.readouterr().err
+
+
+def test_a_file_that_is_no_study_is_left_alone(tmp_path, capfd):
+    (tmp_path / "study.db").write_text("my notes")
+    assert headless.main(arguments(tmp_path, 18944)) == 2
+    assert "study" in capfd.readouterr().err
+    assert (tmp_path / "study.db").read_text() == "my notes"
