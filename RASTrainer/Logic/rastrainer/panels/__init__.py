@@ -1,0 +1,1 @@
+"""The module's panels: thin Qt widgets over the logic in `rastrainer.slicer`."""

@@ -1,0 +1,238 @@
+# ruff: noqa: ARG002, I001, PT009 (the order of imports, observers and assertions is Slicer's)
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import qt
+
+import slicer
+from slicer.i18n import tr as _
+from slicer.i18n import translate
+from slicer.ScriptedLoadableModule import *
+from slicer.util import VTKObservationMixin
+from slicer.parameterNodeWrapper import (
+    parameterNodeWrapper,
+    WithinRange,
+)
+
+#
+# RASTrainer
+#
+
+
+class RASTrainer(ScriptedLoadableModule):
+    """The module as Slicer lists it.
+
+    It does not depend on the module OpenIGTLinkIF: without it, connecting says what to install, and
+    everything else works.
+    """
+
+    def __init__(self, parent):
+        ScriptedLoadableModule.__init__(self, parent)
+        parent.title = _("RASTrainer: Robot-Assisted Surgery trainer")
+        parent.categories = [translate("qSlicerAbstractCoreModule", "Training")]
+        parent.dependencies = []
+        parent.contributors = ["The RASTrainer maintainers"]
+        parent.helpText = _(
+            "A trainee drives a simulated robot to fifteen numbered points on a head and touches "
+            "them. The touched points arrive here over OpenIGTLink, are registered to the same "
+            "points in the patient's MRI, and the trial is scored and kept. Not for clinical use."
+        )
+        parent.acknowledgementText = _(
+            "The method follows “Virtual reality-based training simulator for robot-assisted "
+            "surgery using Unity and 3D slicer”."
+        )
+        logicFolder = str(Path(__file__).parent / "Logic")
+        if logicFolder not in sys.path:
+            sys.path.insert(0, logicFolder)
+
+
+#
+# RASTrainerParameterNode
+#
+
+
+@parameterNodeWrapper
+class RASTrainerParameterNode:
+    """What the user has chosen, as it is saved with the scene.
+
+    host - computer on which the simulator runs
+    port - its OpenIGTLink port
+    """
+
+    host: str = "127.0.0.1"
+    port: Annotated[int, WithinRange(1, 65535)] = 18944
+
+
+#
+# RASTrainerWidget
+#
+
+
+class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
+    """Wires the panels to the logic; what they do stands in `rastrainer.panels`."""
+
+    def __init__(self, parent=None) -> None:
+        ScriptedLoadableModuleWidget.__init__(self, parent)
+        VTKObservationMixin.__init__(self)
+        self.logic = None
+        self._parameterNode = None
+        self._parameterNodeGuiTag = None
+        self._panels = []
+        self._timer = None
+
+    def setup(self) -> None:
+        from rastrainer.panels.connection_panel import ConnectionPanel
+        from rastrainer.panels.last_trial_panel import LastTrialPanel
+
+        ScriptedLoadableModuleWidget.setup(self)
+        uiWidget = slicer.util.loadUI(self.resourcePath("UI/RASTrainer.ui"))
+        self.layout.addWidget(uiWidget)
+        self.ui = slicer.util.childWidgetVariables(uiWidget)
+        uiWidget.setMRMLScene(slicer.mrmlScene)
+        self.logic = RASTrainerLogic()
+        self._panels = [
+            ConnectionPanel(self.ui, self.logic.link),
+            LastTrialPanel(self.ui, self.logic.desk),
+        ]
+        self.addObserver(slicer.mrmlScene, slicer.mrmlScene.StartCloseEvent, self.onSceneStartClose)
+        self.addObserver(slicer.mrmlScene, slicer.mrmlScene.EndCloseEvent, self.onSceneEndClose)
+        self.initializeParameterNode()
+        # Trials arrive whether or not this module is shown.
+        self._timer = qt.QTimer()
+        self._timer.setInterval(100)
+        self._timer.connect("timeout()", self.logic.process)
+        self._timer.start()
+
+    def cleanup(self) -> None:
+        if self._timer is not None:
+            self._timer.stop()
+        for panel in self._panels:
+            panel.close()
+        if self.logic is not None:
+            self.logic.close()
+        self.setParameterNode(None)
+        self.removeObservers()
+
+    def enter(self) -> None:
+        self.initializeParameterNode()
+
+    def exit(self) -> None:
+        self.setParameterNode(None)
+
+    def onSceneStartClose(self, caller=None, event=None) -> None:
+        self.setParameterNode(None)
+
+    def onSceneEndClose(self, caller=None, event=None) -> None:
+        if self.parent.isEntered:
+            self.initializeParameterNode()
+
+    def initializeParameterNode(self) -> None:
+        self.setParameterNode(self.logic.getParameterNode())
+
+    def setParameterNode(self, parameterNode) -> None:
+        if self._parameterNode is not None:
+            self._parameterNode.disconnectGui(self._parameterNodeGuiTag)
+        self._parameterNode = parameterNode
+        if parameterNode is not None:
+            self._parameterNodeGuiTag = parameterNode.connectGui(self.ui)
+
+
+#
+# RASTrainerLogic
+#
+
+
+class RASTrainerLogic(ScriptedLoadableModuleLogic):
+    """What the module can do without its widgets; the parts stand in `rastrainer.slicer`."""
+
+    def __init__(self) -> None:
+        from rastrainer.slicer.connector_kit import desktopKit
+        from rastrainer.slicer.link import Link
+        from rastrainer.slicer.scenario_shelf import ScenarioShelf
+        from rastrainer.slicer.trial_desk import TrialDesk
+        from rastrainer.trial_files import read_trials
+
+        ScriptedLoadableModuleLogic.__init__(self)
+        assets = self.assetsFolder()
+        self.link = Link(slicer.mrmlScene, desktopKit)
+        self.desk = TrialDesk(
+            slicer.mrmlScene,
+            self.link,
+            ScenarioShelf.below(assets / "scenarios").find,
+            self.openStudy,
+            read_trials(assets / "studies" / "published.csv"),
+        )
+
+    def getParameterNode(self):
+        return RASTrainerParameterNode(super().getParameterNode())
+
+    def process(self) -> None:
+        """Do what is due; called about ten times a second."""
+        self.link.process()
+
+    def close(self) -> None:
+        """Disconnect and close the study."""
+        self.link.disconnect()
+        self.desk.close()
+
+    def assetsFolder(self) -> Path:
+        """Return where scenarios and studies are: installed with the module, or in a checkout."""
+        installed = Path(__file__).parent / "Resources" / "RASTrainer"
+        return installed if installed.is_dir() else Path(__file__).parents[1] / "assets"
+
+    def openStudy(self):
+        """Open the study in which trainees and trials are kept, in the user's documents."""
+        from rastrainer.slicer.study_place import openStudyIn
+
+        documents = qt.QStandardPaths.writableLocation(qt.QStandardPaths.DocumentsLocation)
+        return openStudyIn(Path(documents) / "RASTrainer")
+
+
+#
+# RASTrainerTest
+#
+
+
+class RASTrainerTest(ScriptedLoadableModuleTest):
+    """Runs in Slicer, by the Reload and Test button and by CTest; needs no simulator."""
+
+    def setUp(self):
+        slicer.mrmlScene.Clear()
+
+    def test_theFitOfPointsInTheSceneIsExact(self):
+        import numpy as np
+        from rastrainer.slicer.control_points import setPoints, worldPoints
+        from rastrainer.slicer.registration_nodes import registerNodes, showRegistration
+
+        fixedPoints = np.array([[0.0, 0, 0], [90, 0, 0], [0, 70, 0], [0, 0, 50], [30, 30, 30]])
+        movingPoints = fixedPoints[:, [1, 2, 0]] + [500.0, 20.0, 300.0]
+        fixed = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Fixed")
+        moving = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Moving")
+        setPoints(fixed, tuple("12345"), fixedPoints)
+        setPoints(moving, tuple("12345"), movingPoints)
+        registration = registerNodes(moving, fixed)
+        self.assertLess(registration.fre_mm, 1e-6)
+        showRegistration(slicer.mrmlScene, registration, moving, fixed)
+        self.assertLess(np.abs(worldPoints(moving) - fixedPoints).max(), 1e-6)
+
+    def test_anAbsentSimulatorIsToldAndTheSceneMayBeCleared(self):
+        from rastrainer.slicer.heartbeat import LinkState
+
+        logic = RASTrainerLogic()
+        logic.link.connectTo("127.0.0.1", 1)
+        slicer.mrmlScene.Clear()
+        logic.process()
+        allowed = (LinkState.ABSENT, LinkState.NOT_INSTALLED)
+        self.assertIn(logic.link.status.state, allowed)
+        logic.close()
+        self.assertEqual(logic.link.status.state, LinkState.OFF)
+
+    def test_theBuiltInScenarioIsShown(self):
+        from rastrainer.scenario import load_scenario
+        from rastrainer.slicer.scenario import showScenario, showTask
+
+        scenario = load_scenario(RASTrainerLogic().assetsFolder() / "scenarios" / "colin27")
+        showScenario(slicer.mrmlScene, scenario)
+        node = showTask(slicer.mrmlScene, scenario, "task-1")
+        self.assertEqual(node.GetNumberOfControlPoints(), 15)

@@ -1,0 +1,121 @@
+"""What Slicer's Extensions Manager installs: complete, importable, of its own conventions."""
+
+import ast
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+MODULE = ROOT / "RASTrainer"
+SOURCES = sorted(MODULE.rglob("*.py"))
+RESOURCES = sorted(path for path in (MODULE / "Resources").rglob("*") if path.is_file())
+
+# Free to import in Slicer: its own modules and what its Python brings along.
+BUNDLED = {"slicer", "vtk", "qt", "ctk", "numpy", "scipy", "requests", "PIL"}
+
+
+def relative(paths):
+    return sorted(path.relative_to(MODULE).as_posix() for path in paths)
+
+
+def listed(variable):
+    text = (MODULE / "CMakeLists.txt").read_text()
+    block = re.search(rf"set\({variable}\n(.*?)\n  \)", text, re.DOTALL).group(1)
+    return sorted(
+        line.strip().replace("${MODULE_NAME}", "RASTrainer") for line in block.splitlines()
+    )
+
+
+def imported_packages(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield node.module.partition(".")[0]
+
+
+def widgets():
+    tree = ElementTree.parse(MODULE / "Resources" / "UI" / "RASTrainer.ui")
+    return {widget.get("name"): widget for widget in tree.iter("widget")}
+
+
+def test_every_python_file_is_listed_in_cmake():
+    assert listed("MODULE_PYTHON_SCRIPTS") == relative(SOURCES)
+
+
+def test_every_resource_is_listed_in_cmake():
+    assert listed("MODULE_PYTHON_RESOURCES") == relative(RESOURCES)
+
+
+@pytest.mark.parametrize("minor", [10, 11, 12, 13])
+def test_every_python_file_compiles_under_each_supported_version(minor):
+    for path in SOURCES:
+        ast.parse(path.read_text(encoding="utf-8"), str(path), feature_version=(3, minor))
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(MODULE).as_posix())
+def test_nothing_is_imported_that_slicer_does_not_bring(path):
+    allowed = {*sys.stdlib_module_names, *BUNDLED, "rastrainer"}
+    if path.name == "checksum.py":
+        allowed.add("fastcrc")  # Guarded: without it, the checksum is plain Python.
+    assert set(imported_packages(path)) <= allowed
+
+
+def test_the_module_file_holds_definitions_only():
+    allowed = (ast.Import, ast.ImportFrom, ast.ClassDef, ast.FunctionDef)
+    body = ast.parse((MODULE / "RASTrainer.py").read_text()).body
+    assert all(isinstance(node, allowed) for node in body)
+
+
+def test_the_module_does_not_vanish_without_the_connector():
+    source = (MODULE / "RASTrainer.py").read_text()
+    assert "parent.dependencies = []" in source
+    assert "vtkMRMLIGTLConnectorNode" not in source
+    assert "def runTest" not in source
+
+
+def test_the_extension_names_category_and_dependency():
+    text = (ROOT / "CMakeLists.txt").read_text()
+    assert 'set(EXTENSION_CATEGORY "Training")' in text
+    assert 'set(EXTENSION_DEPENDS "SlicerOpenIGTLink")' in text
+
+
+def test_the_panels_use_only_widgets_that_the_ui_file_has():
+    used = set()
+    for path in (MODULE / "Logic" / "rastrainer" / "panels").glob("*.py"):
+        used |= set(re.findall(r"\bui\.(\w+)", path.read_text()))
+    assert used
+    assert used <= set(widgets())
+
+
+def test_widgets_bound_to_parameters_name_parameters_that_exist():
+    module = ast.parse((MODULE / "RASTrainer.py").read_text())
+    (parameters,) = (
+        {item.target.id for item in node.body if isinstance(item, ast.AnnAssign)}
+        for node in module.body
+        if isinstance(node, ast.ClassDef) and node.name == "RASTrainerParameterNode"
+    )
+    bound = {
+        item.find("string").text
+        for widget in widgets().values()
+        for item in widget.findall("property")
+        if item.get("name") == "SlicerParameterName"
+    }
+    assert bound == parameters
+
+
+def test_the_top_widget_hands_on_the_scene():
+    tree = ElementTree.parse(MODULE / "Resources" / "UI" / "RASTrainer.ui")
+    assert tree.find("widget").get("class") == "qMRMLWidget"
+
+
+def test_the_icon_is_a_square_png_of_128_pixels():
+    header = (MODULE / "Resources" / "Icons" / "RASTrainer.png").read_bytes()[:24]
+    assert header.startswith(b"\x89PNG")
+    assert (int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")) == (
+        128,
+        128,
+    )
