@@ -7,10 +7,11 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.protocol import Proximity
+from rastrainer.scenario import Camera, Furniture
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
-from rastrainer_simulator.views.cameras import FAR, close_up
 from rastrainer_simulator.views.head_actors import ShownHead
+from rastrainer_simulator.views.offscreen import write_png
 from rastrainer_simulator.views.picture import render_robot_picture
 from rastrainer_simulator.views.skin_marks import (
     DOT_LIFT,
@@ -22,7 +23,14 @@ from rastrainer_simulator.views.skin_marks import (
 
 RADIUS = 80.0
 SIZE = (480, 270)
+UP = np.array([0.0, 0.0, 1.0])
+FAR = Camera(np.array([660.0, -2350.0, 950.0]), np.array([420.0, 0.0, 330.0]), UP, 24.0)
+FURNITURE = Furniture(np.array([300.0, 0.0]), np.array([1300.0, 1000.0, 40.0]), 80.0)
 FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
+
+
+def close_up(target_mm: np.ndarray) -> Camera:
+    return Camera(target_mm + np.array([250.0, -750.0, 280.0]), target_mm, UP, 20.0)
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +55,7 @@ def picture(tmp_path_factory, head):
 
     def render(**arguments) -> np.ndarray:
         path = tmp_path_factory.mktemp("pictures") / "robot.png"
-        render_robot_picture(path, robot, links, head, size=SIZE, **arguments)
+        render_robot_picture(path, robot, links, head, FURNITURE, size=SIZE, **arguments)
         return _pixels(path)
 
     return render
@@ -100,8 +108,8 @@ def test_the_picture_is_neither_empty_nor_overexposed(far):
 def tip(picture):
     """Return a close picture of the tool's tip for a proximity."""
     robot = load_robot()
-    target = make_kinematics(robot).tip(np.array(robot.home))[:3, 3]
-    return lambda proximity: picture(camera=close_up(tuple(target)), proximity=proximity)
+    target = make_kinematics(robot).tip(np.array(robot.home))[:3, 3] * 1000
+    return lambda proximity: picture(camera=close_up(target), proximity=proximity)
 
 
 def test_the_tool_tip_is_blue_when_free_and_red_when_near_or_touching(tip):
@@ -116,8 +124,7 @@ def test_the_tool_tip_is_blue_when_free_and_red_when_near_or_touching(tip):
 
 
 def test_fiducials_are_colored_by_their_state_and_numbered(picture, head):
-    center = tuple(head.head_to_world[:3, 3] / 1000)
-    pixels = picture(camera=close_up(center))
+    pixels = picture(camera=close_up(head.head_to_world[:3, 3]))
     assert _share(pixels, (10, 130, 40), (60, 190, 90)) > 1e-4, "touched: green"
     assert _share(pixels, (220, 180, 0), (255, 225, 60)) > 1e-4, "next: yellow"
     assert _share(pixels, (10, 40, 130), (60, 90, 190)) > 1e-4, "waiting: blue"
@@ -125,7 +132,7 @@ def test_fiducials_are_colored_by_their_state_and_numbered(picture, head):
 
 
 def test_an_inset_shows_a_second_view_in_a_white_frame(picture, far, head):
-    both = picture(camera=FAR, inset=close_up(tuple(head.head_to_world[:3, 3] / 1000)))
+    both = picture(camera=FAR, inset=close_up(head.head_to_world[:3, 3]))
     changed = np.argwhere(np.any(np.abs(both - far) > 60, axis=2))
     (top, left), (bottom, right) = changed.min(axis=0), changed.max(axis=0)
     assert left > SIZE[0] / 2
@@ -134,11 +141,9 @@ def test_an_inset_shows_a_second_view_in_a_white_frame(picture, far, head):
     assert _skin(both[top:bottom, left:right]) > 0.05
 
 
-def test_an_unwritable_picture_is_refused_in_one_sentence(tmp_path, head):
-    robot = load_robot()
-    links = make_kinematics(robot).links(np.array(robot.home))
+def test_an_unwritable_picture_is_refused_in_one_sentence(tmp_path):
     with pytest.raises(InputError, match=r"robot\.png cannot be written: No such file"):
-        render_robot_picture(tmp_path / "nowhere" / "robot.png", robot, links, head, size=(32, 18))
+        write_png(np.zeros((2, 2, 3), np.uint8), tmp_path / "nowhere" / "robot.png")
 
 
 def _points(shape) -> np.ndarray:

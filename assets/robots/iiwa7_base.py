@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 from iiwa7_sections import BASE_FLARE
-from solids import box, cylinder, difference, hull, moved, revolve, union
+from solids import box, cylinder, difference, enclosing, hull, moved, revolve, union
 
 PANEL_X = -112.8
 LUG_ANGLES = (45, 135, 225, 315)
@@ -28,8 +28,9 @@ def base(segments: int) -> dict[str, trimesh.Trimesh]:
 
 
 def plain_base(segments: int) -> trimesh.Trimesh:
-    """Return the base in one piece without details."""
-    return union(revolve(BASE_FLARE[1::4] + BASE_FLARE[-1:], segments), _connector_box())
+    """Return the base in one piece, without details, that roughly encloses its parts."""
+    flare = enclosing(BASE_FLARE[1::2], segments)
+    return union(revolve(((flare[0][0], 0.0), *flare), segments), _connector_box())
 
 
 def _connector_box() -> trimesh.Trimesh:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import trimesh
@@ -17,7 +17,7 @@ from iiwa7_sections import (
     WRIST,
 )
 from loft import Station, loft
-from solids import box, cylinder, difference, hull, moved, revolve, trim
+from solids import box, cylinder, difference, enclosing, hull, moved, revolve, trim
 
 Parts = dict[str, trimesh.Trimesh]
 
@@ -25,7 +25,7 @@ SEAM_GAP = 1.4
 SEAM_DEPTH = 2.0
 RING_WIDTH = 7.0
 RING_HEIGHT = 0.5
-RING_SEGMENTS = 48
+RING_SEGMENTS = 40
 MM_IN_M = 1000.0
 
 # How far the pan joint's end of an arm shell is below (links 1, 3) or above (2, 4) the tilt joint.
@@ -47,16 +47,20 @@ def shells(rings: int, segments: int) -> dict[int, Parts]:
 
 
 def plain_shells(rings: int, segments: int) -> dict[int, trimesh.Trimesh]:
-    """Return links 1 to 7, each in one piece without seams."""
-    lower, upper = LOWER_ARM_ENDS, UPPER_ARM_END
+    """Return links 1 to 7, each in one piece without seams that roughly encloses its parts."""
+
+    def shell(stations: Sequence[Station]) -> trimesh.Trimesh:
+        return loft(stations, rings, segments, enclosing=True)
+
+    flange = FLANGE_PROFILE[1::3] + FLANGE_PROFILE[-2:]
     return {
-        1: _place_lower(loft(_arm(lower[1]), rings, segments), 1, 0),
-        2: _place_upper(loft(_arm(upper), rings, segments), 2, 0),
-        3: _place_lower(loft(_arm(lower[3]), rings, segments), 3, 180),
-        4: _place_upper(loft(_arm(upper), rings, segments), 4, 180),
-        5: moved(loft(WRIST, rings, segments), _to_tilt(5)),
-        6: moved(loft(HAND, rings, segments), _from_tilt(6)),
-        7: revolve(FLANGE_PROFILE[::3] + FLANGE_PROFILE[-1:], segments),
+        1: _place_lower(shell(_arm(LOWER_ARM_ENDS[1])), 1, 0),
+        2: _place_upper(shell(_arm(UPPER_ARM_END)), 2, 0),
+        3: _place_lower(shell(_arm(LOWER_ARM_ENDS[3])), 3, 180),
+        4: _place_upper(shell(_arm(UPPER_ARM_END)), 4, 180),
+        5: moved(shell(WRIST), _to_tilt(5)),
+        6: moved(shell(HAND), _from_tilt(6)),
+        7: revolve(enclosing(flange, segments), segments),
     }
 
 

@@ -35,8 +35,13 @@ class Station:
         return np.array([*self.inner, *self.outer, *shape], dtype=float)
 
 
-def loft(stations: Sequence[Station], rings: int, segments: int) -> trimesh.Trimesh:
+def loft(
+    stations: Sequence[Station], rings: int, segments: int, enclosing: bool = False
+) -> trimesh.Trimesh:
     """Return a closed shell through `stations`, its two flat ends chamfered; in mm.
+
+    The corners of each section lie on its outline; those of an `enclosing` shell lie so far outside
+    that its sides touch the outline.
 
     Between the stations every number of a section follows a monotone cubic, so that the shell
     neither overshoots nor kinks. Rings are spread evenly over the mean of both outlines' lengths.
@@ -47,9 +52,10 @@ def loft(stations: Sequence[Station], rings: int, segments: int) -> trimesh.Trim
     lengths = np.concatenate(([0.0], np.cumsum(steps / 2)))
     curve = PchipInterpolator(lengths, rows)
     places = np.linspace(CHAMFER, lengths[-1] - CHAMFER, rings)
-    sections = [_outline(row, segments) for row in curve(places)]
-    first = _chamfered(_outline(rows[0], segments))
-    last = _chamfered(_outline(rows[-1], segments))
+    scale = 1 / np.cos(np.pi / segments) if enclosing else 1.0
+    sections = [_outline(row, segments, scale) for row in curve(places)]
+    first = _chamfered(_outline(rows[0], segments, scale))
+    last = _chamfered(_outline(rows[-1], segments, scale))
     return stitch(np.array([first, *sections, last]))
 
 
@@ -75,8 +81,8 @@ def stitch(sections: np.ndarray) -> trimesh.Trimesh:
     return mesh
 
 
-def _outline(row: np.ndarray, segments: int) -> np.ndarray:
-    """Return the (segments, 3) float points of one section."""
+def _outline(row: np.ndarray, segments: int, scale: float) -> np.ndarray:
+    """Return the (segments, 3) float points of one section, scaled about its chord's middle."""
     inner, outer = row[0:2], row[2:4]
     half_width, widest, inner_exponent, outer_exponent = row[4:8]
     angle = 2 * np.pi * np.arange(segments) / segments
@@ -85,7 +91,8 @@ def _outline(row: np.ndarray, segments: int) -> np.ndarray:
     reach = np.where(sine >= 0, 1 - widest, widest)
     x = half_width * np.sign(cosine) * np.abs(cosine) ** power
     along = widest + reach * np.sign(sine) * np.abs(sine) ** power
-    return np.column_stack([x, inner + along[:, None] * (outer - inner)])
+    along = 0.5 + scale * (along - 0.5)
+    return np.column_stack([scale * x, inner + along[:, None] * (outer - inner)])
 
 
 def _chamfered(outline: np.ndarray) -> np.ndarray:

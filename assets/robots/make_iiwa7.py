@@ -16,11 +16,11 @@ from iiwa7_shells import plain_shells, shells
 from iiwa7_urdf import LinkBody, urdf_text
 from pointer_tool import plain_tool, tip, tool
 
-RINGS = 26
+RINGS = 25
 SEGMENTS = 40
-ROUND_SEGMENTS = 48
-TOOL_SEGMENTS = 20
-COARSE_RINGS = 10
+ROUND_SEGMENTS = 44
+TOOL_SEGMENTS = 18
+COARSE_RINGS = 14
 COARSE_SEGMENTS = 12
 MESH_DECIMALS = 6
 

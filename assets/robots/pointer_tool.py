@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import trimesh
 from iiwa7_dimensions import TOOL_LENGTH
-from solids import revolve
+from solids import enclosing, revolve
 
 SHAFT_RADIUS = 3.0
 TIP_LENGTH = 22.0
@@ -42,4 +42,4 @@ def plain_tool(segments: int) -> trimesh.Trimesh:
     length = TOOL_LENGTH * 1000.0
     outline = ((31.5, 0.0), (31.5, 8.0), (18.0, 13.0), (17.8, 48.0), (10.5, 66.0), (8.5, 80.0))
     shaft = ((SHAFT_RADIUS, 93.0), (SHAFT_RADIUS, length - 15.0), (POINT_RADIUS, length))
-    return revolve((*outline, *shaft), segments)
+    return revolve(enclosing((*outline, *shaft), segments), segments)

@@ -17,6 +17,11 @@ def revolve(outline: Outline, segments: int) -> trimesh.Trimesh:
     return trimesh.creation.revolve(closed, sections=segments)
 
 
+def enclosing(outline: Outline, segments: int) -> Outline:
+    """Widen an outline so that the flat sides of its solid touch the round one it stands for."""
+    return [(radius / np.cos(np.pi / segments), z) for radius, z in outline]
+
+
 def cylinder(radius: float, bottom: float, top: float, segments: int) -> trimesh.Trimesh:
     """Return a cylinder about the z axis between two heights."""
     return revolve(((radius, bottom), (radius, top)), segments)

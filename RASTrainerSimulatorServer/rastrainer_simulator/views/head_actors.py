@@ -1,4 +1,4 @@
-"""The head as it is seen: skin, numbered fiducials in the color of their state, and its stand."""
+"""The head as it is seen: skin, and numbered fiducials in the color of their state."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from rastrainer_simulator.views.materials import (
     WAITING,
     Material,
 )
-from rastrainer_simulator.views.room import head_stand
 from rastrainer_simulator.views.skin_marks import skin_marks
 
 MM_TO_M = np.diag([0.001, 0.001, 0.001, 1.0])
 SKIN_CREASE_DEG = 80.0
+BASE_DEPTH = 1.0
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,16 @@ class ShownHead:
     touched: frozenset[str] = frozenset()
     next_point: str | None = None
 
+    def base_in_world(self) -> np.ndarray:
+        """Return the middle of the flat base on which the head stands, (3,) float, World, m."""
+        vertices = self.mesh.vertices
+        base = vertices[vertices[:, 2] < vertices[:, 2].min() + BASE_DEPTH]
+        middle = (base.min(axis=0) + base.max(axis=0)) / 2.0
+        return (MM_TO_M @ self.head_to_world @ np.append(middle, 1.0))[:3]
+
 
 def head_actors(head: ShownHead) -> list[vtkActor]:
-    """Return the actors of skin, marks and stand."""
+    """Return the actors of skin and marks."""
     skin_to_world = MM_TO_M @ head.head_to_world
     skin = surface(head.mesh.vertices, head.mesh.triangles)
     actors = [actor(skin, SKIN, skin_to_world, SKIN_CREASE_DEG)]
@@ -56,8 +63,7 @@ def head_actors(head: ShownHead) -> list[vtkActor]:
         actors.append(actor(mark.rim, MARK_RIM, skin_to_world))
         actors.append(actor(mark.dot, _state(head, mark.label), skin_to_world))
         actors.append(actor(mark.number, NUMBER, skin_to_world))
-    in_metres = skin_to_world @ np.linalg.inv(MM_TO_M)
-    return [*actors, *head_stand(head.mesh.vertices / 1000.0, in_metres)]
+    return actors
 
 
 def _state(head: ShownHead, label: str) -> Material:

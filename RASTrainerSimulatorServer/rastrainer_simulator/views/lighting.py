@@ -41,8 +41,8 @@ def _surround(renderer: vtkRenderer) -> None:
     renderer.SetEnvironmentRight(1.0, 0.0, 0.0)
     renderer.UseImageBasedLightingOn()
     # Few samples: the surroundings are smooth, and software rendering pays for each.
-    renderer.GetEnvMapPrefiltered().SetPrefilterMaxSamples(64)
-    renderer.GetEnvMapLookupTable().SetLUTSamples(64)
+    renderer.GetEnvMapPrefiltered().SetPrefilterMaxSamples(32)
+    renderer.GetEnvMapLookupTable().SetLUTSamples(16)
 
 
 def _environment(width: int = 128) -> vtkTexture:

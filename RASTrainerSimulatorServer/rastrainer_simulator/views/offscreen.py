@@ -15,7 +15,8 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.views.cameras import Camera
+from rastrainer.scenario import Camera
+from rastrainer_simulator.views.cameras import look_through
 
 
 class OffscreenWindow:
@@ -32,7 +33,7 @@ class OffscreenWindow:
     def frame(self, camera: Camera, size: tuple[int, int]) -> np.ndarray:
         """Return (height, width, 3) uint8, the top row first, for `size` = (width, height)."""
         self._window.SetSize(*size)
-        camera.apply(self._renderer)
+        look_through(camera, self._renderer)
         with _without_display_warning():
             self._window.Render()
         shot = vtkWindowToImageFilter()

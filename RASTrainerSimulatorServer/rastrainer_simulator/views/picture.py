@@ -9,13 +9,13 @@ import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from rastrainer.protocol import Proximity
+from rastrainer.scenario import Camera, Furniture
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.views.cameras import FAR, Camera
 from rastrainer_simulator.views.head_actors import ShownHead, head_actors
 from rastrainer_simulator.views.lighting import light_room
 from rastrainer_simulator.views.offscreen import OffscreenWindow, write_png
 from rastrainer_simulator.views.robot_actors import robot_actors
-from rastrainer_simulator.views.room import room
+from rastrainer_simulator.views.room import head_stand, room
 
 INSET_SHARE = 0.31
 FRAME_SHARE = 0.006
@@ -26,22 +26,29 @@ def render_robot_picture(
     robot: RobotModel,
     link_to_world: Mapping[str, np.ndarray],
     head: ShownHead,
-    proximity: Proximity = Proximity.FREE,
-    camera: Camera = FAR,
+    furniture: Furniture,
+    camera: Camera,
     inset: Camera | None = None,
+    proximity: Proximity = Proximity.FREE,
     size: tuple[int, int] = (1600, 900),
 ) -> None:
     """Write a PNG of the robot at the head, in place of an older one.
 
     `link_to_world` has a (4, 4) float pose in metres for every link, as `Kinematics.links` returns
-    them; `inset` is a second camera, shown in the upper right corner; `size` is the picture's width
-    and height in pixels. Takes some seconds where VTK renders in software.
+    them; `furniture` and the cameras are a scenario's; `inset` is a second view, laid into the
+    upper right corner; `size` is the picture's width and height in pixels. Takes some seconds where
+    VTK renders in software.
 
     Raises:
         InputError: the picture cannot be written, or a mesh of the robot cannot be read.
     """
     renderer = vtkRenderer()
-    shown = (*room(), *head_actors(head), *robot_actors(robot, link_to_world, proximity))
+    shown = (
+        *room(furniture),
+        *head_actors(head),
+        *head_stand(head, furniture),
+        *robot_actors(robot, link_to_world, proximity),
+    )
     for actor in shown:
         renderer.AddActor(actor)
     light_room(renderer)

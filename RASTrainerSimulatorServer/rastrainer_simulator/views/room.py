@@ -6,7 +6,9 @@ import numpy as np
 from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkCylinderSource
 from vtkmodules.vtkRenderingCore import vtkActor
 
+from rastrainer.scenario import Furniture
 from rastrainer_simulator.views.actors import actor
+from rastrainer_simulator.views.head_actors import ShownHead
 from rastrainer_simulator.views.materials import (
     FLOOR,
     MAT,
@@ -17,25 +19,26 @@ from rastrainer_simulator.views.materials import (
     Material,
 )
 
-TABLE = ((-0.45, 1.05), (-0.60, 0.60))
-TABLE_THICKNESS = 0.04
+MM_IN_M = 1000.0
+LEG_RADIUS = 0.025
+LEG_INSET = 0.08
 FLOOR_HEIGHT = -0.78
 ROOM = ((-2.6, 3.2), (-3.2, 1.9))
 WALL_TOP = 1.9
 WALL_BAND_HEIGHTS = (-0.02, 0.16)
-PLATE_RADIUS = 0.075
-PLATE_THICKNESS = 0.012
 
 
-def room() -> list[vtkActor]:
-    """Return floor, wall and table; the table's top is the plane z = 0 of World."""
-    (left, right), (near, far) = TABLE
+def room(furniture: Furniture) -> list[vtkActor]:
+    """Return floor, walls and table; the table's top is the plane z = 0 of World."""
+    width, depth, thickness = furniture.table_size / MM_IN_M
+    x, y = furniture.table_center / MM_IN_M
+    left, right, near, far = x - width / 2, x + width / 2, y - depth / 2, y + depth / 2
     legs = [
-        _post(x, y, FLOOR_HEIGHT, -TABLE_THICKNESS, 0.025)
-        for x in (left + 0.08, right - 0.08)
-        for y in (near + 0.08, far - 0.08)
+        _post(leg_x, leg_y, FLOOR_HEIGHT, -thickness, LEG_RADIUS)
+        for leg_x in (left + LEG_INSET, right - LEG_INSET)
+        for leg_y in (near + LEG_INSET, far - LEG_INSET)
     ]
-    table = _box((left, right), (near, far), (-TABLE_THICKNESS, 0.0), TABLE_TOP)
+    table = _box((left, right), (near, far), (-thickness, 0.0), TABLE_TOP)
     return [table, *legs, *_walls()]
 
 
@@ -53,23 +56,14 @@ def _walls() -> list[vtkActor]:
     return made
 
 
-def head_stand(head_vertices: np.ndarray, head_to_world: np.ndarray) -> list[vtkActor]:
-    """Return plate and post under a head, and the mat on which they stand.
-
-    `head_vertices` (n, 3) float and `head_to_world` (4, 4) float are in metres. The plate lies
-    under the head's flat base, however the head is posed.
-    """
-    lowest = head_vertices[:, 2].min()
-    base = head_vertices[head_vertices[:, 2] < lowest + 0.002]
-    middle = np.append((base.min(axis=0) + base.max(axis=0))[:2] / 2, lowest)
-    pose = head_to_world.copy()
-    pose[:3, 3] = head_to_world[:3, :3] @ middle + head_to_world[:3, 3]
-    x, y, top = pose[:3, 3] - pose[:3, 2] * PLATE_THICKNESS
+def head_stand(head: ShownHead, furniture: Furniture) -> list[vtkActor]:
+    """Return the post under a head, its foot, and the mat on which they stand."""
+    x, y, top = head.base_in_world()
+    radius = furniture.stand_diameter / 2.0 / MM_IN_M
     return [
-        _upright_cylinder(PLATE_RADIUS, -PLATE_THICKNESS, -0.0005, STEEL, pose),
-        _post(x, y, 0.0, top + 0.002, 0.018),
-        _post(x, y, 0.0, 0.014, 0.09),
-        _box((x - 0.21, x + 0.21), (y - 0.24, y + 0.24), (0.0, 0.003), MAT),
+        _post(x, y, 0.0, top - 0.001, radius),
+        _post(x, y, 0.0, 0.01, 1.8 * radius),
+        _box((x - 0.2, x + 0.2), (y - 0.22, y + 0.22), (0.0, 0.003), MAT),
     ]
 
 
@@ -83,18 +77,11 @@ def _box(
 
 
 def _post(x: float, y: float, bottom: float, top: float, radius: float) -> vtkActor:
-    pose = np.eye(4)
-    pose[:2, 3] = x, y
-    return _upright_cylinder(radius, bottom, top, STEEL, pose)
-
-
-def _upright_cylinder(
-    radius: float, bottom: float, top: float, material: Material, pose: np.ndarray
-) -> vtkActor:
+    """Return an upright steel cylinder."""
     cylinder = vtkCylinderSource()
     cylinder.SetRadius(radius)
     cylinder.SetHeight(top - bottom)
     cylinder.SetResolution(64)
     cylinder.Update()
-    upright = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, (top + bottom) / 2], [0, 0, 0, 1]])
-    return actor(cylinder.GetOutput(), material, pose @ upright)
+    upright = np.array([[1, 0, 0, x], [0, 0, -1, y], [0, 1, 0, (top + bottom) / 2], [0, 0, 0, 1]])
+    return actor(cylinder.GetOutput(), STEEL, upright)
