@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
+from rastrainer.head_mesh import read_head_mesh
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.points import Point
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.registration import register
 from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.surface_queries import outward_normal
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.simulator_process import SimulatorProcess
@@ -67,16 +69,17 @@ def distance(tip, position: np.ndarray) -> float:
 
 def play(player: Player, scenario: Scenario) -> dict:
     """Play one trial up to its registration; return what the commands answered."""
-    head_to_world = scenario.perturbed_head_to_world(SEED)
-    fiducials = transforms.apply(head_to_world, scenario.task(TASK).fiducials)
-    center = transforms.apply(head_to_world, scenario.target_position[None])[0]
+    task, head_to_world = scenario.task(TASK), scenario.perturbed_head_to_world(SEED)
+    head = read_head_mesh(scenario.head_mesh)
+    normals = np.array([outward_normal(head, fiducial) for fiducial in task.fiducials])
+    fiducials = transforms.apply(head_to_world, task.fiducials)
+    above = fiducials + ABOVE_MM * normals @ head_to_world[:3, :3].T
     answers = {"StartTask": player.do("StartTask", task=TASK, trainee="anna", seed=SEED)}
-    for fiducial in fiducials:
-        outward = (fiducial - center) / np.linalg.norm(fiducial - center)
-        player.move_to(fiducial + ABOVE_MM * outward)
+    for fiducial, place_above in zip(fiducials, above, strict=True):
+        player.move_to(place_above)
         player.move_to(fiducial)
         player.do("Capture")
-        player.move_to(fiducial + ABOVE_MM * outward)
+        player.move_to(place_above)
     points = player.wait_for("CapturedPoints", lambda m: len(m.content.points) == 15, 20)
     answers["points"] = points.content.points
     answers["Register"] = player.do("Register")
