@@ -89,7 +89,7 @@ def test_the_comparison_finds_no_distance_between_equals_and_a_known_shift(tmp_p
 
 def _compared(official: Path) -> list[float]:
     script = ROBOT.parent / "compare_meshes.py"
-    command = [sys.executable, script, "--official", official, "--samples", "2000"]
+    command = [sys.executable, script, "--official", official, "--samples", "800"]
     output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     means = re.findall(r"^\w+ to \w+: mean ([\d.]+) mm", output, re.MULTILINE)
     assert len(means) == 2
@@ -145,7 +145,7 @@ def test_neighboring_links_meet_without_a_gap_that_shows(visuals):
     names = list(LINK_ORIGINS_M)
     for inner, outer in itertools.pairwise(names):
         one, other = outstretched(visuals, inner), outstretched(visuals, outer)
-        nearest = trimesh.proximity.closest_point(other, one.vertices)[1].min()
+        nearest = trimesh.proximity.closest_point(other, one.vertices[::5])[1].min()
         assert nearest * 1000 < 3
 
 
