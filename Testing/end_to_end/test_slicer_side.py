@@ -1,0 +1,158 @@
+"""Slicer's side against the simulator's process: live points, and a crash in between."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.client import Client
+from rastrainer.scenario import load_scenario
+from rastrainer.scripted_trial import say_hello
+from rastrainer.slicer.control_points import localPoints
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.scenario_shelf import ScenarioShelf
+from rastrainer.slicer.trial_desk import TrialDesk
+from rastrainer.study import Study
+from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.slicer.simulator_double import wait_until
+
+COLIN = asset_path("scenarios", "colin27")
+SEED = 11
+
+
+class SlicerSide:
+    """Scene, link and study, driven as an application's timer would."""
+
+    def __init__(self, study):
+        self.study = study
+        self.scene = HeadlessScene().scene
+        self.link = Link(self.scene, headlessKit)
+        self.states, self.counts, self.points, self.scored = [], [], None, []
+        self.link.statusChanged.connect(lambda status: self.states.append(status.state))
+        self.link.pointsChanged.connect(self.see_points)
+        self.desk = None
+
+    def see_points(self, node):
+        self.counts.append(node.GetNumberOfControlPoints())
+        self.points = localPoints(node)
+
+    def open_desk(self):
+        find = ScenarioShelf(COLIN).find
+        self.desk = TrialDesk(self.scene, self.link, find, lambda: Study.open(self.study))
+        self.desk.trialScored.connect(self.scored.append)
+
+    def run_until(self, condition):
+        def process():
+            if self.link.connector is not None:
+                self.link.connector.PeriodicProcess()
+            self.link.process()
+
+        wait_until(condition, process, timeout=90.0)
+
+    def is_in(self, state):
+        return lambda: self.link.status.state is state
+
+
+def start_playing(port):
+    """Play a trial in a thread of its own; return a function that tells whether it is over."""
+    scenario = load_scenario(COLIN)
+    head_to_world = scenario.perturbed_head_to_world(SEED)
+    fiducials = transforms.apply(head_to_world, scenario.task("task-1").fiducials)
+    center = transforms.apply(head_to_world, scenario.target_position)
+
+    def play():
+        with Client(port=port) as client:
+            say_hello(client, "player")
+            do(client, "StartTask", task="task-1", trainee="T-042", seed=SEED)
+            for fiducial in fiducials:
+                above = fiducial + 40.0 * (fiducial - center) / np.linalg.norm(fiducial - center)
+                for place in (above, fiducial):
+                    move_to(client, place)
+                do(client, "Capture")
+                move_to(client, above)
+            do(client, "Register")
+
+    thread = threading.Thread(target=play, daemon=True)
+    thread.start()
+    return lambda: not thread.is_alive()
+
+
+def do(client, name, **arguments):
+    reply = client.send_command(name, arguments, timeout=20)
+    assert reply.ok, f"{name}: {reply.error}"
+
+
+def move_to(client, place):
+    def is_there(tip):
+        return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - place) < 1.5
+
+    do(client, "MoveTipTo", positionMm=place.tolist(), speedMmS=400)
+    client.wait_for("ToolTipToWorld", is_there, 20)
+
+
+@pytest.fixture(scope="module")
+def slicer_side(tmp_path_factory):
+    """What Slicer's side has seen of a trial whose simulator crashed before it was kept."""
+    folder = tmp_path_factory.mktemp("lab")
+    side = SlicerSide(folder / "study.db")
+    with SimulatorProcess(folder / "records", "--speed", "20") as simulator:
+        side.link.connectTo(port=simulator.port)
+        side.run_until(side.is_in(LinkState.CONNECTED))
+        side.run_until(start_playing(simulator.port))
+        side.run_until(lambda: side.counts and side.counts[-1] == 15)
+        simulator.kill()
+    side.run_until(side.is_in(LinkState.ABSENT))
+    side.live_counts, side.live_points = list(side.counts), side.points
+    side.open_desk()
+    with SimulatorProcess(folder / "records", "--port", str(simulator.port)):
+        side.run_until(lambda: side.scored)
+        side.run_until(side.is_in(LinkState.CONNECTED))
+    side.link.disconnect()
+    side.desk.close()
+    return side
+
+
+def test_points_appear_as_they_are_touched(slicer_side):
+    counts = slicer_side.live_counts
+    assert counts == sorted(set(counts))
+    assert counts[-1] == 15
+    # On a busy machine two touches may come in one look: the latest list wins.
+    assert len(counts) >= 10
+
+
+def test_the_crash_is_told_and_the_link_comes_back(slicer_side):
+    seen = [state for state in slicer_side.states if state is not LinkState.GREETING]
+    assert seen[-4:] == [
+        LinkState.CONNECTED,
+        LinkState.ABSENT,
+        LinkState.CONNECTED,
+        LinkState.OFF,
+    ]
+
+
+def test_the_trial_is_recovered_from_the_journal_and_kept_once(slicer_side):
+    with Study.open(slicer_side.study) as study:
+        (trial,) = study.history("T-042")
+    assert len(slicer_side.scored) == 1
+    assert trial.record.task == "task-1"
+    # Points travel as 32-bit numbers, the record as text: the scene saw what was recorded.
+    np.testing.assert_allclose(slicer_side.live_points, trial.record.positions_mm, atol=1e-3)
+
+
+def test_the_truth_that_is_kept_is_that_of_the_seed(slicer_side):
+    with Study.open(slicer_side.study) as study:
+        (trial,) = study.history("T-042")
+    scenario = load_scenario(COLIN)
+    head_to_world = scenario.perturbed_head_to_world(SEED)
+    np.testing.assert_allclose(np.reshape(trial.head_to_world, (4, 4)), head_to_world, atol=1e-9)
+    found = np.reshape(trial.registrations["rigid"].matrix, (4, 4)) @ head_to_world
+    target = scenario.target_position
+    error = np.linalg.norm(transforms.apply(found, target) - target)
+    assert trial.true_tre_mm == pytest.approx(error, abs=1e-6)
