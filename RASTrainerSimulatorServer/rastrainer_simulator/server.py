@@ -90,11 +90,12 @@ class SimulatorServer:
             latest=lambda: self._control_loop.latest,
             submit=self._submit,
             unacknowledged=self._control_loop.unacknowledged,
+            health=self._health,
             limits=self._options.limits,
         )
         feed = StateFeed(link.publisher.is_due, link.tell, loop)
         unsubscribe = self._control_loop.subscribe(feed)
-        tasks = [loop.create_task(link.beat(self._details))]
+        tasks = [loop.create_task(link.beat())]
         # What was loaded stays: no garbage collection needs to look at it between two ticks.
         gc.collect()
         gc.freeze()
@@ -140,8 +141,8 @@ class SimulatorServer:
             return self._scenarios.load(arguments["folder"])
         return self._control_loop.submit(name, arguments, sender)
 
-    def _details(self) -> dict[str, Any]:
-        """Return what the heartbeat tells of the control loop."""
+    def _health(self) -> dict[str, Any]:
+        """Return how punctual the control loop is."""
         statistics = self._control_loop.statistics
         return {
             "ticks": statistics.ticks,

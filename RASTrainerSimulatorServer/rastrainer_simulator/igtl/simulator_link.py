@@ -48,6 +48,7 @@ class SimulatorLink:
         latest: Callable[[], SimulationState],
         submit: SubmitCommand,
         unacknowledged: Callable[[], Sequence[TrialRecord]],
+        health: Callable[[], Mapping[str, Any]] = dict,
         limits: Limits | None = None,
     ):
         """Make a link, in the event loop's thread.
@@ -57,18 +58,20 @@ class SimulatorLink:
             submit: takes a command's name, checked arguments and sender, and returns the
                 answer's future at once.
             unacknowledged: gives the records of the trials that no client has acknowledged.
-            limits: what one client may cost.
+            health: gives what the heartbeat tells of the simulator, ready for JSON.
+            limits: what clients may cost.
         """
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
         self.offers = TrialOffers(unacknowledged, lambda: self.server.clients)
         self._told = Phase.IDLE
         self._submit_command = submit
+        self._health = health
         self._commands = CommandHandler(self._submit, self.server.limits)
 
     def connected(self, connection: Connection) -> None:
         """Tell a client how things stand."""
-        connection.send_latest(self._heartbeat({}))
+        connection.send_latest(self._heartbeat())
         self.publisher.subscribe(connection)
 
     def received(self, connection: Connection, message: Message) -> None:
@@ -94,21 +97,21 @@ class SimulatorLink:
             self.offers.offer_newest()
         self._told = phase
 
-    async def beat(self, details: Callable[[], Mapping[str, Any]]) -> None:
-        """Send the heartbeat every second, with `details`, and repeat the offers; never returns."""
+    async def beat(self) -> None:
+        """Send the heartbeat every second and repeat the offers; never returns."""
         seconds = 0
         while True:
             await asyncio.sleep(1.0 / Rate.HEARTBEAT_HZ)
-            beat = self._heartbeat(details())
+            beat = self._heartbeat()
             for connection in self.server.clients:
                 connection.send_latest(beat)
             seconds += 1
             if seconds % Rate.OFFER_PERIOD_S == 0:
                 self.offers.repeat()
 
-    def _heartbeat(self, details: Mapping[str, Any]) -> Outgoing:
+    def _heartbeat(self) -> Outgoing:
         clients = len(self.server.clients)
-        return Outgoing(devices.heartbeat({"clients": clients, **details}))
+        return Outgoing(devices.heartbeat({"clients": clients, **self._health()}))
 
     def _submit(
         self, connection: Connection, name: str, arguments: Mapping[str, Any]

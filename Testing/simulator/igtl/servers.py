@@ -33,9 +33,9 @@ class LoopThread:
     def run(self, coroutine):
         return asyncio.run_coroutine_threadsafe(coroutine, self.loop).result(10)
 
-    def call(self, function, *arguments):
+    def call(self, function, *arguments, **named):
         async def called():
-            return function(*arguments)
+            return function(*arguments, **named)
 
         return self.run(called())
 
@@ -115,7 +115,7 @@ class LinkServer:
             lambda: simulated.latest,
             simulated.submit,
             lambda: simulated.unacknowledged,
-            limits,
+            limits=limits,
         )
         self.server = self.link.server
         self.port = thread.run(self.server.listen(HOST, 0))

@@ -53,7 +53,7 @@ def exchange(reference_client):
         receive(connection, message)
 
     server.link.received = keep_and_receive
-    beat = asyncio.run_coroutine_threadsafe(server.link.beat(dict), thread.loop)
+    beat = asyncio.run_coroutine_threadsafe(server.link.beat(), thread.loop)
     process = subprocess.Popen(
         [reference_client, str(server.port)], stdout=subprocess.PIPE, text=True
     )
