@@ -75,13 +75,17 @@ class IgtlServer:
     async def keep_connected_to(self, host: str, port: int) -> None:
         """Be the client of a Slicer that listens, and come back whenever it went; never returns."""
         loop = asyncio.get_running_loop()
+        is_absence_told = False
         while True:
             attempt = loop.create_connection(lambda: Connection(self), host, port)
             try:
                 _transport, connection = await asyncio.wait_for(attempt, _CONNECT_TIMEOUT_S)
+                is_absence_told = False
                 await connection.closed.wait()
             except (OSError, asyncio.TimeoutError):
-                self._log.note(f"Nothing listens at {host}:{port} yet.")
+                if not is_absence_told:
+                    self._log.note(f"Nothing listens at {host}:{port} yet.")
+                    is_absence_told = True
             await asyncio.sleep(self.limits.reconnect_s)
 
     async def close(self) -> None:

@@ -236,3 +236,17 @@ def test_server_connects_to_a_listening_slicer_and_comes_back(start, loop_thread
             with accepted:
                 assert accepted.recv(2) == b"\x00\x02"
         task.cancel()
+
+
+def test_slicer_that_does_not_listen_is_told_once(start, loop_thread: LoopThread, caplog):
+    server = start(LinkServer, reconnect_s=0.01)
+    with socket.create_server((HOST, 0)) as probe:
+        port = probe.getsockname()[1]
+    attempts = server.server.keep_connected_to(HOST, port)
+    with caplog.at_level(logging.WARNING, "rastrainer.igtl"):
+        task = asyncio.run_coroutine_threadsafe(attempts, loop_thread.loop)
+        loop_thread.run(asyncio.sleep(0.2))
+        task.cancel()
+    assert [record.getMessage() for record in caplog.records] == [
+        f"1 × Nothing listens at {HOST}:{port} yet."
+    ]
