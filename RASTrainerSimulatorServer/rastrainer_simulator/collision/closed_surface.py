@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.vectors import Vector
 
 # Shares of a triangle: below them a point lies on an edge or corner, and a triangle has no area.
 _ON_FEATURE = 1e-6
@@ -53,6 +54,15 @@ class ClosedSurface:
         """Return the outward direction (3 floats, not of unit length) at a point of a triangle."""
         return self._normals[triangle, self._feature(triangle, point)].tolist()
 
+    def crossing(self, triangle: int, start: Vector, end: Vector) -> tuple[Vector, Vector]:
+        """Return where a segment goes through a triangle, and the outward normal there."""
+        normal = self._normals[triangle, 0]
+        corner = self._corners[triangle, 0]
+        before, behind = (float(normal @ (np.array(point) - corner)) for point in (start, end))
+        share = before / (before - behind) if before != behind else 0.0
+        point = tuple(a + share * (b - a) for a, b in zip(start, end, strict=True))
+        return point, tuple(normal.tolist())
+
     def _feature(self, triangle: int, point: np.ndarray) -> int:
         """Return the row of the face, edge or vertex on which the point lies."""
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._corners[triangle].tolist()
@@ -82,6 +92,8 @@ def _checked(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, n
     triangles = np.array(triangles)
     if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.isfinite(vertices).all():
         raise InputError("The head's vertices should be an (n, 3) array of finite numbers.")
+    if not np.issubdtype(triangles.dtype, np.integer):
+        raise InputError("The head's triangles should be whole numbers: rows of its vertices.")
     if triangles.ndim != 2 or triangles.shape[1] != 3 or len(triangles) < 4:
         raise InputError("The head's triangles should be an (m, 3) array of at least four rows.")
     if triangles.min() < 0 or triangles.max() >= len(vertices):

@@ -9,6 +9,7 @@ import numpy as np
 
 from rastrainer_simulator.collision.clearance import Nearest
 from rastrainer_simulator.collision.closed_surface import ClosedSurface
+from rastrainer_simulator.collision.thin_segment import thin_segment
 from rastrainer_simulator.vectors import Vector
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
@@ -40,13 +41,15 @@ class HeadSurface:
         mesh.addSubModel(vertices, triangles)
         mesh.endModel()
         self._head = fcl.CollisionObject(mesh)
-        # A radius of zero makes fcl's sphere an exact point.
-        self._point = fcl.CollisionObject(fcl.Sphere(0.0))
+        self._point = thin_segment(np.zeros(3), np.zeros(3))
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the nearest place of the surface, the distance below zero inside the head."""
-        self._point.setTranslation(np.array(point))
+        position = np.array(point)
+        self._point.setTranslation(position)
         distance, on_head, triangle = self._query(self._point)
+        if distance <= 0.0:  # fcl sets no nearest points where shapes meet.
+            on_head = position
         return self._signed(point, distance, on_head, triangle)
 
     def nearest_to_segment(
@@ -58,12 +61,15 @@ class HeadSurface:
         goes through the surface, the distance is −radius: at least so deep is the capsule.
         """
         distance, on_head, triangle = self._query(segment)
+        if distance <= 0.0:
+            point, normal = self._surface.crossing(triangle, start, end)
+            return Nearest(-radius, point, normal, triangle)
         return self._signed(_foot(start, end, on_head), distance, on_head, triangle, radius)
 
     def _query(self, other: fcl.CollisionObject) -> tuple[float, np.ndarray, int]:
         result = fcl.DistanceResult()
         distance = fcl.distance(self._head, other, _REQUEST, result)
-        return max(distance, 0.0), result.nearest_points[0], result.b1
+        return distance, result.nearest_points[0], result.b1
 
     def _signed(
         self,
@@ -75,13 +81,14 @@ class HeadSurface:
     ) -> Nearest:
         nx, ny, nz = self._surface.pseudonormal(triangle, on_head)
         x, y, z = foot = tuple(on_head.tolist())
-        if distance < _TOUCHING:
-            size = math.sqrt(nx * nx + ny * ny + nz * nz)
-            return Nearest(distance - radius, foot, (nx / size, ny / size, nz / size), triangle)
         dx, dy, dz = point[0] - x, point[1] - y, point[2] - z
         if nx * dx + ny * dy + nz * dz < 0.0:
             distance = -distance
-        normal = (dx / distance, dy / distance, dz / distance)
+        if abs(distance) < _TOUCHING:
+            size = math.sqrt(nx * nx + ny * ny + nz * nz)
+            normal = (nx / size, ny / size, nz / size)
+        else:
+            normal = (dx / distance, dy / distance, dz / distance)
         return Nearest(distance - radius, foot, normal, triangle)
 
 

@@ -2,7 +2,8 @@
 
 fcl is a hundred times faster on shapes without thickness. Its own capsule of radius 0 is solved
 iteratively and misses the nearest triangle by up to 0.01 mm; as a mesh of one degenerate triangle
-(start, end, middle) the segment is solved in closed form, as fast, exact to 1e-16 m.
+(start, end, middle) the segment is solved in closed form, as fast, exact to 1e-16 m. The same with
+three equal corners is a point; fcl's sphere of radius 0 leaves the nearest point unset on contact.
 """
 
 from __future__ import annotations

@@ -1,0 +1,68 @@
+"""Closed surfaces whose shape is known: heads, plates and grooves to bump into; metres."""
+
+from __future__ import annotations
+
+import numpy as np
+import trimesh
+
+Surface = tuple[np.ndarray, np.ndarray]
+
+
+def ball(radius: float, subdivisions: int = 4) -> Surface:
+    """Return a sphere; 4 subdivisions are 5,120 triangles, each one more four times as many."""
+    sphere = trimesh.creation.icosphere(subdivisions=subdivisions, radius=radius)
+    return np.array(sphere.vertices), np.array(sphere.faces)
+
+
+def bumpy_head(subdivisions: int = 4, seed: int = 1) -> Surface:
+    """Return an ellipsoid of a head's size with bumps and pits."""
+    random = np.random.default_rng(seed)
+    directions, triangles = ball(1.0, subdivisions)
+    radii = np.ones(len(directions))
+    for _ in range(25):
+        center = random.normal(size=3)
+        center /= np.linalg.norm(center)
+        angles = np.arccos(np.clip(directions @ center, -1.0, 1.0))
+        radii += random.uniform(-0.12, 0.2) * np.exp(-((angles / random.uniform(0.08, 0.25)) ** 2))
+    return directions * radii[:, None] * [0.075, 0.095, 0.11], triangles
+
+
+def box(size: tuple[float, float, float], center: tuple[float, float, float]) -> Surface:
+    """Return a block with edges along the axes."""
+    block = trimesh.creation.box(extents=size)
+    return np.array(block.vertices) + center, np.array(block.faces)
+
+
+def together(*surfaces: Surface) -> Surface:
+    """Return bodies that do not touch each other as one surface."""
+    counts = np.cumsum([0, *(len(vertices) for vertices, _ in surfaces)])
+    return (
+        np.concatenate([vertices for vertices, _ in surfaces]),
+        np.concatenate(
+            [faces + first for first, (_, faces) in zip(counts[:-1], surfaces, strict=True)]
+        ),
+    )
+
+
+def groove(half_width: float = 0.05, depth: float = 0.03, length: float = 0.1) -> Surface:
+    """Return a block whose top is a groove along y; its bottom line is at x = 0, z = 0."""
+    top, bottom = depth, -0.02
+    profile = np.array(
+        [
+            (0.0, 0.0),
+            (half_width, top),
+            (half_width, bottom),
+            (-half_width, bottom),
+            (-half_width, top),
+        ]
+    )
+    count = len(profile)
+    ends = [np.insert(profile, 1, y, axis=1) for y in (-length / 2.0, length / 2.0)]
+    faces = []
+    for i in range(count):
+        j = (i + 1) % count
+        faces += [(i, j, j + count), (i, j + count, i + count)]
+    # The corner in the groove sees all others: fans around it close the ends.
+    for i in range(1, count - 1):
+        faces += [(0, i + 1, i), (count, count + i, count + i + 1)]
+    return np.concatenate(ends), np.array(faces)

@@ -1,0 +1,164 @@
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer_simulator.collision.head_surface import HeadSurface
+from rastrainer_simulator.collision.thin_segment import thin_segment
+from Testing.simulator.collision.brute_force import point_to_triangles, segment_to_triangles
+from Testing.simulator.collision.heads import ball, box, bumpy_head, together
+from Testing.simulator.collision.vtk_distance import vtk_distance
+
+MICROMETRE = 1e-6
+
+
+@pytest.fixture(scope="module")
+def bumpy():
+    return bumpy_head()
+
+
+def around(vertices, count, seed):
+    """Points in the box about a surface, half as large again, inside and outside."""
+    random = np.random.default_rng(seed)
+    lowest, highest = vertices.min(axis=0), vertices.max(axis=0)
+    shares = random.uniform(-0.25, 1.25, (count, 3))
+    return lowest + shares * (highest - lowest)
+
+
+def near(vertices, triangles, count, seed):
+    """Points at faces, edges and vertices, from a nanometre to a millimetre away."""
+    random = np.random.default_rng(seed)
+    shares = random.dirichlet((1.0, 1.0, 1.0), count)
+    shares[: count // 3] = np.eye(3)[random.integers(3, size=count // 3)]
+    edges = slice(count // 3, 2 * count // 3)
+    shares[edges, 0] = 0.0
+    shares /= shares.sum(axis=1, keepdims=True)
+    corners = vertices[triangles[random.integers(len(triangles), size=count)]]
+    away = random.normal(size=(count, 3)) * 10.0 ** random.uniform(-9, -3, (count, 1))
+    return np.einsum("nk,nki->ni", shares, corners) + away
+
+
+def distances(surface, points):
+    return np.array([surface.nearest_to_point(tuple(p)).distance_m for p in points.tolist()])
+
+
+def test_the_distance_of_a_point_is_that_of_brute_force(bumpy):
+    vertices, triangles = bumpy
+    points = np.concatenate([around(*bumpy[:1], 150, 2), near(*bumpy, 150, 3)])
+    expected = [point_to_triangles(p, vertices[triangles]).min() for p in points]
+    found = np.abs(distances(HeadSurface(*bumpy), points))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
+def test_a_ball_is_as_far_as_its_radius_says():
+    surface = HeadSurface(*ball(0.1, 6))
+    for distance in (-0.09, -0.05, -1e-3, 1e-3, 0.2):
+        direction = np.array([0.48, -0.6, 0.64])
+        found = surface.nearest_to_point(tuple((0.1 + distance) * direction))
+        assert found.distance_m == pytest.approx(distance, abs=1e-5)
+        np.testing.assert_allclose(found.normal, direction, atol=0.02)
+        np.testing.assert_allclose(found.point, 0.1 * direction, atol=2e-3)
+
+
+def test_the_sign_is_right_inside_outside_and_at_every_feature(bumpy):
+    points = np.concatenate([around(bumpy[0], 3000, 4), near(*bumpy, 6000, 5)])
+    truth = np.array(list(map(vtk_distance(*bumpy), points)))
+    np.testing.assert_allclose(
+        distances(HeadSurface(*bumpy), points), truth, rtol=0, atol=MICROMETRE
+    )
+
+
+def test_the_sign_is_right_on_the_default_head(scenario):
+    mesh = read_head_mesh(scenario.head_mesh)
+    head = mesh.vertices / 1000.0, mesh.triangles
+    points = np.concatenate([around(head[0], 1000, 6), near(*head, 3000, 7)])
+    truth = np.array(list(map(vtk_distance(*head), points)))
+    np.testing.assert_allclose(
+        distances(HeadSurface(*head), points), truth, rtol=0, atol=MICROMETRE
+    )
+
+
+def test_the_normal_is_where_the_clearance_grows(bumpy):
+    surface = HeadSurface(*bumpy)
+    for point in around(bumpy[0], 200, 8):
+        here = surface.nearest_to_point(tuple(point))
+        farther = surface.nearest_to_point(tuple(point + 1e-7 * np.array(here.normal)))
+        assert farther.distance_m - here.distance_m == pytest.approx(1e-7, abs=1e-12)
+        assert np.linalg.norm(here.normal) == pytest.approx(1.0)
+
+
+def test_a_point_on_the_surface_has_the_outward_normal():
+    surface = HeadSurface(*box((0.2, 0.2, 0.2), (0.0, 0.0, 0.0)))
+    on_top = surface.nearest_to_point((0.03, 0.01, 0.1))
+    assert on_top.distance_m == 0.0
+    np.testing.assert_allclose(on_top.normal, (0.0, 0.0, 1.0), atol=1e-12)
+
+
+def test_a_capsule_is_as_far_as_brute_force_says_of_its_axis(bumpy):
+    vertices, triangles = bumpy
+    surface, random = HeadSurface(*bumpy), np.random.default_rng(9)
+    checked = 0
+    for point in around(vertices, 150, 10):
+        axis = random.normal(size=3)
+        end = point + axis / np.linalg.norm(axis) * random.choice([0.004, 0.1])
+        found = surface.nearest_to_segment(
+            thin_segment(point, end), tuple(point), tuple(end), 0.003
+        )
+        expected = segment_to_triangles(point, end, vertices[triangles]).min()
+        if found.distance_m < -0.003:
+            expected = -expected
+            assert surface.nearest_to_point(tuple(point)).distance_m < 0.0
+            checked += 1
+        assert found.distance_m == pytest.approx(expected - 0.003, abs=1e-9)
+    assert checked > 10
+
+
+def test_a_triangle_without_area_spoils_no_sign():
+    vertices, triangles = ball(0.1, 2)
+    a, b, c = triangles[0]
+    middle = len(vertices)
+    vertices = np.concatenate([vertices, [(vertices[a] + vertices[b]) / 2.0]])
+    split = [(a, middle, c), (middle, b, c), (a, b, middle)]
+    surface = HeadSurface(vertices, np.concatenate([triangles[1:], split]))
+    for inward in (1e-7, 1e-4, 0.01, -1e-7, -1e-4, -0.01):
+        point = vertices[middle] * (1.0 - inward / np.linalg.norm(vertices[middle]))
+        assert np.sign(surface.nearest_to_point(tuple(point)).distance_m) == -np.sign(inward)
+
+
+def test_vertices_given_twice_become_one():
+    vertices, triangles = ball(0.1, 3)
+    loose = vertices[triangles].reshape(-1, 3)
+    surface = HeadSurface(loose, np.arange(len(loose)).reshape(-1, 3))
+    assert surface.nearest_to_point((0.0, 0.0, 0.05)).distance_m < 0.0
+
+
+def test_a_surface_that_is_inside_out_is_turned():
+    vertices, triangles = ball(0.1, 3)
+    surface = HeadSurface(vertices, triangles[:, ::-1])
+    assert surface.nearest_to_point((0.0, 0.0, 0.05)).distance_m < 0.0
+    assert surface.nearest_to_point((0.0, 0.0, 0.2)).distance_m > 0.0
+
+
+def test_several_bodies_can_be_one_surface():
+    bodies = together(ball(0.05, 3), box((0.02, 0.02, 0.02), (0.2, 0.0, 0.0)))
+    surface = HeadSurface(*bodies)
+    assert surface.nearest_to_point((0.2, 0.0, 0.0)).distance_m == pytest.approx(-0.01)
+    assert surface.nearest_to_point((0.2, 0.03, 0.0)).distance_m == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "sentence"),
+    [
+        (lambda v, t: (v, t[1:]), "should be closed.* 3 edges are not"),
+        (lambda v, t: (v, np.concatenate([t[:1, ::-1], t[1:]])), "should be closed"),
+        (lambda v, t: (np.where(v > 0.099, np.nan, v), t), "finite numbers"),
+        (lambda v, t: (v[:, :2], t), r"\(n, 3\) array of finite numbers"),
+        (lambda v, t: (v, t[:2]), "at least four rows"),
+        (lambda v, t: (v, t + 1), "name vertices by their rows"),
+        (lambda v, t: (v, t - 1), "name vertices by their rows"),
+        (lambda v, t: (v, t.astype(float)), "whole numbers"),
+    ],
+)
+def test_an_unusable_surface_is_refused_with_a_sentence(spoil, sentence):
+    with pytest.raises(InputError, match=sentence):
+        HeadSurface(*spoil(*ball(0.1, 2)))
