@@ -44,6 +44,11 @@ class SimulatorDouble:
     def __exit__(self, *_exception: object) -> None:
         self.close()
 
+    @property
+    def peer_count(self) -> int:
+        with self._lock:
+            return len(self._peers)
+
     def close(self) -> None:
         # Shutting down wakes the thread in accept; closing alone leaves it there.
         for open_socket in (self._listener, *self._peers):

@@ -146,6 +146,18 @@ def test_a_deleted_list_comes_again(link, simulator, scene):
     )
 
 
+def test_a_renamed_list_still_receives_and_tells(link, simulator, scene):
+    counts = []
+    connect(link, simulator)
+    link.pointsChanged.connect(lambda node: counts.append(node.GetNumberOfControlPoints()))
+    for count in (1, 2):
+        points = tuple(Point(str(i + 1), (i, 0.0, 0.0)) for i in range(count))
+        simulator.send(Device.CAPTURED_POINTS, Points(points))
+        run(link, lambda wanted=count: counts and counts[-1] == wanted)
+        scene.GetFirstNodeByName("CapturedPoints" if count == 1 else "mine").SetName("mine")
+    assert scene.GetFirstNodeByName("CapturedPoints") is None
+
+
 def test_the_state_of_the_simulator_is_told_when_it_changes(link, simulator):
     states = []
     connect(link, simulator)

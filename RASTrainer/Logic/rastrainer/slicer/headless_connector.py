@@ -22,12 +22,8 @@ from rastrainer.igtl.command import Command, CommandReply
 from rastrainer.igtl.content import Status
 from rastrainer.igtl.message import Header, Message, pack, unpack
 from rastrainer.slicer.headless_command import HeadlessCommand
-from rastrainer.slicer.incoming_nodes import (
-    NODE_CLASS,
-    ORIGINAL_NAME,
-    adoptOrCreateNode,
-    updateNode,
-)
+from rastrainer.slicer.incoming_nodes import NODE_CLASS, adoptOrCreateNode, updateNode
+from rastrainer.slicer.link_nodes import ORIGINAL_NAME
 from rastrainer.slicer.peer_sockets import PeerSockets
 
 _INCOMING = "incoming"

@@ -13,8 +13,8 @@ import vtk
 from rastrainer.igtl.content import Status, String, Transform
 from rastrainer.igtl.message import Message
 from rastrainer.igtl.points import Point, Points
+from rastrainer.slicer.link_nodes import ORIGINAL_NAME
 
-ORIGINAL_NAME = "OriginalNodeName"
 METADATA_PREFIX = "OpenIGTLink."
 UNSELECTED = "Unselected"
 

@@ -64,6 +64,7 @@ class Link:
             scene, findKit, lambda *command: self._received.append(command), clock
         )
         self._pending = PendingCommands(clock)
+        self._preparedConnector: Any | None = None
         self._points: tuple = ()
         self._stateText = ""
         self._status = self._connection.status
@@ -130,6 +131,10 @@ class Link:
             return
         if self._connection.follow():
             self._sayHello()
+        if self.connector is not self._preparedConnector:
+            self._preparedConnector = self.connector
+            if self.connector is not None:
+                prepareNodes(self._scene)
         self._tellStatus()
         self._pending.poll(self._connection.isOpen)
         if self.connector is not None:
@@ -160,7 +165,6 @@ class Link:
             self.statusChanged.emit(status)
 
     def _handOverNodes(self) -> None:
-        prepareNodes(self._scene)
         pointsNode = capturedPointsNode(self._scene)
         points = _snapshot(pointsNode)
         if points != self._points:

@@ -5,16 +5,28 @@ from __future__ import annotations
 from typing import Any
 
 from rastrainer.protocol import Device
-from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role
+from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode
+
+ORIGINAL_NAME = "OriginalNodeName"
+"""The attribute in which Slicer's connector keeps the name of the device that fills a node."""
 
 TOUCH_COLOR = (0.95, 0.55, 0.1)
 
 
+def prepareNodes(scene: Any) -> None:
+    """Make the nodes that are missing; the connector adopts nodes of that name and class."""
+    capturedPointsNode(scene)
+    simStateNode(scene)
+    for name in (Device.TOOL_TIP_TO_WORLD, *Device.LINK_TO_WORLD):
+        _node(scene, "vtkMRMLLinearTransformNode", name, name).SetSaveWithScene(False)
+
+
 def capturedPointsNode(scene: Any) -> Any:
-    """Return the list of touched points (World, mm); made where it is missing."""
-    node = _named(scene, "vtkMRMLMarkupsFiducialNode", Device.CAPTURED_POINTS)
-    if node.GetAttribute(ROLE_ATTRIBUTE) != Role.CAPTURED_POINTS:
-        node.SetAttribute(ROLE_ATTRIBUTE, Role.CAPTURED_POINTS)
+    """Return the list of touched points (World, mm), whatever users call it, or a new one."""
+    className, role = "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS
+    node = findNode(scene, className, role)
+    if node is None:
+        node = _node(scene, className, role, Device.CAPTURED_POINTS)
         node.SetLocked(True)
         node.CreateDefaultDisplayNodes()
         display = node.GetDisplayNode()
@@ -26,35 +38,25 @@ def capturedPointsNode(scene: Any) -> Any:
 
 
 def simStateNode(scene: Any) -> Any:
-    """Return the text of the simulator's state; made where it is missing, never saved."""
-    node = _named(scene, "vtkMRMLTextNode", Device.SIM_STATE)
+    """Return the text of the simulator's state, or a new one; it is never saved."""
+    node = _node(scene, "vtkMRMLTextNode", Role.SIM_STATE, Device.SIM_STATE)
     node.SetSaveWithScene(False)
     return node
 
 
-def poseNodes(scene: Any) -> tuple[Any, ...]:
-    """Return the transforms of tool tip and robot links to World; made where missing, not saved."""
-    names = (Device.TOOL_TIP_TO_WORLD, *Device.LINK_TO_WORLD)
-    nodes = tuple(_named(scene, "vtkMRMLLinearTransformNode", name) for name in names)
-    for node in nodes:
-        node.SetSaveWithScene(False)
-    return nodes
-
-
-def prepareNodes(scene: Any) -> None:
-    """Make the nodes that are missing; the connector adopts nodes of that name and class."""
-    for makeNode in (capturedPointsNode, simStateNode, poseNodes):
-        makeNode(scene)
-
-
-def findIncomingNode(connector: Any, name: str) -> Any | None:
-    """Return the node that the connector has filled for the device, or None."""
+def findIncomingNode(connector: Any, device: str) -> Any | None:
+    """Return the node that the connector fills for a device, or None."""
     for index in range(connector.GetNumberOfIncomingMRMLNodes()):
         node = connector.GetIncomingMRMLNode(index)
-        if node is not None and node.GetName() == name:
+        if node is not None and node.GetAttribute(ORIGINAL_NAME) == device:
             return node
     return None
 
 
-def _named(scene: Any, className: str, name: str) -> Any:
-    return scene.GetFirstNode(name, className) or scene.AddNewNodeByClass(className, name)
+def _node(scene: Any, className: str, role: str, name: str) -> Any:
+    """Return the node of the role, else the one of the name, else a new one."""
+    node = findNode(scene, className, role)
+    if node is None:
+        node = scene.GetFirstNode(name, className) or scene.AddNewNodeByClass(className, name)
+        node.SetAttribute(ROLE_ATTRIBUTE, role)
+    return node

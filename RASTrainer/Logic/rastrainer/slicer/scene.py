@@ -14,6 +14,7 @@ class Role:
     FIXED_FIDUCIALS = "fixed fiducials"
     TARGET = "target"
     CAPTURED_POINTS = "captured points"
+    SIM_STATE = "simulator state"
     WORLD_TO_HEAD = "world to head"
     RESIDUALS = "residuals"
     RESIDUAL_ARROWS = "residual arrows"
