@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import socket
 import time
 from collections import Counter
 from typing import Protocol
@@ -14,6 +12,7 @@ from rastrainer.igtl.stream import MessageReader
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.outgoing import Outgoing, OutgoingQueue
 from rastrainer_simulator.igtl.reading_budget import ReadingBudget
+from rastrainer_simulator.igtl.socket_options import set_up_socket
 
 _PIECE_BYTES = 16 * 1024
 
@@ -107,7 +106,7 @@ class Connection(asyncio.BufferedProtocol):
         """Set the socket up and report."""
         self._transport = transport
         transport.set_write_buffer_limits(high=self._limits.buffer_bytes)
-        _set_up_socket(transport.get_extra_info("socket"), self._limits)
+        set_up_socket(transport.get_extra_info("socket"), self._limits)
         # A peer that is gone already has no address.
         address = transport.get_extra_info("peername") or (self.host,)
         self.name = self.host = address[0]
@@ -162,7 +161,7 @@ class Connection(asyncio.BufferedProtocol):
                 timer.cancel()
         self._transport = None
         self.closed.set()
-        self._owner.disconnected(self, self._reason or (str(error) if error else ""))
+        self._owner.disconnected(self, self._reason or _words(error))
 
     @property
     def _is_open(self) -> bool:
@@ -197,18 +196,6 @@ class Connection(asyncio.BufferedProtocol):
             )
 
 
-def _set_up_socket(peer: socket.socket, limits: Limits) -> None:
-    """Send at once, queue little in the kernel, and notice a machine that has gone."""
-    peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.buffer_bytes)
-    peer.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-    probe_s = max(1, int(limits.silent_peer_s / 6))
-    options = {
-        "TCP_KEEPIDLE": probe_s * 3,
-        "TCP_KEEPINTVL": probe_s,
-        "TCP_KEEPCNT": 3,
-        "TCP_USER_TIMEOUT": int(limits.silent_peer_s * 1000),
-    }
-    for name, value in options.items():
-        # Not every system has every option; each is a help, none a need.
-        with contextlib.suppress(AttributeError, OSError):
-            peer.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
+def _words(error: Exception | None) -> str:
+    """Return why the operating system ended a connection; empty when the peer left."""
+    return "" if error is None else getattr(error, "strerror", None) or str(error)
