@@ -1,0 +1,187 @@
+"""The demo: simulator, Slicer's side and a virtual trainee, each of its own, over OpenIGTLink."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from rastrainer.errors import RASTrainerError
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.igtl.client import Client
+from rastrainer.protocol import DEFAULT_HOST, FIDUCIAL_COUNT, TRIAL_RUN, Proximity
+from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.demo_summary import trial_summary
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.setup import DEFAULT_SCENARIO
+
+TASKS = (TRIAL_RUN, "task-1")
+TRAINEE = "trainee-01"
+BAR_WIDTH = 30
+SLICER_TIMEOUT_S = 60.0
+
+
+def play_demo(output: Path, seed: int, speed: float) -> None:
+    """Play the trial run and Task 1, write the results into `output`, and print a summary.
+
+    An `output` that holds something already is moved aside, never overwritten.
+
+    Raises:
+        RASTrainerError: a part could not be started or failed; the sentence names its log.
+    """
+    started = time.monotonic()
+    output = output.absolute()
+    move_aside(output)
+    output.mkdir(parents=True)
+    scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
+    with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
+        states = _play(port, scenario, seed, speed)
+        print("Slicer's side registers, scores, stores and draws ...", flush=True)
+        _wait_for(slicer, output / "slicer.log")
+    trials = json.loads((output / "results.json").read_text())["trials"]
+    _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
+    for trial in trials:
+        print("\n" + trial_summary(trial, scenario.task(trial["task"]).title))
+    print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
+
+
+def move_aside(folder: Path) -> None:
+    """Rename a folder that holds something to the first free `name-1`, `name-2` …"""
+    if not folder.exists() or not any(folder.iterdir()):
+        return
+    number = 1
+    while (aside := folder.with_name(f"{folder.name}-{number}")).exists():
+        number += 1
+    folder.rename(aside)
+    print(f"The results that were in {folder} are now in {aside}.")
+
+
+@contextlib.contextmanager
+def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
+    """Run the simulator on a free port, which is yielded."""
+    words = ["-m", "rastrainer_simulator.cli", "simulator", "--port", "0", "--seed", str(seed)]
+    words += ["--speed", str(speed), "--records", str(output / "records")]
+    with (
+        (output / "simulator.log").open("w") as log,
+        _process(words, log, stdout=subprocess.PIPE) as process,
+    ):
+        line = process.stdout.readline()
+        if "ready" not in line:
+            raise RASTrainerError(f"The simulator did not start; {log.name} says why.")
+        yield int(line.rsplit(":", 1)[1])
+
+
+@contextlib.contextmanager
+def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
+    """Run Slicer's side without Slicer, which ends when it has stored all trials."""
+    words = ["-m", "rastrainer.slicer.headless", "--port", str(port), "--output", str(output)]
+    words += ["--scenario", str(asset_path(*DEFAULT_SCENARIO)), "--trials", str(len(TASKS))]
+    words += ["--cohort", str(asset_path("studies", "published.csv"))]
+    with (
+        (output / "slicer.log").open("w") as log,
+        _process(words, log, stdout=log) as process,
+    ):
+        yield process
+
+
+@contextlib.contextmanager
+def _process(words: list[str], log: TextIO, stdout: Any) -> Iterator[subprocess.Popen]:
+    """Run this Python with `words`; ask it to stop at the end, whatever happened."""
+    process = subprocess.Popen(
+        [sys.executable, *words], stdout=stdout, stderr=log, text=True, env=os.environ.copy()
+    )
+    try:
+        yield process
+    finally:
+        process.terminate()
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _play(port: int, scenario: Scenario, seed: int, speed: float) -> list[dict[str, Any]]:
+    states = []
+    with Client(DEFAULT_HOST, port) as client:
+        say_hello(client, "scripted trainee")
+        for number, name in enumerate(TASKS):
+            title = scenario.task(name).title
+            print(f"{TRAINEE} plays {title} ({speed:g} times faster than real time)")
+            trial = play_trial(
+                client, scenario, name, TRAINEE, seed + number, on_progress=_Bar(title)
+            )
+            print()
+            states.append(trial.last_state)
+    return states
+
+
+class _Bar:
+    """One line that grows with the touches; drawn anew only where something changed."""
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        self._shown = ""
+
+    def __call__(self, state: dict[str, Any]) -> None:
+        point = state["nextPoint"]
+        touched = FIDUCIAL_COUNT if point is None else int(point) - 1
+        filled = BAR_WIDTH * touched // FIDUCIAL_COUNT
+        bar = "█" * filled + "·" * (BAR_WIDTH - filled)
+        line = f"  {self._title:<10} {bar} {touched:2d}/{FIDUCIAL_COUNT} touched"
+        if line != self._shown:
+            self._shown = line
+            print(line, end="\r" if sys.stdout.isatty() else "\n", flush=True)
+
+
+def _wait_for(process: subprocess.Popen, log: Path) -> None:
+    try:
+        status = process.wait(SLICER_TIMEOUT_S)
+    except subprocess.TimeoutExpired:
+        status = None
+    if status != 0:
+        raise RASTrainerError(f"Slicer's side did not finish its work; {log} says why.")
+
+
+def _draw_robot(
+    path: Path, scenario: Scenario, state: dict[str, Any], trial: dict[str, Any]
+) -> None:
+    """Picture the last touch: the arm as it then stood, at the head that is no longer secret."""
+    from rastrainer_simulator.views.head_actors import ShownHead
+    from rastrainer_simulator.views.picture import render_robot_picture
+
+    robot = load_robot()
+    task = scenario.task(trial["task"])
+    head_to_world = np.array(trial["truth"]["head_to_world"])
+    head = ShownHead(
+        mesh=read_head_mesh(scenario.head_mesh),
+        head_to_world=head_to_world,
+        fiducials=task.fiducials,
+        labels=task.labels,
+        touched=frozenset(task.labels),
+    )
+    render_robot_picture(
+        path,
+        robot,
+        make_kinematics(robot).links(state["q"]),
+        head,
+        scenario.furniture,
+        scenario.cameras["far"],
+        inset=scenario.cameras["close-up"],
+        proximity=Proximity(state["proximity"]),
+    )
+
+
+def _listing(folder: Path) -> str:
+    return ", ".join(sorted(path.name for path in folder.iterdir()))
