@@ -70,14 +70,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._type, self._address = self.TypeServer, ("127.0.0.1", port)
         return 1
 
-    def GetType(self) -> int:
-        """Return one of the type constants."""
-        return self._type
-
-    def GetServerHostname(self) -> str:
-        """Return the host of the server."""
-        return self._address[0]
-
     def GetServerPort(self) -> int:
         """Return the TCP port, that in use where a server was given port 0."""
         return self._sockets.port if self._sockets else self._address[1]
