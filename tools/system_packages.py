@@ -20,7 +20,7 @@ window.SetOffScreenRendering(1)
 window.AddRenderer(vtk.vtkRenderer())
 window.Render()
 """
-OPENIGTLINK_HEADER = Path("/usr/include/igtl/igtlMessageHeader.h")
+OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
 
 
 def missing_packages(target: str) -> list[str]:
