@@ -10,7 +10,6 @@ import numpy as np
 _LONG = 1.35  # A solid longer than this times its width gets a capsule for each half.
 _FIRST_STEP, _LAST_STEP = 0.02, 0.0003
 _SLICE = 0.0005
-_SLACK = 0.2
 
 
 @dataclass(frozen=True)
@@ -115,20 +114,19 @@ def _sphere_directions(count: int = 200) -> np.ndarray:
     return np.column_stack([width * np.cos(turn), width * np.sin(turn), z])
 
 
-def capsules_along(points: np.ndarray, start: float) -> tuple[Capsule, ...]:
+def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Capsule, ...]:
     """Return a row of capsules about the z axis that hold all `points` (k, 3) float with z ≥ start.
 
-    Where the solid widens, a new capsule begins as soon as one would be more than a fifth of the
-    distance from the origin too wide: a tapered tool keeps its slender end. `points` are
+    The tool's tip is at the origin: of all ways to cut the tool into `count` pieces, the one is
+    taken whose pieces look slenderest from there, so that a taper stays a taper. `points` are
     `surface_points` spaced by at most half a millimetre.
     """
     profile = _profile(points, start)
-    capsules, first = [], 0
-    while first < len(profile):
-        last = _section_end(profile, first, start)
-        capsules.append(_section(profile[first:last], start + first * _SLICE))
-        first = last
-    return tuple(capsules)
+    cuts = _slenderest_cuts(profile, start, count)
+    return tuple(
+        _section(profile[first:last], start + first * _SLICE)
+        for first, last in zip(cuts[:-1], cuts[1:], strict=True)
+    )
 
 
 def _profile(points: np.ndarray, start: float) -> np.ndarray:
@@ -141,15 +139,25 @@ def _profile(points: np.ndarray, start: float) -> np.ndarray:
     return np.maximum(radii, np.concatenate([radii[1:], [0.0]]))
 
 
-def _section_end(profile: np.ndarray, first: int, start: float) -> int:
-    z = start + np.arange(len(profile)) * _SLICE
-    widest, allowed = 0.0, math.inf
-    for index in range(first, len(profile)):
-        widest = max(widest, profile[index])
-        allowed = min(allowed, profile[index] + _SLACK * z[index])
-        if widest > allowed and index > first:
-            return index
-    return len(profile)
+def _slenderest_cuts(profile: np.ndarray, start: float, count: int) -> list[int]:
+    """Return where to cut (count + 1 slices) for the least sum of radius² / z² over all slices.
+
+    Dynamic programming: the best cuts before a slice, for each number of pieces so far.
+    """
+    size = len(profile)
+    weights = np.cumsum(1.0 / (start + np.arange(size + 1) * _SLICE) ** 2)
+    least = np.full((count + 1, size + 1), np.inf)
+    least[0, 0] = 0.0
+    before = np.zeros((count + 1, size + 1), dtype=int)
+    for end in range(1, size + 1):
+        radii = np.maximum.accumulate(profile[:end][::-1])[::-1]
+        totals = least[:-1, :end] + radii**2 * (weights[end] - weights[:end])
+        before[1:, end] = totals.argmin(axis=1)
+        least[1:, end] = totals.min(axis=1)
+    cuts = [size]
+    for pieces in range(count, 0, -1):
+        cuts.append(int(before[pieces, cuts[-1]]))
+    return cuts[::-1]
 
 
 def _section(profile: np.ndarray, start: float) -> Capsule:

@@ -1,0 +1,246 @@
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.posed_arm import ArmCapsules
+from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.table_clearance import Surroundings
+from Testing.simulator.collision.arms import KINEMATICS, ROBOT, at, posture
+from Testing.simulator.collision.brute_force import segment_to_segments, segment_to_triangles
+from Testing.simulator.collision.heads import bumpy_head
+from Testing.simulator.collision.vtk_distance import vtk_distance
+
+FIVE_HUNDREDTHS_MM = 5e-5
+CENTER = (0.5, 0.0, 0.25)
+ARM = ArmCapsules(robot_shape(ROBOT))
+
+
+@pytest.fixture(scope="module")
+def head():
+    return bumpy_head(subdivisions=3)
+
+
+@pytest.fixture(scope="module")
+def head_to_world(head):
+    pose = at(head[0], CENTER)
+    turn = np.radians(25.0)
+    pose[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    return pose
+
+
+@pytest.fixture
+def collision(head, head_to_world):
+    return placed(head, head_to_world)
+
+
+def placed(head, head_to_world, **surroundings):
+    found = Collision(ROBOT, *head, Surroundings(**surroundings))
+    found.set_head_pose(head_to_world)
+    return found
+
+
+@pytest.fixture(scope="module")
+def postures(head):
+    """Postures with the tip near, at and in the head, the tool from any side it can come from."""
+    random = np.random.default_rng(21)
+    found = []
+    while len(found) < 150:
+        place = head[0][random.integers(len(head[0]))]
+        outward = place / np.linalg.norm(place) + random.normal(size=3) * 0.4
+        outward /= np.linalg.norm(outward)
+        tip = np.array(CENTER) + place + outward * random.choice([-0.03, 0.0, 0.002, 0.05])
+        q = posture(tip, -outward)
+        if q is not None:
+            found.append(q)
+    return found
+
+
+def wander(count, seed, step=0.02):
+    """Joint angles of a random walk from home."""
+    random, q = np.random.default_rng(seed), np.array(ROBOT.home)
+    for _ in range(count):
+        q = np.clip(q + random.normal(size=7) * step, ROBOT.lower, ROBOT.upper)
+        yield q
+
+
+def corners_in_world(head, head_to_world):
+    vertices = head[0] @ head_to_world[:3, :3].T + head_to_world[:3, 3]
+    return vertices, vertices[head[1]]
+
+
+def brute_capsules(posed, rows, corners, signed):
+    """The least signed distance of some capsules, and the row of the nearest."""
+    best = []
+    for row in rows:
+        axis = segment_to_triangles(*posed.ends[row], corners).min()
+        axis *= np.sign(signed(posed.ends[row, 0])) if axis > 0.0 else 0.0
+        best.append((axis - ARM.radii[row], row))
+    return min(best)
+
+
+def test_clearances_of_tip_and_shaft_are_those_of_brute_force(
+    head, head_to_world, collision, postures
+):
+    vertices, corners = corners_in_world(head, head_to_world)
+    signed = vtk_distance(vertices, head[1])
+    inside = 0
+    for q in postures:
+        links = KINEMATICS.links(q)
+        found, posed = collision.check(links), ARM.pose(links)
+        assert found.tip_m == pytest.approx(signed(posed.tip), abs=FIVE_HUNDREDTHS_MM)
+        inside += found.tip_m < -0.02
+        tool = range(ARM.link_count, len(ARM.capsules))
+        expected, _ = brute_capsules(posed, tool, corners, signed)
+        assert found.shaft_m == pytest.approx(expected, abs=FIVE_HUNDREDTHS_MM)
+    assert inside > 10
+
+
+def test_the_nearest_link_and_its_clearance_are_those_of_brute_force(head, head_to_world):
+    lowered = head_to_world.copy()
+    lowered[:3, 3] = (0.35, 0.05, 0.45)
+    collision = placed(head, lowered)
+    vertices, corners = corners_in_world(head, lowered)
+    signed = vtk_distance(vertices, head[1])
+    near = overlapping = 0
+    for q in wander(25, seed=22, step=0.15):
+        links = KINEMATICS.links(q)
+        found, posed = collision.check(links), ARM.pose(links)
+        expected, row = brute_capsules(posed, range(ARM.link_count), corners, signed)
+        assert found.links_m == pytest.approx(min(expected, FAR), abs=FIVE_HUNDREDTHS_MM)
+        assert found.links_worst == (ARM.names[row] if expected < FAR else "")
+        near += expected < FAR
+        overlapping += expected < 0.0
+    assert near > 10
+    assert overlapping > 3
+
+
+def test_the_arm_against_itself_is_as_brute_force_says(collision):
+    random = np.random.default_rng(23)
+    near = overlapping = 0
+    for q in random.uniform(ROBOT.lower, ROBOT.upper, (300, 7)):
+        links = KINEMATICS.links(q)
+        found, posed = collision.check(links), ARM.pose(links)
+        gaps = []
+        for i in range(len(ARM.capsules)):
+            apart = np.abs(ARM.joints - ARM.joints[i]) >= 3
+            axes = segment_to_segments(*posed.ends[i], posed.ends[apart, 0], posed.ends[apart, 1])
+            gaps.extend(axes - ARM.radii[i] - ARM.radii[apart])
+        assert found.self_m == pytest.approx(min(*gaps, FAR), abs=1e-9)
+        near += min(gaps) < FAR
+        overlapping += min(gaps) < 0.0
+    assert near > 25
+    assert overlapping > 0
+
+
+def test_a_folded_arm_runs_into_its_own_base(collision):
+    q = np.radians([0.0, 120.0, 0.0, 120.0, 0.0, -30.0, 0.0])
+    folded = [
+        collision.check(KINEMATICS.links(q * share)).self_m for share in np.linspace(0.0, 1.0, 50)
+    ]
+    assert folded[0] == FAR
+    assert min(folded) < FAR
+    assert collision.check(KINEMATICS.links(np.zeros(7))).self_worst == ()
+
+
+def test_the_table_is_where_the_tip_is_above_it(head, head_to_world):
+    far_away = head_to_world.copy()
+    far_away[:3, 3] = (-0.5, 0.5, 0.3)
+    for table_height in (0.0, -0.05):
+        collision = placed(head, far_away, table_height=table_height)
+        for above in (0.09, 0.02, 0.0, -0.01):
+            q = posture((0.55, 0.1, table_height + above), (0.0, 0.0, -1.0))
+            found = collision.check(KINEMATICS.links(q))
+            assert found.table_m == pytest.approx(above, abs=1e-9)
+            assert found.table_worst == "iiwa_link_tool"
+
+
+def test_a_link_can_be_nearest_to_the_table(collision):
+    links = KINEMATICS.links(np.radians([165.0, 118.0, 0.0, 30.0, 0.0, 0.0, 0.0]))
+    found, posed = collision.check(links), ARM.pose(links)
+    heights = posed.ends[:, :, 2].min(axis=1) - ARM.radii
+    nearest = np.where(ARM.joints > 0, heights, np.inf).argmin()
+    assert found.table_m == pytest.approx(heights[nearest], abs=1e-9)
+    assert found.table_worst == ARM.names[nearest] == "iiwa_link_3"
+
+
+def test_the_heads_stand_is_an_upright_column_under_its_base(head):
+    raised = at(head[0], (0.5, 0.0, 0.45))
+    collision = placed(head, raised, stand_radius=0.03)
+    vertices, _ = corners_in_world(head, raised)
+    x, y, _ = vertices[vertices[:, 2] < vertices[:, 2].min() + 0.001].mean(axis=0)
+    # The tool's first capsule begins where its round end comes nearest to the tip.
+    capsule = ARM.capsules[ARM.link_count]
+    behind = np.linalg.norm(capsule.start) - capsule.radius
+    for gap in (0.08, 0.03, 0.01, -0.005):
+        q = posture((x, y - 0.03 - gap, 0.2), (0.0, 1.0, 0.0))
+        found = collision.check(KINEMATICS.links(q))
+        assert found.table_m == pytest.approx(gap + behind, abs=0.002)
+        assert found.table_worst == "iiwa_link_tool"
+
+
+def test_a_stand_of_no_height_is_no_obstacle(head):
+    sunk = at(head[0], (0.5, 0.0, 0.05))
+    collision = placed(head, sunk)
+    q = posture((0.5, 0.2, 0.3), (0.0, 0.0, -1.0))
+    assert collision.check(KINEMATICS.links(q)).table_m == FAR
+
+
+def test_head_and_arm_moved_together_keep_their_clearance(head):
+    turn = np.radians(40.0)
+    about_base = np.eye(4)
+    about_base[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    pose = at(head[0], CENTER)
+    q = np.array(posture((0.5, 0.0, 0.4), (0.0, 0.0, -1.0)))
+    before = placed(head, pose).check(KINEMATICS.links(q))
+    after = placed(head, about_base @ pose).check(KINEMATICS.links(q + np.eye(7)[0] * turn))
+    assert after.tip_m == pytest.approx(before.tip_m, abs=1e-9)
+    assert after.shaft_m == pytest.approx(before.shaft_m, abs=1e-9)
+    assert after.links_m == pytest.approx(before.links_m, abs=1e-9)
+    turned = about_base[:3, :3] @ before.tip.point
+    np.testing.assert_allclose(after.tip.point, turned, rtol=0, atol=1e-9)
+    turned = about_base[:3, :3] @ before.tip.normal
+    np.testing.assert_allclose(after.tip.normal, turned, rtol=0, atol=1e-6)
+
+
+def test_what_was_asked_before_changes_no_bit_of_an_answer(head, head_to_world, collision):
+    path = list(wander(150, seed=24, step=0.01)) + list(wander(30, seed=25, step=0.3))
+    for index, q in enumerate(path):
+        links = KINEMATICS.links(q)
+        found = collision.check(links)
+        if index % 40 == 0:
+            assert placed(head, head_to_world).check(links) == found
+
+
+def test_a_head_that_is_moved_is_measured_anew(head, head_to_world, collision):
+    links = KINEMATICS.links(ROBOT.home)
+    before = collision.check(links)
+    collision.set_head_pose(at(head[0], (0.5, 0.3, 0.2)))
+    assert collision.check(links) != before
+    collision.set_head_pose(head_to_world)
+    assert collision.check(links) == before
+
+
+def test_the_worst_part_is_named(head, collision):
+    x, y, z = CENTER
+    over = (x, y, z + np.ptp(head[0][:, 2]) / 2.0 + 0.03)
+    above = collision.check(KINEMATICS.links(posture(over, (0.0, 0.0, -1.0))))
+    assert above.worst == "tip"
+    assert above.tool_m == above.tip_m
+    assert above.without_tip_m == above.shaft_m > above.tip_m
+
+
+@pytest.mark.parametrize(
+    ("matrix", "sentence"),
+    [
+        (np.diag([1.0, 1.0, 2.0, 1.0]), "should be rigid"),
+        (np.diag([1.0, 1.0, -1.0, 1.0]), "should be rigid"),
+        (np.full((4, 4), np.nan), "finite numbers"),
+        (np.eye(3), "4 × 4 matrix"),
+        (np.ones((4, 4)), "should be rigid"),
+    ],
+)
+def test_a_head_pose_that_is_not_rigid_is_refused(collision, matrix, sentence):
+    with pytest.raises(InputError, match=sentence):
+        collision.set_head_pose(matrix)
