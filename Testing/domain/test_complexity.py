@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from rastrainer.complexity import Complexity, complexity, turning_deg
+from rastrainer.complexity import Complexity, complexity, turns_deg
 from rastrainer.surface_path import SurfaceGraph
 from Testing.domain.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
@@ -31,9 +31,8 @@ def test_back_and_forth_turns_by_half_a_circle_each_time():
 
 
 def test_a_corner_is_measured_in_the_plane_of_the_skin():
-    up = np.tile([0.0, 0.0, 1.0], (3, 1))
-    corner = np.array([[0, 0, 0], [10, 0, 5], [10, 10, -3.0]])
-    assert turning_deg(corner, up) == pytest.approx(90)
+    before, at, after = np.array([[[0.0, 0, 0]], [[10, 0, 5]], [[10, 10, -3]]])
+    assert turns_deg(before, at, after, np.array([[0.0, 0, 1]])) == pytest.approx(90)
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,9 @@ def complexity(
         path_length_mm=sum(
             graph.distance(start, end) for start, end in itertools.pairwise(fiducials)
         ),
-        turning_deg=turning_deg(fiducials, normals),
+        turning_deg=float(
+            turns_deg(fiducials[:-2], fiducials[1:-1], fiducials[2:], normals[1:-1]).sum()
+        ),
         hidden_points=sum(
             is_hidden(point, normal, mesh, eye)
             for point, normal in zip(fiducials, normals, strict=True)
@@ -83,15 +85,14 @@ def complexity(
     )
 
 
-def turning_deg(fiducials: np.ndarray, normals: np.ndarray) -> float:
-    """Return the sum of the path's turns at its inner fiducials, seen along their normals.
+def turns_deg(
+    before: np.ndarray, at: np.ndarray, after: np.ndarray, normals: np.ndarray
+) -> np.ndarray:
+    """Return how much ways turn at points, seen along the skin's normals there, degrees (n,).
 
-    A path that runs straight over the curved skin does not turn. Shapes (n, 3).
+    A way that runs straight over the curved skin does not turn. Shapes (n, 3).
     """
-    inner = normals[1:-1]
-    steps = np.diff(fiducials, axis=0)
-    arriving, leaving = (_in_plane(way, inner) for way in (steps[:-1], steps[1:]))
-    return float(angles_deg(arriving, leaving).sum())
+    return angles_deg(_in_plane(at - before, normals), _in_plane(after - at, normals))
 
 
 def is_hidden(point: np.ndarray, normal: np.ndarray, mesh: HeadMesh, eye: np.ndarray) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.complexity import ANGLE_UNIT_DEG, LENGTH_UNIT_MM, angles_deg, turning_deg
+from rastrainer.complexity import ANGLE_UNIT_DEG, LENGTH_UNIT_MM, angles_deg, turns_deg
 
 
 @dataclass(frozen=True)
@@ -21,30 +21,35 @@ class Ways:
     steps: np.ndarray
     turns: np.ndarray
 
-    def cost(self, order: list[int]) -> float:
-        """Return the cost of an order."""
-        row = np.array(order)
-        turns = self.turns[row[:-2], row[1:-1], row[2:]].sum()
-        return float(self.steps[row[:-1], row[1:]].sum() + turns)
+    def costs(self, orders: list[list[int]]) -> np.ndarray:
+        """Return the costs (m,) of m orders of as many fiducials each."""
+        rows = np.array(orders)
+        steps = self.steps[rows[:, :-1], rows[:, 1:]].sum(axis=1)
+        return steps + self.turns[rows[:, :-2], rows[:, 1:-1], rows[:, 2:]].sum(axis=1)
+
+    def easiest(self, orders: list[list[int]]) -> tuple[float, list[int]]:
+        """Return the least cost and the first of the orders that has it."""
+        costs = self.costs(orders)
+        best = int(np.argmin(costs))
+        return float(costs[best]), orders[best]
 
 
 def ways_between(points: np.ndarray, normals: np.ndarray, lengths_mm: np.ndarray) -> Ways:
     """Return the ways between points; shapes (n, 3), (n, 3) and (n, n)."""
     count = len(points)
-    first, second = np.repeat(np.arange(count), count), np.tile(np.arange(count), count)
+    first, second = np.indices((count, count)).reshape(2, -1)
     turned = angles_deg(normals[first], normals[second]).reshape(count, count)
-    steps = lengths_mm / LENGTH_UNIT_MM + turned / ANGLE_UNIT_DEG
-    turns = np.zeros((count,) * 3)
-    for a, b, c in np.ndindex(turns.shape):
-        if len({a, b, c}) == 3:
-            turns[a, b, c] = turning_deg(points[[a, b, c]], normals[[a, b, c]]) / ANGLE_UNIT_DEG
-    return Ways(steps, turns)
+    before, at, after = np.indices((count,) * 3).reshape(3, -1)
+    turns = turns_deg(points[before], points[at], points[after], normals[at])
+    return Ways(
+        lengths_mm / LENGTH_UNIT_MM + turned / ANGLE_UNIT_DEG,
+        turns.reshape((count,) * 3) / ANGLE_UNIT_DEG,
+    )
 
 
 def easiest_order(ways: Ways, members: list[int]) -> list[int]:
     """Return an order of the members that is cheap: the best of all greedy ways, improved."""
-    candidates = [_improved(ways, _greedy(ways, members, start)) for start in members]
-    return min(candidates, key=ways.cost)
+    return ways.easiest([_improved(ways, _greedy(ways, members, start)) for start in members])[1]
 
 
 def crossing_order(ways: Ways, sides: list[list[int]], crossings: int) -> list[int]:
@@ -58,8 +63,7 @@ def crossing_order(ways: Ways, sides: list[list[int]], crossings: int) -> list[i
         order = easiest_order(ways, members)
         runs.append([part.tolist() for part in np.array_split(order, count)])
     second_turned = [part[::-1] for part in runs[1][::-1]]
-    orders = [_interleaved(runs[0], second) for second in (runs[1], second_turned)]
-    return min(orders, key=ways.cost)
+    return ways.easiest([_interleaved(runs[0], second) for second in (runs[1], second_turned)])[1]
 
 
 def _interleaved(first: list[list[int]], second: list[list[int]]) -> list[int]:
@@ -79,10 +83,9 @@ def _greedy(ways: Ways, members: list[int], start: int) -> list[int]:
 
 def _improved(ways: Ways, order: list[int]) -> list[int]:
     """Reverse and move stretches of the order as long as that makes it cheaper."""
-    best = ways.cost(order)
+    best = np.inf
     while True:
-        cheapest = min(_changed(order), key=ways.cost)
-        cost = ways.cost(cheapest)
+        cost, cheapest = ways.easiest(_changed(order))
         if cost >= best - 1e-9:
             return order
         order, best = cheapest, cost
