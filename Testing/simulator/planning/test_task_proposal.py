@@ -78,9 +78,13 @@ def test_places_are_spread_evenly_and_cover_the_skin(mesh):
     assert among.min() >= 30.0
 
 
-def test_a_bump_is_no_place_for_a_fiducial(mesh):
-    top = int(mesh.vertices[:, 2].argmax())
-    assert is_smooth(mesh, top)
-    vertices = mesh.vertices.copy()
-    vertices[np.linalg.norm(vertices - vertices[top], axis=1) < 6.0] *= 1.08
-    assert not is_smooth(HeadMesh(vertices, mesh.triangles), top)
+def test_near_an_edge_is_no_place_for_a_fiducial():
+    drum = trimesh.creation.cylinder(radius=80.0, height=120.0, sections=96).subdivide_to_size(6.0)
+    mesh = HeadMesh(np.array(drum.vertices), np.array(drum.faces))
+
+    def nearest_vertex(point):
+        return int(np.linalg.norm(mesh.vertices - point, axis=1).argmin())
+
+    assert is_smooth(mesh, nearest_vertex([80.0, 0.0, 0.0]))
+    assert is_smooth(mesh, nearest_vertex([0.0, 0.0, 60.0]))
+    assert not is_smooth(mesh, nearest_vertex([80.0, 0.0, 54.0]))
