@@ -4,33 +4,41 @@ from __future__ import annotations
 
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.robot.velocity_limit import limit_step
+from rastrainer_simulator.vectors import Vector, add, scale
 
 Joints = tuple[float, ...]
 
 
 class JointMotion:
-    """Moves the joints toward a target; it keeps no posture itself."""
+    """Moves the joints toward a target of the tip; it keeps no posture itself."""
 
     def __init__(self, robot: RobotModel) -> None:
         self._fabrik = Fabrik(robot)
-        self._fastest = tuple(float(speed) for speed in robot.velocity)
+        self._fastest = tuple(robot.velocity.tolist())
 
     def toward(
-        self, start: Joints, position: Vector, direction: Vector | None, dt: float
+        self, start: Joints, tip: Vector, displacement: Vector, direction: Vector | None, dt: float
     ) -> tuple[Joints, bool]:
         """Return the joint angles after `dt` on the way to a target, and if it is within reach.
 
-        `position` is the tip's in World, m; `direction` the tool's, a unit vector, None where it is
-        free. All joints are slowed down by the same factor where one would be too fast, so that
-        the way in joint space stays the same.
+        The tip, now at `tip` with the joint angles `start`, shall move by `displacement` (World, m)
+        and the tool point along `direction`, a unit vector, None where it is free. The tip's
+        position comes first: where the joint limits forbid the direction, or the joints are too
+        slow for it, the tool turns as far as it can while the tip stays on its straight way.
         """
-        solution = self._fabrik.solve(position, direction, q_start=start)
-        excess = max(
-            abs(new - old) / (fastest * dt)
-            for old, new, fastest in zip(start, solution.q, self._fastest, strict=True)
-        )
-        if excess <= 1.0:
-            return solution.q, solution.converged
-        steps = zip(start, solution.q, strict=True)
-        return tuple(old + (new - old) / excess for old, new in steps), solution.converged
+        solution = self._fabrik.solve(add(tip, displacement), direction, q_start=start)
+        step = limit_step(start, solution.q, self._fastest, dt)
+        if direction is None or (solution.converged and not step.limited):
+            return step.q, solution.converged
+        share = _share(start, step.q, solution.q) if step.limited else 1.0
+        on_the_way = add(tip, scale(displacement, share))
+        found = self._fabrik.solve(on_the_way, q_start=step.q)
+        return limit_step(start, found.q, self._fastest, dt).q, found.converged
+
+
+def _share(start: Joints, part: Joints, whole: Joints) -> float:
+    """Return how much of the way from `start` to `whole` has been made at `part`."""
+    ways = [(abs(b - a), abs(c - a)) for a, b, c in zip(start, part, whole, strict=True)]
+    made, way = max(ways, key=lambda pair: pair[1])
+    return made / way

@@ -40,8 +40,9 @@ class Posture:
 
     @property
     def surface(self) -> Surface:
-        """The head as the tip sees it."""
-        return Surface(self.clearance.tip.distance_m, self.clearance.tip.normal)
+        """The head as the tool sees it."""
+        tip, shaft = self.clearance.tip, self.clearance.shaft
+        return Surface(tip.distance_m, tip.normal, shaft.distance_m, shaft.normal)
 
 
 class Postures:

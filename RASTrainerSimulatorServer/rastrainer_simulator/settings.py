@@ -32,7 +32,7 @@ class SimulationSettings:
     teleoperation: TeleoperationSettings = dataclasses.field(default_factory=TeleoperationSettings)
     training: TrainingSettings = dataclasses.field(default_factory=TrainingSettings)
     proximity: ProximitySettings = dataclasses.field(default_factory=ProximitySettings)
-    start_height: float = 0.25
+    start_height: float = 0.165
     axes: AxesChoice = AxesChoice.CAMERA
     camera: str = "close-up"
 

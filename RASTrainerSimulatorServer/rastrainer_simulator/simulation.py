@@ -34,7 +34,7 @@ from rastrainer_simulator.training.phase_rules import refusal
 from rastrainer_simulator.training.texts import Texts
 from rastrainer_simulator.training.training import Moment, Reply, Training
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, add
+from rastrainer_simulator.vectors import Vector
 
 
 class Simulation:
@@ -158,9 +158,8 @@ class Simulation:
         was_within_reach = self._is_within_reach
 
         def to_joints(displacement: Vector) -> Joints:
-            position = add(start.tip.position, displacement)
             q, self._is_within_reach = self._joint_motion.toward(
-                start.q, position, wish.direction, dt
+                start.q, start.tip.position, displacement, wish.direction, dt
             )
             return q
 

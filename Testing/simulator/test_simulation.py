@@ -135,7 +135,7 @@ def test_ticks_and_time_count_every_step(trial):
 def test_the_start_is_clear_of_the_head_in_every_seeded_pose(idle):
     for seed in range(100):
         idle.start(seed=seed)
-        assert idle.state.clearance > 0.08
+        assert idle.state.clearance > 0.05
         assert idle.state.proximity is Proximity.FREE
         idle.do(CommandName.ABORT)
 
@@ -313,7 +313,7 @@ def test_in_direction_mode_the_tool_comes_down_along_the_surface_normal(setup):
     driver.until(DOWN, lambda state: state.clearance < 0.004)
     normal = np.array(driver.simulation._posture.surface.normal)
     tool = driver.state.tool_tip_to_world[:3, 2]
-    assert math.degrees(math.acos(-normal @ tool)) < 3.0
+    assert math.degrees(math.acos(-normal @ tool)) < 5.0
 
 
 def hover(truth, label):
@@ -329,7 +329,7 @@ def test_a_whole_trial_is_played_by_moves_and_every_touch_is_where_its_fiducial_
     for number in range(1, 16):
         fiducial, outside = hover(truth, str(number))
         trial.move_to(outside)
-        trial.move_to(fiducial, speed=200.0)
+        assert trial.move_to(fiducial, speed=200.0) == "reached"
         assert trial.do(CommandName.CAPTURE).ok
         trial.move_to(outside)
         trial.move_to(above)

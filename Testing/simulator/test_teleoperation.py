@@ -195,8 +195,9 @@ def test_a_stick_overrides_a_commanded_motion():
     assert hand.step().motion is Motion.NONE
 
 
-def test_in_position_mode_the_tool_direction_is_free_and_the_second_stick_does_nothing():
-    hand = Hand()
+@pytest.mark.parametrize("choice", [ToolDirection.FREE, ToolDirection.CLEAR])
+def test_in_position_mode_the_tool_direction_is_free_and_the_second_stick_does_nothing(choice):
+    hand = Hand(steered(choice))
     assert hand.step(push(1.0, 0.0, 0.0)).direction is None
     assert hand.step(OperatorInput(rotation=(1.0, 0.0))).motion is Motion.NONE
 
@@ -222,12 +223,47 @@ def test_steering_up_pitches_a_tool_that_points_down_away_from_the_viewer():
     assert hand.tip.direction[0] == pytest.approx(0.0)
 
 
+def near_the_head(clearance, normal, shaft_clearance=0.1, shaft_normal=(0.0, 0.0, 1.0)):
+    return Surface(clearance, unit(normal), shaft_clearance, unit(shaft_normal))
+
+
 def test_near_the_head_the_tool_turns_along_the_surface_normal_where_chosen():
-    normal = unit((0.0, -1.0, 0.3))
-    near = Hand(steered(ToolDirection.NORMAL), surface=Surface(clearance=0.03, normal=normal))
-    far = Hand(steered(ToolDirection.NORMAL), surface=Surface(clearance=0.2, normal=normal))
+    normal = (0.0, -1.0, 0.3)
+    near = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.005, normal))
+    far = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.2, normal))
     for _ in range(600):
         near.step(push(0.2, 0.0, 0.0))
         far.step(push(0.2, 0.0, 0.0))
-    assert near.tip.direction == pytest.approx(tuple(-v for v in normal))
+    assert near.tip.direction == pytest.approx(tuple(-v for v in unit(normal)))
     assert far.tip.direction == DOWN
+
+
+def test_in_position_mode_the_tool_leans_no_farther_than_its_shaft_can_stay_off_the_skin():
+    normal = (0.0, -1.0, 0.0)
+    leans = []
+    for clearance in (0.2, 0.12, 0.08, 0.04, 0.01, 0.0):
+        hand = Hand(steered(ToolDirection.CLEAR), surface=near_the_head(clearance, normal))
+        for _ in range(600):
+            hand.step(push(0.2, 0.0, 0.0))
+        leans.append(angle(hand.tip.direction, (0.0, 1.0, 0.0)))
+    assert leans == sorted(leans, reverse=True)
+    assert leans[:2] == pytest.approx([math.pi / 2] * 2)
+    assert leans[-2:] == pytest.approx([SteeringSettings().largest_lean] * 2)
+
+
+def test_a_tool_that_leans_little_enough_is_left_alone():
+    hand = Hand(steered(ToolDirection.CLEAR), surface=near_the_head(0.0, (0.1, 0.0, 1.0)))
+    assert hand.step(push(0.2, 0.0, 0.0)).direction is None
+
+
+def test_a_shaft_that_almost_touches_turns_away_from_what_is_near_to_it():
+    ear = near_the_head(0.002, (0.0, 0.0, 1.0), 0.0002, (0.0, -1.0, 0.0))
+    hand = Hand(steered(ToolDirection.CLEAR), surface=ear)
+    hand.step(push(0.2, 0.0, 0.0))
+    assert hand.tip.direction[1] > 0.0
+
+
+def test_a_frozen_hand_turns_no_tool():
+    hand = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.005, (0.0, -1.0, 0.0)))
+    for _ in range(50):
+        assert hand.step().direction is None

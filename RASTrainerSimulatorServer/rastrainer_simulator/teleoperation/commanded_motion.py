@@ -21,8 +21,10 @@ from rastrainer_simulator.vectors import (
 
 ARRIVED = 1e-6
 """A position (m) or direction (rad) this near counts as reached."""
-BLOCKED_AFTER = 0.5
-"""s without getting nearer after which a move gives up."""
+STALLED_AFTER = 0.3
+"""s without getting nearer after which a move ends where it is."""
+NEAR = 1e-4
+"""m: a move that ends so near has reached its target; the skin is not passed for less."""
 PROGRESS = 1e-5
 """m or rad that count as getting nearer."""
 
@@ -110,7 +112,9 @@ class Moving:
             self._stalled = 0.0
         else:
             self._stalled += dt
-        return Outcome.BLOCKED if self._stalled >= BLOCKED_AFTER else None
+        if self._stalled < STALLED_AFTER:
+            return None
+        return Outcome.REACHED if remaining <= NEAR and turn <= ARRIVED else Outcome.BLOCKED
 
 
 CommandedMotion = JogCommand | MoveCommand

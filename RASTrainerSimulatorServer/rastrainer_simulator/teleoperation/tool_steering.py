@@ -1,7 +1,8 @@
-"""Where the tool shall point: free as in the paper, held and steered, or along the normal."""
+"""Where the tool shall point: as the tip needs it, held and steered, or along the normal."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
@@ -10,6 +11,7 @@ from rastrainer_simulator.vectors import (
     ZERO,
     Vector,
     add,
+    angle,
     cross,
     length,
     reject,
@@ -23,39 +25,56 @@ from rastrainer_simulator.vectors import (
 class ToolDirection(str, Enum):
     """Who decides the tool's direction.
 
-    FREE: the inverse kinematics, as in the paper: only the tip's position is followed.
+    FREE: the inverse kinematics alone, as in the paper: only the tip's position is followed.
+    CLEAR: the same, but near the head the tool leans no farther from the surface normal than
+        keeps its shaft off the skin; the paper's skull let the tool through.
     HELD: the operator: it stays as it is until the second stick turns it.
     NORMAL: near the head the skin: the tool comes down along the surface normal; else as HELD.
     """
 
     FREE = "free"
+    CLEAR = "clear"
     HELD = "held"
     NORMAL = "normal"
 
 
 @dataclass(frozen=True)
 class SteeringSettings:
-    """How the tool's direction is steered.
+    """How the tool's direction is steered; lengths in m, angles in rad.
 
     Attributes:
         choice: who decides the direction.
-        coarse_turn: fastest turn in rad/s.
-        fine_turn: fastest turn in rad/s while the trigger for fine speed is held.
-        normal_distance: clearance in m below which NORMAL turns the tool along the surface normal.
+        coarse_turn: fastest turn by the stick, rad/s.
+        fine_turn: the same while the trigger for fine speed is held, rad/s.
+        leaning_turn: fastest turn toward the surface normal, rad/s.
+        largest_lean: of CLEAR, between the tool and the normal at the surface.
+        near: clearance of the tip up to which the lean is limited to that.
+        far: clearance from which the lean is not limited.
+        shaft_clearance: of the shaft, below which the tool turns away from what is near to it.
     """
 
-    choice: ToolDirection = ToolDirection.FREE
+    choice: ToolDirection = ToolDirection.CLEAR
     coarse_turn: float = 0.8
     fine_turn: float = 0.15
-    normal_distance: float = 0.06
+    leaning_turn: float = 2.0
+    largest_lean: float = math.radians(30.0)
+    near: float = 0.01
+    far: float = 0.12
+    shaft_clearance: float = 0.001
 
 
 @dataclass(frozen=True)
 class Surface:
-    """The head as the tip sees it: its clearance (m) and the outward normal nearest to it."""
+    """The head as the tool sees it: clearances (m) and outward normals nearest to it.
+
+    `clearance` and `normal` are those of the tip, `shaft_clearance` and `shaft_normal` those of the
+    tool behind it.
+    """
 
     clearance: float
     normal: Vector
+    shaft_clearance: float
+    shaft_normal: Vector
 
 
 class ToolSteering:
@@ -68,7 +87,7 @@ class ToolSteering:
     @property
     def is_steered(self) -> bool:
         """Whether the steering stick has a say."""
-        return self._settings.choice is not ToolDirection.FREE
+        return self._settings.choice in (ToolDirection.HELD, ToolDirection.NORMAL)
 
     def reset(self) -> None:
         """Forget the held direction: the tool keeps the one it has when it is next moved."""
@@ -91,24 +110,36 @@ class ToolSteering:
         """Return the direction that the tool shall have after this tick, None where it is free.
 
         `turn` is the steering stick's response (right, up), `direction` the tool's direction now,
-        `surface` the head near the tip, if any.
+        `surface` the head near the tool, if any.
         """
         settings = self._settings
-        if not self.is_steered:
-            self._held = None
-            return None
-        held = self._held or direction
-        fastest = settings.fine_turn if fine else settings.coarse_turn
         if turn != (0.0, 0.0):
-            held = _turned(direction, turn, fastest * dt, axes)
-        elif (
-            settings.choice is ToolDirection.NORMAL
-            and surface is not None
-            and surface.clearance < settings.normal_distance
-        ):
-            held = turned_toward(direction, scale(surface.normal, -1.0), fastest * dt)
-        self._held = held
-        return held
+            fastest = settings.fine_turn if fine else settings.coarse_turn
+            self._held = _turned(direction, turn, fastest * dt, axes)
+            return self._held
+        leaned = self._leaned(dt, direction, surface) if surface else None
+        if not self.is_steered:
+            return leaned
+        self._held = leaned or self._held or direction
+        return self._held
+
+    def _leaned(self, dt: float, direction: Vector, surface: Surface) -> Vector | None:
+        """Return the direction turned toward the normal, None where it may stay."""
+        settings = self._settings
+        if settings.choice in (ToolDirection.FREE, ToolDirection.HELD):
+            return None
+        most = settings.leaning_turn * dt
+        if surface.shaft_clearance < min(settings.shaft_clearance, surface.clearance):
+            return turned_toward(direction, scale(surface.shaft_normal, -1.0), most)
+        inward = scale(surface.normal, -1.0)
+        excess = angle(direction, inward) - self._lean_limit(surface.clearance)
+        return turned_toward(direction, inward, min(excess, most)) if excess > 0.0 else None
+
+    def _lean_limit(self, clearance: float) -> float:
+        settings = self._settings
+        lean = settings.largest_lean if settings.choice is ToolDirection.CLEAR else 0.0
+        share = (clearance - settings.near) / (settings.far - settings.near)
+        return lean + (0.5 * math.pi - lean) * min(max(share, 0.0), 1.0) if share < 1.0 else math.pi
 
 
 def _turned(direction: Vector, turn: tuple[float, float], most: float, axes: Axes) -> Vector:
