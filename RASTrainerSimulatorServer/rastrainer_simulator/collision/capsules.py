@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -124,8 +125,7 @@ def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Ca
     profile = _profile(points, start)
     cuts = _slenderest_cuts(profile, start, count)
     return tuple(
-        _section(profile[first:last], start + first * _SLICE)
-        for first, last in zip(cuts[:-1], cuts[1:], strict=True)
+        _section(profile[first:last], start + first * _SLICE) for first, last in pairwise(cuts)
     )
 
 

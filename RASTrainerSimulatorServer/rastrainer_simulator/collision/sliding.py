@@ -42,7 +42,7 @@ def slide(
     """Return the way of a tip at `tip` (World, m) that shall move by `displacement`.
 
     `here` is the head's surface nearest to the tip, `others` what limits the tip besides. At each
-    step the tip goes to the point nearest to its goal that is on the free side of the surface's
+    step the tip goes toward the point nearest to its goal that is on the free side of the surface's
     tangent planes: at the tip, and wherever a trial ended inside. In a groove two planes hold it,
     in a pit three, so that it comes to rest there instead of jumping from wall to wall (the god
     object of Zilles and Salisbury 1995, 10.1109/IROS.1995.525876).
@@ -50,44 +50,40 @@ def slide(
     goal = add(tip, displacement)
     rest = min(REST, here.distance_m + RECOVERY)
     position, planes = tip, tuple(others)
-    remaining = math.ceil(length(displacement) / LONGEST_STEP)
-    while remaining > 0 and position != goal:
+    for _ in range(math.ceil(length(displacement) / LONGEST_STEP)):
         free = here.distance_m - rest
-        way = shortened(subtract(goal, position), max(free, LONGEST_STEP))
+        if distance(position, goal) <= free:  # Within a ball that holds nothing of the head.
+            return Slide(nearest_inside(goal, others) or position, tuple(others))
         planes = (_tangent(here, rest), *others)
-        reached = nearest_inside(add(position, way), planes)
-        if reached is None:
+        step = _step(nearest_to_point, position, goal, planes, max(free, LONGEST_STEP), rest)
+        if step is None:
             break
-        if reached == goal and distance(position, goal) <= free:
-            return Slide(goal, planes)
-        found = _corrected(nearest_to_point, add(position, way), reached, planes, rest)
-        if found is None:
-            break
-        reached, here, planes = found
+        reached, here, planes = step
         moved = distance(position, reached)
+        position = reached
         if moved < _STANDSTILL:
             break
-        remaining -= max(1, int(moved / LONGEST_STEP))
-        position = reached
     return Slide(position, planes)
 
 
-def _corrected(
+def _step(
     nearest_to_point: Callable[[Vector], Nearest],
+    position: Vector,
     goal: Vector,
-    trial: Vector,
     planes: tuple[HalfSpace, ...],
+    longest: float,
     rest: float,
 ) -> tuple[Vector, Nearest, tuple[HalfSpace, ...]] | None:
-    """Return a trial, moved by further tangent planes until it is outside the surface."""
+    """Return where one step toward the goal may end, what is nearest there, and what limits it."""
     for _ in range(_TRIALS):
+        target = nearest_inside(goal, planes)
+        if target is None:
+            break
+        trial = add(position, shortened(subtract(target, position), longest))
         there = nearest_to_point(trial)
         if there.distance_m >= rest - _EXACT:
             return trial, there, planes
         planes = (*planes, _tangent(there, rest))
-        trial = nearest_inside(goal, planes)
-        if trial is None:
-            break
     return None
 
 

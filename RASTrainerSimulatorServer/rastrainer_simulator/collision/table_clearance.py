@@ -18,7 +18,7 @@ class Surroundings:
 
     Attributes:
         table_height: of the table top; the robot's base stands on it and is not checked.
-        stand_radius: of the upright column under the middle of the head's base.
+        stand_radius: of the upright column under the middle of the head's base; 0: no stand.
     """
 
     table_height: float = 0.0
@@ -41,7 +41,7 @@ class TableClearance:
         """Put the stand under the middle of the head's base (3,) float, World."""
         x, y, top = base.tolist()
         top -= self._stand_radius  # The column is a capsule: its round end fills up to the base.
-        upright = top > self._table
+        upright = self._stand_radius > 0.0 and top > self._table
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
 
     def nearest(self, posed: PosedArm) -> tuple[float, str]:

@@ -1,0 +1,289 @@
+"""The tool stops at the head, slides along it, and nothing is refused that could be touched."""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.sliding import REST
+from rastrainer_simulator.collision.table_clearance import Surroundings
+from rastrainer_simulator.planning.touch_planner import TouchPlanner
+from Testing.simulator.collision.arms import KINEMATICS, ROBOT, TICK, Driver, at, posture
+from Testing.simulator.collision.heads import ball, box, groove, together
+from Testing.simulator.collision.vtk_distance import vtk_distance
+
+DEEPEST = 1e-4
+TOUCHING = 5e-5
+DOWN = np.array([0.0, 0.0, -1.0])
+
+
+def collision_with(surface, center):
+    found = Collision(ROBOT, *surface, Surroundings(stand_radius=0.0))
+    found.set_head_pose(at(surface[0], center))
+    return found
+
+
+def above(surface, center, x=0.0, y=0.0, height=0.02):
+    """A driver with the tool straight down, `height` over the top of a surface."""
+    top = center[2] + np.ptp(surface[0][:, 2]) / 2.0
+    q = posture((center[0] + x, center[1] + y, top + height), DOWN)
+    return Driver(collision_with(surface, center), q)
+
+
+class DefaultHead:
+    """The head of the default scenario, where it stands, and VTK's distance to it."""
+
+    def __init__(self, scenario):
+        mesh = read_head_mesh(scenario.head_mesh)
+        self.to_world = scenario.head_to_world.copy()
+        self.to_world[:3, 3] /= 1000.0
+        self.vertices = transforms.apply(self.to_world, mesh.vertices / 1000.0)
+        self.triangles = mesh.triangles
+        self.normals = mesh.vertex_normals @ self.to_world[:3, :3].T
+        self.collision = Collision(ROBOT, mesh.vertices / 1000.0, mesh.triangles)
+        self.collision.set_head_pose(self.to_world)
+        self.distance = vtk_distance(self.vertices, mesh.triangles)
+
+    def hollows(self, count):
+        """The vertices farthest below their neighbors: ears, eyes, nostrils, lips."""
+        sides = np.concatenate([self.triangles[:, [0, 1]], self.triangles[:, [1, 2]]])
+        rise = np.zeros(len(self.vertices))
+        for a, b in (sides.T, sides.T[::-1]):
+            step = self.vertices[b] - self.vertices[a]
+            slope = np.einsum("ij,ij->i", step, self.normals[a]) / np.linalg.norm(step, axis=1)
+            np.add.at(rise, a, slope)
+        rise[self.vertices[:, 2] < self.vertices[:, 2].min() + 0.03] = -np.inf
+        return np.argsort(rise)[-count:]
+
+
+@pytest.fixture(scope="module")
+def head(scenario):
+    return DefaultHead(scenario)
+
+
+def approaches(head, vertices, random):
+    """Starting postures 30 mm before some vertices, leaning, that touch nothing yet."""
+    for vertex in np.repeat(vertices, 3):
+        direction = -head.normals[vertex] + 0.4 * random.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        q = posture(head.vertices[vertex] - 0.03 * direction, direction)
+        if q is None:
+            continue
+        clearance = head.collision.check(KINEMATICS.links(q))
+        if min(clearance.without_tip_m, clearance.tip_m) > 0.001:
+            yield q, direction
+
+
+@pytest.mark.parametrize("holds", [True, False], ids=["direction held", "direction free"])
+def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
+    random = np.random.default_rng(41)
+    high = np.flatnonzero(head.vertices[:, 2] > head.vertices[:, 2].min() + 0.03)
+    places = random.permutation([*random.choice(high, 100), *head.hollows(1500)[::15]])
+    rams, deepest = 0, 0.0
+    for q, direction in islice(approaches(head, places, random), 100):
+        driver = Driver(head.collision, q, holds)
+        speed, aside = random.uniform(0.25, 0.5), random.normal(size=3)
+        for tick in range(40):
+            push = direction if tick < 25 else direction + 0.5 * aside
+            driver.push(push / np.linalg.norm(push) * speed * TICK)
+            deepest = min(deepest, driver.clearance.shaft_m, head.distance(driver.tip))
+        rams += 1
+    assert rams == 100
+    assert deepest >= -DEEPEST
+
+
+def test_every_fiducial_of_the_default_tasks_can_be_touched_with_the_tip(head, scenario):
+    planner = TouchPlanner(ROBOT, head.collision)
+    for task in scenario.tasks:
+        fiducials = transforms.apply(head.to_world, np.asarray(task.fiducials) / 1000.0)
+        for fiducial in fiducials[::3]:
+            normal = np.array(head.collision.nearest_to_point(tuple(fiducial)).normal)
+            touch = planner.touch(fiducial, normal)
+            assert touch is not None
+            driver = Driver(head.collision, touch.q)
+            for _ in range(10):
+                driver.push(normal * 0.25 * TICK)
+            for _ in range(15):
+                way = fiducial - driver.tip
+                driver.push(way * min(1.0, 0.25 * TICK / np.linalg.norm(way)))
+            assert np.linalg.norm(driver.tip - fiducial) <= TOUCHING + 2 * REST
+            assert driver.clearance.tip_m <= TOUCHING
+
+
+def test_a_pressed_tip_stands_still():
+    driver = above(box((0.2, 0.2, 0.1), (0.0, 0.0, 0.0)), (0.5, 0.0, 0.2))
+    for _ in range(20):
+        driver.push(DOWN * 0.5 * TICK)
+    assert driver.clearance.tip_m == pytest.approx(REST, abs=1e-6)
+    tip, q = driver.tip, driver.moved.q
+    for _ in range(50):
+        driver.push(DOWN * 0.5 * TICK)
+    np.testing.assert_allclose(driver.tip, tip, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(driver.moved.q, q, rtol=0, atol=1e-5)
+
+
+def test_the_tip_slides_evenly_over_the_edges_of_triangles():
+    driver = above(ball(0.08, 4), (0.5, 0.0, 0.2))
+    for _ in range(20):
+        driver.push(DOWN * 0.25 * TICK)
+    push = np.array([0.6, 0.2, -0.8]) * 0.15 * TICK
+    tips = [driver.tip]
+    for _ in range(60):
+        driver.push(push)
+        tips.append(driver.tip)
+        assert driver.clearance.tip_m <= TOUCHING
+        assert not driver.moved.stopped_by
+    steps = np.diff(tips, axis=0)
+    sizes = np.linalg.norm(steps, axis=1)
+    assert sizes.min() > 0.8 * np.linalg.norm(push[:2])
+    assert sizes.max() < np.linalg.norm(push)
+    # From facet to facet, 4 mm long, the ball turns by 3°, and the tip speeds up by no more.
+    assert np.abs(np.diff(sizes) / sizes[1:]).max() < 0.05
+    turns = np.einsum("ij,ij->i", steps[1:], steps[:-1]) / sizes[1:] / sizes[:-1]
+    assert np.degrees(np.arccos(turns.clip(-1, 1))).max() < 5.0
+
+
+def test_the_tip_comes_to_rest_in_a_groove_and_can_be_led_along_it():
+    surface = groove()
+    driver = above(surface, (0.5, 0.0, 0.2), x=0.01, y=0.0)
+    for _ in range(60):
+        driver.push(DOWN * 0.5 * TICK)
+    rest = driver.tip
+    for _ in range(30):
+        driver.push(DOWN * 0.5 * TICK)
+        np.testing.assert_allclose(driver.tip, rest, rtol=0, atol=2e-6)
+    assert rest[0] == pytest.approx(0.5, abs=1e-4)
+    for _ in range(30):
+        driver.push(np.array([0.2, 0.5, -0.8]) * 0.3 * TICK)
+    moved = driver.tip - rest
+    assert moved[1] == pytest.approx(30 * 0.5 * 0.3 * TICK, rel=0.02)
+    np.testing.assert_allclose(moved[[0, 2]], 0.0, atol=5e-5)
+
+
+def test_the_tip_rests_in_a_corner_of_three_walls():
+    walls = together(
+        box((0.1, 0.1, 0.02), (0.0, 0.0, 0.0)),
+        box((0.02, 0.1, 0.03), (0.05, 0.0, 0.0251)),
+        box((0.079, 0.02, 0.03), (-0.0002, 0.05, 0.0251)),
+    )
+    driver = above(walls, (0.5, 0.0, 0.2), x=0.01, y=0.01, height=0.01)
+    push = np.array([0.5, 0.4, -0.7]) * 0.5 * TICK
+    for _ in range(120):
+        driver.push(push)
+    rest = driver.tip
+    for _ in range(20):
+        driver.push(push)
+        np.testing.assert_allclose(driver.tip, rest, rtol=0, atol=2e-6)
+
+
+def test_a_tip_at_full_speed_does_not_jump_through_a_thin_plate():
+    plate = together(box((0.1, 0.1, 0.001), (0.0, 0.0, 0.0)), ball(0.02, 2))
+    plate[0][8:] += [0.0, 0.0, -0.1]
+    collision, top = collision_with(plate, (0.5, 0.0, 0.25)), 0.25 + np.ptp(plate[0][:, 2]) / 2.0
+    for speed in (0.25, 0.37, 0.5):
+        for offset in np.linspace(0.0, 2e-3, 7):
+            driver = Driver(collision, posture((0.52, 0.0, top + 0.01 + offset), DOWN))
+            for _ in range(20):
+                driver.push(DOWN * speed * TICK)
+                assert driver.tip[2] >= top
+
+
+def test_the_shaft_slides_along_what_it_leans_on():
+    post = ball(0.02, 5)
+    collision = collision_with(post, (0.5, 0.0, 0.3))
+    # The tip passes 60 mm below the ball's center, the shaft runs into the ball.
+    driver = Driver(collision, posture((0.45, 0.01, 0.24), DOWN))
+    depths, stops = [], 0
+    for _ in range(120):
+        driver.push(np.array([1.0, 0.0, 0.0]) * 0.25 * TICK)
+        depths.append(driver.clearance.shaft_m)
+        stops += bool(driver.moved.stopped_by)
+    assert min(depths) >= -DEEPEST
+    assert min(depths) < TOUCHING
+    assert driver.tip[0] > 0.53
+    assert stops < 20
+
+
+def test_turning_the_tool_against_the_head_does_not_drive_the_shaft_into_it():
+    driver = above(ball(0.08, 4), (0.5, 0.0, 0.2))
+    for _ in range(30):
+        driver.push(DOWN * 0.25 * TICK)
+    for tick in range(300):
+        lean = min(0.005 * tick, 1.4)
+        driver.push(np.zeros(3), np.array([np.sin(lean), 0.0, -np.cos(lean)]))
+        assert min(driver.clearance.shaft_m, driver.clearance.tip_m) >= -DEEPEST
+
+
+def test_a_link_in_the_way_stops_the_arm_and_is_named():
+    q = posture((0.6, 0.0, 0.4), DOWN)
+    forearm = KINEMATICS.links(q)["iiwa_link_5"] @ [0.0, -0.06, 0.1, 1.0]
+    collision = collision_with(ball(0.03, 4), forearm[:3] - [0.05, 0.0, 0.15])
+    driver = Driver(collision, q)
+    for _ in range(200):
+        driver.push(DOWN * 0.3 * TICK)
+        assert driver.clearance.links_m >= 0.0
+    assert driver.moved.stopped_by == "links"
+    held = driver.tip
+    for _ in range(20):
+        driver.push(-DOWN * 0.3 * TICK)
+    assert driver.tip[2] > held[2] + 0.01
+
+
+def test_the_tip_slides_over_the_table():
+    collision = collision_with(ball(0.05, 3), (-0.5, 0.5, 0.3))
+    driver = Driver(collision, posture((0.5, 0.1, 0.01), DOWN))
+    for _ in range(60):
+        driver.push(np.array([0.0, 0.6, -0.8]) * 0.25 * TICK)
+        assert driver.clearance.table_m >= -1e-9
+    assert driver.tip[2] == pytest.approx(REST, abs=2e-6)
+    assert driver.tip[1] == pytest.approx(0.1 + 60 * 0.6 * 0.25 * TICK, rel=0.05)
+
+
+def test_a_tool_that_the_head_was_put_onto_gets_out_but_never_deeper():
+    surface = ball(0.08, 4)
+    collision = collision_with(surface, (0.5, 0.0, 0.2))
+    driver = Driver(collision, posture((0.5, 0.0, 0.27), DOWN))
+    depth = driver.clearance.tip_m
+    assert depth < -0.005
+    for _ in range(10):
+        driver.push(DOWN * 0.25 * TICK)
+        assert driver.clearance.tip_m >= depth - 1e-6
+        depth = driver.clearance.tip_m
+    for _ in range(200):
+        driver.push(-DOWN * 0.25 * TICK)
+    assert driver.clearance.tip_m > 0.1
+
+
+def test_away_from_everything_the_wish_is_followed_to_the_bit():
+    driver = above(ball(0.08, 4), (0.5, 0.0, 0.2), height=0.1)
+    wishes = []
+
+    def to_joints(displacement):
+        wishes.append(displacement)
+        return driver.moved.q
+
+    wish = (1e-4, -2e-4, 3e-4)
+    driver.contact.move(driver.moved.q, wish, to_joints)
+    np.testing.assert_allclose(wishes, [wish], rtol=0, atol=1e-15)
+
+
+def test_the_same_pushes_give_the_same_joints_to_the_last_bit(head):
+    def played(collision):
+        random = np.random.default_rng(42)
+        q, direction = next(approaches(head, [*head.hollows(50)], random))
+        driver = Driver(collision, q)
+        joints = []
+        for _ in range(120):
+            push = direction + 0.6 * random.normal(size=3)
+            driver.push(push * 0.4 * TICK)
+            joints.append(driver.moved.q)
+        return joints
+
+    first = played(head.collision)
+    assert played(head.collision) == first
+    q = posture((0.5, 0.1, 0.45), DOWN)
+    head.collision.check(KINEMATICS.links(q))
+    assert played(head.collision) == first
