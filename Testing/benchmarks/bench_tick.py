@@ -1,0 +1,199 @@
+"""One whole tick of the simulation, and how punctual 250 of them a second are in the server."""
+
+from __future__ import annotations
+
+import dataclasses
+import gc
+import json
+import os
+import socket
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.head_mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.igtl.client import Client
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device, check_arguments
+from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
+from rastrainer_simulator.setup import SimulationSetup, load_setup
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.state import Motion
+from Testing.end_to_end.simulator_process import SimulatorProcess
+
+DT = 0.004
+SEED = 7
+ON_TIME_S = 600.0
+QUICK_S = 20.0
+GOOD_CLIENTS = 3
+ABOVE = np.array([0.0, 0.0, 165.0])
+
+
+def rows(quick: bool) -> list[dict]:
+    """Return the rows `tick.60k`, `tick.200k` and `loop.on_time`."""
+    runs = 1 if quick else 5
+    setup = load_setup()
+    with tempfile.TemporaryDirectory() as folder:
+        fine = _with_finer_head(setup, Path(folder) / "head.ply")
+        ticks = {"tick.60k": _tick_times(setup, runs), "tick.200k": _tick_times(fine, runs)}
+    times = [_row(name, 1e3 * seconds, "ms", 1.0, seconds.size) for name, seconds in ticks.items()]
+    return [*times, _on_time(QUICK_S if quick else ON_TIME_S)]
+
+
+def _row(name: str, values: np.ndarray, unit: str, success: float, n: int) -> dict:
+    return {
+        "name": name,
+        "median": float(np.median(values)),
+        "p99": float(np.percentile(values, 99)),
+        "unit": unit,
+        "peer": None,
+        "peer_median": None,
+        "peer_p99": None,
+        "success": success,
+        "n": n,
+    }
+
+
+def _with_finer_head(setup: SimulationSetup, path: Path) -> SimulationSetup:
+    """Return the setup with each triangle of the head cut into four."""
+    mesh = read_head_mesh(setup.scenario.head_mesh)
+    edges = np.sort(mesh.sides, axis=1)
+    unique, index = np.unique(edges, axis=0, return_inverse=True)
+    ab, bc, ca = len(mesh.vertices) + index.reshape(3, -1)
+    a, b, c = mesh.triangles.T
+    triangles = np.concatenate(
+        [np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    )
+    vertices = np.concatenate([mesh.vertices, mesh.vertices[unique].mean(axis=1)])
+    write_head_mesh(path, HeadMesh(vertices, triangles))
+    return dataclasses.replace(setup, scenario=dataclasses.replace(setup.scenario, head_mesh=path))
+
+
+def _tick_times(setup: SimulationSetup, runs: int) -> np.ndarray:
+    """Return the time of each tick in s: a tour of a task's fiducials, pressing on the skin."""
+    simulation = Simulation(setup, SEED)
+    gc.collect()
+    gc.freeze()
+    try:
+        return np.concatenate([_tour(simulation) for _ in range(runs)])
+    finally:
+        gc.unfreeze()
+
+
+def _tour(simulation: Simulation) -> np.ndarray:
+    times: list[float] = []
+
+    def step(operator_input: OperatorInput) -> None:
+        begin = time.perf_counter()
+        simulation.step(DT, operator_input)
+        times.append(time.perf_counter() - begin)
+
+    def do(command: str, **arguments: object) -> None:
+        checked = check_arguments(command, arguments)
+        step(OperatorInput(commands=(Command(command, checked),)))
+
+    def move_to(position: np.ndarray) -> None:
+        do(CommandName.MOVE_TIP_TO, positionMm=position.tolist(), speedMmS=250.0)
+        while simulation.state.motion is not Motion.NONE:
+            step(HANDS_OFF)
+
+    random = np.random.default_rng(SEED)
+    do(CommandName.START_TASK, task="task-3", trainee="bench", seed=SEED)
+    truth = simulation.truth
+    center = truth.in_world(truth.target)
+    for label in truth.fiducials:
+        fiducial = truth.in_world(truth.fiducials[label])
+        outside = fiducial + 70.0 * (fiducial - center) / np.linalg.norm(fiducial - center)
+        move_to(outside)
+        move_to(fiducial)
+        for _ in range(10):
+            stick = OperatorInput(translation=tuple(random.uniform(-1.0, 1.0, 3).tolist()))
+            for _ in range(15):
+                step(stick)
+        move_to(outside)
+        move_to(center + ABOVE)
+    do(CommandName.ABORT)
+    return np.array(times)
+
+
+def _on_time(duration_s: float) -> dict:
+    """Return the row of the server's loop with five clients and a trial being written.
+
+    Three clients watch and one of them jogs; one never reads, one sends garbage. Median and p99
+    are of each second's share of ticks within 1 ms of their time, `success` is that of all ticks.
+    """
+    with (
+        tempfile.TemporaryDirectory() as records,
+        SimulatorProcess(Path(records)) as simulator,
+        _annoyed(simulator.port),
+        _watched(simulator.port) as jogger,
+    ):
+        jogger.send_command(CommandName.START_TASK, {"task": "task-1", "trainee": "bench"})
+        health = [_health(jogger)]
+        until = time.monotonic() + duration_s
+        while time.monotonic() < until:
+            _jog_for_a_second(jogger)
+            health.append(_health(jogger))
+    ticks, missed = np.diff(np.unique(np.array(health), axis=0), axis=0).T
+    shares = 100.0 * (1.0 - missed / ticks)
+    row = _row("loop.on_time", shares, "%", 1.0 - missed.sum() / ticks.sum(), int(ticks.sum()))
+    return row | {"p99": float(np.percentile(shares, 1))}
+
+
+def _health(client: Client) -> tuple[int, int]:
+    """Return the ticks that were due so far, and how many were late or skipped."""
+    beat = json.loads(client.wait_for(Device.SIM_SERVER).content.message)
+    missed = beat["lateTicks"] + beat["skippedTicks"]
+    return beat["ticks"] + beat["skippedTicks"], missed
+
+
+def _jog_for_a_second(client: Client) -> None:
+    for number in range(20):
+        velocity = [60.0 * (-1) ** (number // 5), 30.0 * (-1) ** (number // 2), 0.0]
+        client.send_command(CommandName.JOG, {"velocityMmS": velocity, "durationS": 0.06})
+        time.sleep(0.05)
+
+
+@contextmanager
+def _watched(port: int) -> Iterator[Client]:
+    clients = [Client(port=port) for _ in range(GOOD_CLIENTS)]
+    try:
+        for client in clients:
+            hello = {"protocolVersion": PROTOCOL_VERSION, "client": "bench"}
+            client.send_command(CommandName.HELLO, hello)
+        yield clients[0]
+    finally:
+        for client in clients:
+            client.close()
+
+
+@contextmanager
+def _annoyed(port: int) -> Iterator[None]:
+    """Keep a client that never reads and one that sends garbage, each back as soon as dropped."""
+    is_over = threading.Event()
+
+    def never_read() -> None:
+        while not is_over.is_set():
+            with suppress(OSError), socket.create_connection(("127.0.0.1", port)) as peer:
+                while not is_over.wait(1.0):
+                    peer.sendall(b"")
+
+    def send_garbage() -> None:
+        while not is_over.is_set():
+            with suppress(OSError), socket.create_connection(("127.0.0.1", port)) as peer:
+                while not is_over.wait(0.05):
+                    peer.sendall(os.urandom(2000))
+
+    threads = [threading.Thread(target=target) for target in (never_read, send_garbage)]
+    for thread in threads:
+        thread.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        for thread in threads:
+            thread.join()
