@@ -89,10 +89,11 @@ def turned_toward(direction: Vector, goal: Vector, most: float) -> Vector:
         return goal
     axis = cross(direction, goal)
     if length(axis) < 1e-12:
-        axis = _any_perpendicular(direction)
+        axis = any_perpendicular(direction)
     return unit(rotated(direction, unit(axis), most))
 
 
-def _any_perpendicular(direction: Vector) -> Vector:
+def any_perpendicular(direction: Vector) -> Vector:
+    """Return a unit vector perpendicular to `direction`."""
     smallest = min(range(3), key=lambda i: abs(direction[i]))
-    return cross(direction, tuple(1.0 if i == smallest else 0.0 for i in range(3)))
+    return unit(cross(direction, tuple(1.0 if i == smallest else 0.0 for i in range(3))))

@@ -56,10 +56,7 @@ def joint_angles(
         elbow * (ux * fy - uy * fx),
     )
     s4 = sqrt(ex * ex + ey * ey + ez * ez)
-    if s4 > _STRAIGHT:
-        t3 = atan2(elbow * (px * fx + py * fy), px * ex + py * ey)
-    else:
-        t3 = last[2]
+    t3 = atan2(elbow * (px * fx + py * fy), px * ex + py * ey) if s4 > _STRAIGHT else last[2]
     if s4 < _NEARLY_STRAIGHT:
         ex, ey, ez = _turned((px, py, 0.0), upper, t3)
     wx, wy, wz = (
@@ -153,11 +150,13 @@ def fit(angle: float, last: float, limits: tuple[float, float]) -> float | None:
     """Return `angle`, by whole turns as near to `last` as the limits allow, or None."""
     lower, upper = limits
     angle = last + remainder(angle - last, TURN)
-    if angle < lower:
-        angle = lower if angle > lower - _SLACK else angle + TURN
-    elif angle > upper:
-        angle = upper if angle < upper + _SLACK else angle - TURN
-    return angle if lower <= angle <= upper else None
+    if angle < lower - _SLACK:
+        angle += TURN
+    elif angle > upper + _SLACK:
+        angle -= TURN
+    if lower - _SLACK <= angle <= upper + _SLACK:
+        return min(max(angle, lower), upper)
+    return None
 
 
 def _turned(a: Vector, axis: Vector, angle: float) -> Vector:

@@ -14,10 +14,12 @@ from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import TURN, Roll
 from rastrainer_simulator.robot.canonical_arm import CanonicalArm
-from rastrainer_simulator.vectors import Vector, cross, dot, scale
+from rastrainer_simulator.vectors import Vector, any_perpendicular, cross, dot, scale
 
 # Cosines may pass their bounds by rounding.
 _SLACK = 1e-13
+_TINY = 1e-15
+_ROUNDING = 1e-15
 
 # a cos φ + b sin φ + c
 Wave = tuple[float, float, float]
@@ -55,14 +57,18 @@ def elbow_circle(arm: CanonicalArm, wrist: Vector, guess: Vector) -> ElbowCircle
     gx, gy, gz = guess
     upper = arm.upper
     square = wx * wx + wy * wy + wz * wz
-    distance = sqrt(square)
+    distance = sqrt(square) or _TINY
     wx, wy, wz = wx / distance, wy / distance, wz / distance
     # Law of cosines: how far along the line to the wrist the circle's center is.
     along = (upper * upper - arm.fore * arm.fore + square) / (2.0 * distance)
     part = gx * wx + gy * wy + gz * wz
     gx, gy, gz = gx - part * wx, gy - part * wy, gz - part * wz
     size = sqrt(gx * gx + gy * gy + gz * gz)
-    factor = sqrt(max(0.0, upper * upper - along * along)) / size if size > 0.0 else 0.0
+    if size < _TINY:
+        (gx, gy, gz), size = any_perpendicular((wx, wy, wz)), 1.0
+    square = upper * upper - along * along
+    # A radius that rounding alone could make is that of a stretched arm: it has no direction.
+    factor = sqrt(square) / size if square > _ROUNDING * upper * upper else 0.0
     return ElbowCircle(
         (along * wx, along * wy, along * wz),
         (factor * gx, factor * gy, factor * gz),
@@ -101,13 +107,18 @@ def elbows_at_limits(
     arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector, roll: Roll
 ) -> Iterator[Vector]:
     """Yield the elbows where a tilt or pan is at a limit, those nearest to φ = 0 first."""
-    waves = _tilt_waves(arm, circle, wrist, tool)
-    pans = _pan_waves(arm, circle, wrist, tool, roll)
-    for joint, (sine, cosine) in pans.items():
+    out = dot(wrist, tool)
+    up, back = circle.wave((0.0, 0.0, 1.0), 0.0), circle.wave(scale(tool, -1.0), out)
+    waves = []
+    # A tilt's limits differ from its range where the two branches have different ones.
+    for joint, cosine, length in ((1, up, arm.upper), (5, back, arm.fore)):
+        a, b, c = cosine
+        waves += [(a, b, c - length * cos(limit)) for limit in arm.limits[joint]]
+    for joint, (sine, cosine) in _pan_waves(arm, circle, wrist, tool, roll).items():
         for limit in arm.limits[joint]:
             # tan θ = sine / cosine: at the limit the two are as sin and cos of it, up to a sign.
             c, s = cos(limit), sin(limit)
-            waves.append(tuple(a * c - b * s for a, b in zip(sine, cosine, strict=True)))
+            waves.append(tuple([a * c - b * s for a, b in zip(sine, cosine, strict=True)]))
     for angle in _nearest_first(waves):
         yield circle.at(angle)
 

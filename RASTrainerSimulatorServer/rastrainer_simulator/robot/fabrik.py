@@ -12,53 +12,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import inf
-from typing import NamedTuple
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.robot.arm_frame import ArmFrame
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, chain
 from rastrainer_simulator.robot.goal import Goal
+from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.robot.prediction import predict
 from rastrainer_simulator.robot.reaching import (
-    OUT_OF_REACH,
     Reached,
     Start,
     reach_position,
     reach_wrist,
+)
+from rastrainer_simulator.robot.rounded_arm import solve_rounded
+from rastrainer_simulator.robot.solution import (
+    BLOCKED,
+    OUT_OF_REACH,
+    ROLL_BLOCKED,
+    FabrikSettings,
+    Solution,
 )
 from rastrainer_simulator.vectors import Vector
 
 # A warm start that would move a joint farther than this (rad) looks for an elbow that avoids it.
 _JUMP = 0.5
 _BENT = 1e-6
-
-
-@dataclass(frozen=True)
-class FabrikSettings:
-    """When a solution is good enough, and when the passes give up."""
-
-    tolerance_m: float = 1e-9
-    tolerance_rad: float = 1e-8
-    max_iterations: int = 16
-
-    def __post_init__(self) -> None:
-        """Raise InputError for settings that could never end or never succeed."""
-        if not (self.tolerance_m > 0.0 and self.tolerance_rad > 0.0 and self.max_iterations >= 1):
-            raise InputError("FABRIK needs tolerances above zero and at least one iteration.")
-
-
-class Solution(NamedTuple):
-    """Joint angles (rad), and how far from the target they hold the tool."""
-
-    q: tuple[float, ...]
-    position_error_m: float
-    direction_error_rad: float
-    converged: bool
-    iterations: int
-    reason: str
+# What the arithmetic of an exact S-R-S arm leaves over, m.
+_ROUNDING = 1e-12
 
 
 class Fabrik:
@@ -68,6 +51,8 @@ class Fabrik:
         self.settings = settings or FabrikSettings()
         self._frame = ArmFrame(model.geometry)
         self._arm = CanonicalArm.of(model.geometry)
+        exact = model.geometry.misfit < _ROUNDING
+        self._true = None if exact else make_kinematics(model)
 
     def solve(
         self,
@@ -84,12 +69,28 @@ class Fabrik:
         shall be turned; with neither, only the position counts. Of all postures that do it, one
         near to `q_start` (7,) rad is chosen. Raises InputError for numbers that are no target.
         """
-        goal = self._goal(target_position, target_direction, target_rotation)
+        target = (target_position, target_direction, target_rotation, q_start)
+        if self._true:
+            return solve_rounded(self._solve, self._true, self.settings, *target)
+        return self._solve(*target)
+
+    def _solve(
+        self,
+        position: Sequence[float],
+        direction: Sequence[float] | None,
+        rotation: Sequence[Sequence[float]] | None,
+        q_start: Sequence[float],
+    ) -> Solution:
+        goal = self._goal(position, direction, rotation)
+        aim = goal.within_lengths(self._arm)
         start = self._frame.theta(q_start)
         links = chain(start)
-        near = predict(self._arm, start, links, goal)
-        reached = self._reach(goal, *near, _JUMP) if near else self._reach(goal, start, links, inf)
-        return self._solution(goal, *reached)
+        near = predict(self._arm, start, links, aim)
+        if near:
+            reached = self._reach(goal, aim, *near, _JUMP)
+        else:
+            reached = self._reach(goal, aim, start, links, inf)
+        return self._solution(goal, reached)
 
     def _goal(
         self,
@@ -107,18 +108,25 @@ class Fabrik:
         x, y, tool = self._frame.rotation(rotation)
         return Goal(target, tool, (x, y))
 
-    def _solution(self, goal: Goal, theta: Angles, iterations: int, reason: str) -> Solution:
+    def _solution(self, goal: Goal, reached: Reached) -> Solution:
+        theta, passes, blocked = reached
         off, turned = goal.errors(self._arm, theta, chain(theta))
-        converged = off <= self.settings.tolerance_m and turned <= self.settings.tolerance_rad
-        reason = "" if converged else reason or OUT_OF_REACH
-        return Solution(self._frame.q(theta), off, turned, converged, iterations, reason)
+        converged = self.settings.met(off, turned)
+        if converged:
+            reason = ""
+        elif blocked:
+            reason = BLOCKED
+        else:
+            reason = OUT_OF_REACH if off > self.settings.tolerance_m else ROLL_BLOCKED
+        return Solution(self._frame.q(theta), off, turned, converged, passes, reason)
 
-    def _reach(self, goal: Goal, theta: Angles, links: Chain, farthest: float) -> Reached:
+    def _reach(
+        self, goal: Goal, aim: Goal, theta: Angles, links: Chain, farthest: float
+    ) -> Reached:
         start = Start(theta, *self._wrist_and_elbow(theta, links), farthest)
         most = self.settings.max_iterations
-        if goal.tool is None:
-            return reach_position(self._arm, goal.position, start, most)
-        return reach_wrist(self._arm, goal, start, most)
+        reach = reach_position if goal.tool is None else reach_wrist
+        return reach(self._arm, goal, aim, start, most)
 
     def _wrist_and_elbow(self, theta: Angles, links: Chain) -> tuple[Vector, Vector]:
         a, b = self._arm.upper, self._arm.fore

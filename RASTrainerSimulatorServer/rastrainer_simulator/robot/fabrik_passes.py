@@ -12,11 +12,12 @@ from __future__ import annotations
 from math import sqrt
 
 from rastrainer_simulator.robot.canonical_arm import CanonicalArm
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, any_perpendicular
 
 _SHOULDER = (0.0, 0.0, 0.0)
 _UP = (0.0, 0.0, 1.0)
 _TINY = 1e-12
+_ROUNDING = 1e-15
 
 
 def backward(
@@ -72,12 +73,16 @@ def _at_distance(
     ax, ay, az = px / reach, py / reach, pz / reach
     along = (reach * reach + distance * distance - arm.tool * arm.tool) / (2.0 * reach)
     square = distance * distance - along * along
-    if square < 0.0:
+    if square < -_ROUNDING:
         return None
+    # What rounding alone could leave of it has no direction.
+    square = square if square > _ROUNDING else 0.0
     part = wrist[0] * ax + wrist[1] * ay + wrist[2] * az
     bx, by, bz = wrist[0] - part * ax, wrist[1] - part * ay, wrist[2] - part * az
     size = sqrt(bx * bx + by * by + bz * bz)
-    beside = sqrt(square) / size if size > _TINY else 0.0
+    if size < _TINY:
+        (bx, by, bz), size = any_perpendicular((ax, ay, az)), 1.0
+    beside = sqrt(square) / size
     wx, wy, wz = along * ax + beside * bx, along * ay + beside * by, along * az + beside * bz
     return (wx, wy, wz), _toward((wx, wy, wz), target)
 
@@ -107,5 +112,7 @@ def _inside(direction: Vector, axis: Vector, cosines: tuple[float, float]) -> Ve
     y = direction[1] - cosine * axis[1]
     z = direction[2] - cosine * axis[2]
     size = sqrt(x * x + y * y + z * z)
-    sine = sqrt(max(0.0, 1.0 - bound * bound)) / size if size > _TINY else 0.0
+    if size < _TINY:
+        (x, y, z), size = any_perpendicular(axis), 1.0
+    sine = sqrt(max(0.0, 1.0 - bound * bound)) / size
     return (bound * axis[0] + sine * x, bound * axis[1] + sine * y, bound * axis[2] + sine * z)

@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import Roll
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain
-from rastrainer_simulator.vectors import Vector, add, cross, dot, length, scale
+from rastrainer_simulator.vectors import Vector, add, cross, dot, length, scale, subtract
+
+_TINY = 1e-12
 
 
 class Goal(NamedTuple):
@@ -16,6 +18,25 @@ class Goal(NamedTuple):
     position: Vector
     tool: Vector | None
     roll: Roll
+
+    def wrist(self, arm: CanonicalArm) -> Vector:
+        """Return where a wrist has to be that holds the tool's direction, m."""
+        return subtract(self.position, scale(self.tool, arm.tool))
+
+    def within_lengths(self, arm: CanonicalArm) -> Goal:
+        """Return the nearest goal that the lengths of the links and the elbow's tilt allow."""
+        if self.tool is None:
+            far = length(self.position)
+            return self if far <= arm.reach else self._moved(scale(self.position, arm.reach / far))
+        wrist = self.wrist(arm)
+        far = length(wrist)
+        if arm.nearest <= far <= arm.farthest or far < _TINY:
+            return self
+        held = scale(wrist, (arm.nearest if far < arm.nearest else arm.farthest) / far)
+        return self._moved(add(held, scale(self.tool, arm.tool)))
+
+    def _moved(self, position: Vector) -> Goal:
+        return Goal(position, self.tool, self.roll)
 
     def errors(self, arm: CanonicalArm, theta: Angles, links: Chain) -> tuple[float, float]:
         """Return how far θ, whose chain is `links`, is from the goal: m and rad."""

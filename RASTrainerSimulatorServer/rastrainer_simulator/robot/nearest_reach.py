@@ -9,15 +9,36 @@ its range or free; where one is free, it lies on that line. There are few such p
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
-from math import atan2, cos, dist, hypot, pi, remainder, sin
+from functools import lru_cache
+from itertools import accumulate, pairwise, product
+from math import atan2, cos, hypot, pi, remainder, sin
+from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import TURN
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, tilt_range
 from rastrainer_simulator.vectors import Vector
 
 _SLACK = 1e-12
+# Beside and above the shoulder, m.
 Point = tuple[float, float]
+# Each link's angle from the first axis, rad.
+Posture = tuple[float, ...]
+
+
+class RigidPart(NamedTuple):
+    """The links from one free joint to the next: their angles, and the line between the joints."""
+
+    angles: Posture
+    chord: float
+    chord_angle: float
+
+
+class Plan(NamedTuple):
+    """The fixed links before the first free joint, and the rigid parts from there on."""
+
+    fixed: Posture
+    start: Point
+    parts: tuple[RigidPart, ...]
 
 
 def nearest_links(arm: CanonicalArm, target: Vector, last: Angles) -> list[Vector]:
@@ -29,72 +50,73 @@ def nearest_links(arm: CanonicalArm, target: Vector, last: Angles) -> list[Vecto
     x, y, z = target
     beside = hypot(x, y)
     pan = atan2(y, x) if beside > 1e-9 else last[0]
-    lengths = (arm.upper, arm.fore, arm.tool)
-    tilts = [tilt_range(*arm.limits[joint]) for joint in (1, 3, 5)]
-    straight = atan2(beside, z)
-    if hypot(beside, z) >= sum(lengths) and _allowed((straight,) * 3, tilts):
-        best = (straight,) * 3
-    else:
-        best = min(
-            _postures(lengths, tilts, (beside, z)),
-            key=lambda posture: dist(_end(lengths, posture), (beside, z)),
-        )
+    plans = _plans(arm)
+    # Nothing gets nearer to what is too far away than the stretched arm: every joint free.
+    posture = _posture(plans[0], (1, 1, 1), beside, z)
+    if hypot(beside, z) < arm.reach or not _allowed(arm, posture):
+        candidates = []
+        for number, plan in enumerate(plans):
+            candidates += [(off, number, signs) for off, signs in _distances(plan, beside, z)]
+        postures = (_posture(plans[n], signs, beside, z) for _, n, signs in sorted(candidates))
+        posture = next(posture for posture in postures if _allowed(arm, posture))
     c, s = cos(pan), sin(pan)
-    return [(c * sin(angle), s * sin(angle), cos(angle)) for angle in best]
+    return [(c * sin(angle), s * sin(angle), cos(angle)) for angle in posture]
 
 
-def _postures(
-    lengths: tuple[float, ...], tilts: list[tuple[float, float]], target: Point
-) -> Iterator[tuple[float, ...]]:
-    """Yield the allowed postures in question: each link's angle from the vertical."""
-    ends = [{-largest, -smallest, smallest, largest} - {0.0, -0.0} for smallest, largest in tilts]
-    for choice in product(*[(None, *sorted(values)) for values in ends]):
+@lru_cache(maxsize=8)
+def _plans(arm: CanonicalArm) -> tuple[Plan, ...]:
+    """Return a plan for every choice of free joints and of ends for the others."""
+    lengths = (arm.upper, arm.fore, arm.tool)
+    ends = []
+    for joint in (1, 3, 5):
+        smallest, largest = tilt_range(*arm.limits[joint])
+        ends.append((None, *sorted({-largest, -smallest, smallest, largest} - {0.0})))
+    plans = []
+    for choice in product(*ends):
         free = [joint for joint, tilt in enumerate(choice) if tilt is None]
-        for signs in product((0.0, pi), repeat=len(free)):
-            posture = _aimed(lengths, choice, dict(zip(free, signs, strict=True)), target)
-            if _allowed(posture, tilts):
-                yield posture
+        fixed = tuple(accumulate(choice[: free[0]] if free else choice))
+        parts = []
+        for first, after in pairwise([*free, 3]):
+            angles = tuple(accumulate(choice[first + 1 : after], initial=0.0))
+            across, along = _end(lengths[first:after], angles)
+            parts.append(RigidPart(angles, hypot(across, along), atan2(across, along)))
+        plans.append(Plan(fixed, _end(lengths, fixed), tuple(parts)))
+    return tuple(plans)
 
 
-def _aimed(
-    lengths: tuple[float, ...],
-    choice: tuple[float | None, ...],
-    reversed_by: dict[int, float],
-    target: Point,
-) -> tuple[float, ...]:
-    """Return the posture with the tilts of `choice` and the free joints in line with `target`.
+def _distances(plan: Plan, beside: float, above: float) -> Iterator[tuple[float, tuple[int, ...]]]:
+    """Yield how near the tip gets with the chords pointing to the target (1) or away (−1).
 
-    From one free joint to the next the arm is rigid; its chord points to the target, or away.
+    From each free joint the tip has to be on the target's side: turned by π it would be nearer.
     """
-    posture: list[float] = []
-    aim = None
-    for joint, tilt in enumerate(choice):
-        before = posture[-1] if posture else 0.0
-        if tilt is not None:
-            posture.append(before + tilt)
-            continue
-        if aim is None:
-            start = _end(lengths, posture)
-            aim = atan2(target[0] - start[0], target[1] - start[1])
-        rigid = [0.0]
-        for following in choice[joint + 1 :]:
-            if following is None:
-                break
-            rigid.append(rigid[-1] + following)
-        chord = _end(lengths[joint:], rigid)
-        posture.append(aim + reversed_by[joint] - atan2(*chord))
+    distance = hypot(beside - plan.start[0], above - plan.start[1])
+    for signs in product((1, -1), repeat=len(plan.parts)):
+        joints = [0.0]
+        for sign, part in zip(signs, plan.parts, strict=True):
+            joints.append(joints[-1] + sign * part.chord)
+        tip = joints.pop()
+        if all((tip - joint) * (distance - joint) >= 0.0 for joint in joints):
+            yield abs(distance - tip), signs
+
+
+def _posture(plan: Plan, signs: tuple[int, ...], beside: float, above: float) -> Posture:
+    aim = atan2(beside - plan.start[0], above - plan.start[1])
+    posture = list(plan.fixed)
+    for sign, part in zip(signs, plan.parts, strict=True):
+        first = (aim if sign > 0 else aim + pi) - part.chord_angle
+        posture += [first + angle for angle in part.angles]
     return tuple(posture)
 
 
-def _end(lengths: tuple[float, ...], posture: list[float] | tuple[float, ...]) -> Point:
-    """Return the end of the links whose angles are given: beside and above the start."""
+def _end(lengths: tuple[float, ...], posture: Posture) -> Point:
     pairs = list(zip(lengths, posture, strict=False))
     return sum(a * sin(angle) for a, angle in pairs), sum(a * cos(angle) for a, angle in pairs)
 
 
-def _allowed(posture: tuple[float, ...], tilts: list[tuple[float, float]]) -> bool:
+def _allowed(arm: CanonicalArm, posture: Posture) -> bool:
     before = 0.0
-    for angle, (smallest, largest) in zip(posture, tilts, strict=True):
+    for angle, joint in zip(posture, (1, 3, 5), strict=True):
+        smallest, largest = tilt_range(*arm.limits[joint])
         if not smallest - _SLACK <= abs(remainder(angle - before, TURN)) <= largest + _SLACK:
             return False
         before = angle

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import atan2, cos, hypot, inf, remainder, sin, sqrt
+from math import atan2, inf, remainder
 from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import TURN, fit, joint_angles, nearest_branch
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, chain, tilt_range
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, chain
 from rastrainer_simulator.robot.closure import close
 from rastrainer_simulator.robot.fabrik_passes import backward, forward, settle
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.nearest_reach import nearest_links
-from rastrainer_simulator.vectors import Vector, dot, length, scale, subtract
-
-OUT_OF_REACH = "The target is out of reach; the tool is as near to it as the arm gets."
-ROLL_BLOCKED = (
-    "The joint limits do not allow this roll of the tool there; it is as near as it gets."
-)
-BLOCKED = "No posture inside the joint limits holds the tool like that; the arm stays where it is."
-
-_SLACK = 1e-12
+from rastrainer_simulator.robot.restarts import planar_starts
+from rastrainer_simulator.vectors import Vector, dot
 
 
 class Start(NamedTuple):
@@ -33,53 +25,52 @@ class Start(NamedTuple):
 
 
 class Reached(NamedTuple):
-    """Joint angles, the passes that they took, and what was wrong with the goal, if anything."""
+    """Joint angles, the passes that they took, and whether the limits allowed no better ones."""
 
     theta: Angles
     passes: int
-    reason: str
+    blocked: bool = False
 
 
-def reach_position(arm: CanonicalArm, target: Vector, start: Start, most: int) -> Reached:
-    """Bring the tip to a target (m), the tool's direction being free."""
-    passes = 0
-    x, y, z = target
-    if x * x + y * y + z * z <= arm.reach * arm.reach:
-        theta, passes = _iterate(arm, target, start, most)
-        if theta is not None:
-            return Reached(theta, passes, "")
-        for wrist, elbow in _planar_starts(arm, target, start.theta):
-            again = Start(start.theta, wrist, elbow, inf)
-            theta, used = _iterate(arm, target, again, 1)
-            passes += used
-            if theta is not None:
-                return Reached(theta, passes, "")
-    upper, fore, tool = nearest_links(arm, target, start.theta)
-    angles = joint_angles(upper, fore, tool, None, start.theta)
-    theta = nearest_branch(arm, angles, start.theta, False)
-    return Reached(theta, passes, OUT_OF_REACH) if theta else Reached(start.theta, passes, BLOCKED)
+def reach_position(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Reached:
+    """Bring the tip to a goal, or as near as it gets, the tool's direction being free.
 
-
-def reach_wrist(arm: CanonicalArm, goal: Goal, start: Start, most: int) -> Reached:
-    """Bring the tip to the goal's position with the goal's direction, and its roll where given."""
-    wrist = subtract(goal.position, scale(goal.tool, arm.tool))
-    distance = length(wrist)
-    held = min(max(distance, arm.nearest), arm.farthest)
-    reason = "" if abs(held - distance) <= _SLACK else OUT_OF_REACH
-    if reason and distance > _SLACK:
-        wrist = scale(wrist, held / distance)
-    theta = close(arm, wrist, goal.tool, goal.roll, start.elbow, start.theta, start.farthest)
+    `aim` is the goal, moved to where the arm's lengths allow it.
+    """
+    target = aim.position
+    theta, passes = _iterate(arm, target, start, most)
     if theta is not None:
-        return Reached(theta, 1, reason)
-    if goal.roll:
-        theta = close(arm, wrist, goal.tool, None, start.elbow, start.theta)
+        return Reached(theta, passes)
+    for wrist, elbow in planar_starts(arm, target, start.theta):
+        theta, used = _iterate(arm, target, Start(start.theta, wrist, elbow, inf), 1)
+        passes += used
         if theta is not None:
-            return Reached(_rolled(arm, theta, goal), 1, reason or ROLL_BLOCKED)
-    wrist, elbow = settle(arm, wrist, start.elbow, goal.tool, most)
-    theta = close(arm, wrist, goal.tool, None, elbow, start.theta)
+            return Reached(theta, passes)
+    angles = joint_angles(*nearest_links(arm, goal.position, start.theta), None, start.theta)
+    theta = nearest_branch(arm, angles, start.theta, False)
+    return Reached(theta, passes) if theta else Reached(start.theta, passes, True)
+
+
+def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Reached:
+    """Bring the tip to a goal with the tool's direction, and its roll where given.
+
+    `aim` is as in `reach_position`. Where the limits do not allow it, the roll is given up first,
+    then the position.
+    """
+    wrist, tool = aim.wrist(arm), goal.tool
+    theta = close(arm, wrist, tool, goal.roll, start.elbow, start.theta, start.farthest)
+    if theta is not None:
+        return Reached(theta, 1)
+    passes = 1
+    if goal.roll:
+        theta = close(arm, wrist, tool, None, start.elbow, start.theta)
     if theta is None:
-        return Reached(start.theta, most, BLOCKED)
-    return Reached(_rolled(arm, theta, goal) if goal.roll else theta, most, OUT_OF_REACH)
+        passes += most
+        wrist, elbow = settle(arm, goal.wrist(arm), start.elbow, tool, most)
+        theta = close(arm, wrist, tool, None, elbow, start.theta)
+    if theta is None:
+        return Reached(start.theta, passes, True)
+    return Reached(_rolled(arm, theta, goal) if goal.roll else theta, passes)
 
 
 def _iterate(
@@ -96,34 +87,6 @@ def _iterate(
             return theta, passes
         wrist, elbow = forward(arm, wrist, elbow)
     return None, most
-
-
-def _planar_starts(
-    arm: CanonicalArm, target: Vector, last: Angles
-) -> Iterator[tuple[Vector, Vector]]:
-    """Yield wrists and elbows in the plane of the target and the first axis.
-
-    Near the edge of its reach the arm lies almost in that plane, where passes from elsewhere
-    converge slowly.
-    """
-    x, y, z = target
-    beside = hypot(x, y)
-    pan = atan2(y, x) if beside > _SLACK else last[0]
-    c, s = cos(pan), sin(pan)
-    largest = tilt_range(*arm.limits[1])[1]
-    for part in (1.0, -1.0, 0.6, -0.6, 0.2, -0.2):
-        tilt = part * largest
-        r, h = arm.upper * sin(tilt), arm.upper * cos(tilt)
-        along_r, along_h = beside - r, z - h
-        square = along_r * along_r + along_h * along_h
-        part_along = (square + arm.fore**2 - arm.tool**2) / (2.0 * square)
-        across = arm.fore**2 / square - part_along**2
-        if across < 0.0:
-            continue
-        for side in (sqrt(across), -sqrt(across)):
-            wrist_r = r + part_along * along_r + side * along_h
-            wrist_h = h + part_along * along_h - side * along_r
-            yield (c * wrist_r, s * wrist_r, wrist_h), (c * r, s * r, h)
 
 
 def _rolled(arm: CanonicalArm, theta: Angles, goal: Goal) -> Angles:

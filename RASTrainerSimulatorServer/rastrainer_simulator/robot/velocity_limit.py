@@ -16,7 +16,7 @@ class LimitedStep(NamedTuple):
 def limit_step(
     q: Sequence[float], goal: Sequence[float], velocity: Sequence[float], dt: float
 ) -> LimitedStep:
-    """Return the step from `q` toward `goal` (rad) that no joint's `velocity` (rad/s) forbids in `dt`.
+    """Return the step from `q` toward `goal` (rad) within `velocity` (rad/s) for a tick of `dt` s.
 
     All joints are slowed alike, so they arrive together and each keeps between its start and goal.
     """

@@ -1,0 +1,254 @@
+"""FABRIK's answers, checked by Pinocchio."""
+
+import math
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.robot.solution import FabrikSettings
+
+MODES = ("position", "direction", "pose")
+SHOULDER = np.array([0.0, 0.0, 0.34])
+REACH = 1.126
+UPPER, FORE, TOOL = 0.4, 0.4, 0.326
+
+
+class Truth:
+    """Pinocchio's own reading of the URDF."""
+
+    def __init__(self):
+        self.model = pin.buildModelFromUrdf(str(asset_path("robots", "iiwa7", "iiwa7.urdf")))
+        self.data = self.model.createData()
+        self.frame = self.model.getFrameId("iiwa_tool_tip_ee")
+
+    def tip(self, q):
+        pin.forwardKinematics(self.model, self.data, np.asarray(q, float))
+        return pin.updateFramePlacement(self.model, self.data, self.frame).homogeneous
+
+    def postures(self, count, seed):
+        random = np.random.default_rng(seed)
+        low, high = self.model.lowerPositionLimit, self.model.upperPositionLimit
+        return random.uniform(low, high, (count, 7))
+
+    def inside(self, q):
+        return np.all(self.model.lowerPositionLimit <= q) and np.all(
+            q <= self.model.upperPositionLimit
+        )
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return Truth()
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return load_robot()
+
+
+@pytest.fixture(scope="module")
+def fabrik(robot):
+    return Fabrik(robot)
+
+
+def target(tip, mode):
+    """Return what `solve` is asked for in a mode."""
+    direction = tip[:3, 2] if mode == "direction" else None
+    return tip[:3, 3], direction, tip[:3, :3] if mode == "pose" else None
+
+
+def test_2000_seeded_reachable_positions_are_met_within_a_hundredth_of_a_millimeter(
+    fabrik, robot, truth
+):
+    met = 0
+    for q in truth.postures(2000, seed=2):
+        goal = truth.tip(q)[:3, 3]
+        solution = fabrik.solve(goal, q_start=robot.home)
+        error = np.linalg.norm(truth.tip(solution.q)[:3, 3] - goal)
+        met += bool(error <= 1e-5 and truth.inside(solution.q))
+    assert met >= 1998
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("start", ["home", "anywhere"])
+def test_every_reachable_target_is_met_to_a_nanometer_inside_the_limits(
+    fabrik, robot, truth, mode, start
+):
+    starts = truth.postures(2500, seed=4)
+    for q, before in zip(truth.postures(2500, seed=3), starts, strict=True):
+        goal = truth.tip(q)
+        q_start = robot.home if start == "home" else before
+        solution = fabrik.solve(*target(goal, mode), q_start=q_start)
+        reached = truth.tip(solution.q)
+        assert solution.converged
+        assert solution.reason == ""
+        assert truth.inside(solution.q)
+        assert np.linalg.norm(reached[:3, 3] - goal[:3, 3]) <= 1e-9
+        if mode == "direction":
+            np.testing.assert_allclose(reached[:3, 2], goal[:3, 2], atol=1e-9)
+        if mode == "pose":
+            np.testing.assert_allclose(reached[:3, :3], goal[:3, :3], atol=1e-9)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_reported_errors_are_the_true_ones(fabrik, robot, truth, mode):
+    random = np.random.default_rng(5)
+    for q in truth.postures(200, seed=6):
+        goal = truth.tip(q)
+        goal[:3, 3] += random.normal(scale=0.3, size=3)
+        solution = fabrik.solve(*target(goal, mode), q_start=robot.home)
+        reached = truth.tip(solution.q)
+        error = np.linalg.norm(reached[:3, 3] - goal[:3, 3])
+        assert solution.position_error_m == pytest.approx(error, abs=1e-12)
+        assert solution.converged == (solution.reason == "")
+        angle = {
+            "position": 0.0,
+            "direction": np.linalg.norm(np.cross(reached[:3, 2], goal[:3, 2])),
+            "pose": np.linalg.norm(pin.log3(reached[:3, :3].T @ goal[:3, :3])),
+        }[mode]
+        if mode == "direction":
+            angle = math.atan2(angle, reached[:3, 2] @ goal[:3, 2])
+        assert solution.direction_error_rad == pytest.approx(angle, abs=1e-7)
+
+
+def test_the_branch_is_the_one_nearest_to_where_the_arm_was(fabrik, truth):
+    for q in truth.postures(300, seed=7):
+        goal = truth.tip(q)
+        solution = fabrik.solve(*target(goal, "pose"), q_start=q + 1e-3)
+        np.testing.assert_allclose(solution.q, q, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("position", "nearest"),
+    [
+        ([1.5, 0, 0.34], [REACH, 0, 0.34]),
+        ([0, 0, 3.34], [0, 0, 0.34 + REACH]),
+        ([-2.0, 2.0, 0.84], SHOULDER + REACH * np.array([-2, 2, 0.5]) / 8.25**0.5),
+        # Below the shoulder's cone: the upper arm at 120° and the rest straight to the target.
+        ([0.0, 1.0, -1.5], None),
+    ],
+)
+def test_a_target_out_of_reach_is_approached_as_near_as_the_arm_gets(
+    fabrik, robot, truth, position, nearest
+):
+    solution = fabrik.solve(position, q_start=robot.home)
+    assert not solution.converged
+    assert "out of reach" in solution.reason
+    if nearest is None:
+        elbow = SHOULDER + UPPER * np.array([0, math.sin(2 * math.pi / 3), -0.5])
+        along = np.array(position) - elbow
+        nearest = elbow + (FORE + TOOL) * along / np.linalg.norm(along)
+    np.testing.assert_allclose(truth.tip(solution.q)[:3, 3], nearest, atol=1e-9)
+
+
+def test_no_random_posture_is_nearer_to_a_target_out_of_reach(fabrik, robot, truth):
+    tips = np.array([truth.tip(q)[:3, 3] for q in truth.postures(20_000, seed=8)])
+    random = np.random.default_rng(9)
+    refused = 0
+    for position in random.uniform([-1.3, -1.3, -1.2], [1.3, 1.3, 1.8], (150, 3)):
+        solution = fabrik.solve(position, q_start=robot.home)
+        best = np.linalg.norm(tips - position, axis=1).min()
+        assert solution.position_error_m <= best
+        refused += not solution.converged
+    assert refused > 40
+
+
+def test_a_direction_is_kept_while_the_tool_stays_short_of_its_target(fabrik, robot, truth):
+    down = [0.0, 0.0, -1.0]
+    solution = fabrik.solve([0.9, 0.2, 0.3], down, q_start=robot.home)
+    assert "out of reach" in solution.reason
+    assert solution.direction_error_rad <= 1e-9
+    wrist = np.array([0.9, 0.2, 0.3 + TOOL]) - SHOULDER
+    off = np.linalg.norm(wrist) - (UPPER + FORE)
+    assert solution.position_error_m == pytest.approx(off, abs=1e-9)
+    np.testing.assert_allclose(truth.tip(solution.q)[:3, 2], down, atol=1e-9)
+
+
+def test_a_roll_that_the_limits_forbid_is_given_up_but_not_position_and_direction(truth, tmp_path):
+    text = asset_path("robots", "iiwa7", "iiwa7.urdf").read_text(encoding="utf-8")
+    path = tmp_path / "stiff.urdf"
+    path.write_text(text.replace("3.0543261909900767", "0.1"), encoding="utf-8")
+    robot = load_robot(path)
+    fabrik = Fabrik(robot)
+    forbidden = 0
+    for q in truth.postures(100, seed=10):
+        goal = truth.tip(q)
+        solution = fabrik.solve(*target(goal, "pose"), q_start=robot.home)
+        assert abs(solution.q[6]) <= 0.1
+        assert solution.position_error_m <= 1e-9
+        np.testing.assert_allclose(truth.tip(solution.q)[:3, 2], goal[:3, 2], atol=1e-9)
+        if not solution.converged:
+            forbidden += 1
+            assert "roll" in solution.reason
+            assert solution.direction_error_rad > 1e-3
+    assert forbidden > 20
+
+
+@pytest.mark.parametrize(
+    "degrees",
+    [
+        (0, 0, 0, 0, 0, 0, 0),  # straight up: every pan in line
+        (30, 60, 0, 0, 0, 0, 0),  # stretched
+        (0, 0, 40, -90, 0, 60, 0),  # upper arm on the first axis
+        (20, 30, 0, -90, 50, 0, 10),  # tool in line with the forearm
+        (0, 0, 0, -90, 0, 0, 0),
+        (0, -45, 0, -90, 0, 45, 0),  # wrist over the shoulder
+        (170, 120, -170, -120, 170, 120, 175),  # every joint at a limit
+    ],
+)
+@pytest.mark.parametrize("mode", MODES)
+def test_singular_postures_are_held_and_left_without_a_jump(fabrik, truth, mode, degrees):
+    q = np.radians(degrees)
+    goal = truth.tip(q)
+    held = fabrik.solve(*target(goal, mode), q_start=q)
+    assert held.converged
+    np.testing.assert_allclose(held.q, q, atol=1e-6)
+
+
+def test_the_same_question_has_the_same_answer_to_the_last_bit(robot, truth):
+    one, other = Fabrik(robot), Fabrik(load_robot())
+    for q in truth.postures(50, seed=11):
+        other.solve([0.4, 0.1, 0.3], q_start=robot.home)
+        goal = truth.tip(q)[:3, 3]
+        assert one.solve(goal, q_start=robot.home) == other.solve(goal, q_start=robot.home)
+
+
+def test_the_tolerance_and_the_passes_are_settings(robot):
+    loose = Fabrik(robot, FabrikSettings(tolerance_m=0.5, max_iterations=1))
+    solution = loose.solve([1.5, 0, 0.34], q_start=robot.home)
+    assert solution.converged
+    assert solution.position_error_m == pytest.approx(0.374)
+    assert loose.solve([0.5, 0.1, 0.3], q_start=robot.home).iterations == 1
+    for wrong in ({"tolerance_m": 0.0}, {"max_iterations": 0}, {"tolerance_rad": math.nan}):
+        with pytest.raises(InputError, match="above zero"):
+            FabrikSettings(**wrong)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (([0.5, math.nan, 0.3],), "position must be three finite numbers"),
+        (([0.5, 0.1],), "position must be three numbers"),
+        ((["a", "b", "c"],), "position must be three numbers"),
+        (([0.5, 0.1, 0.3], [0, 0, 0]), "direction has no length"),
+        (([0.5, 0.1, 0.3], [0, 0, math.inf]), "direction must be three finite"),
+        (([0.5, 0.1, 0.3], None, np.eye(2)), "rotation must be three"),
+        (([0.5, 0.1, 0.3], None, 2 * np.eye(3)), "perpendicular unit vectors"),
+        (([0.5, 0.1, 0.3], None, np.diag([1, 1, -1])), "perpendicular unit vectors"),
+        (([0.5, 0.1, 0.3], [0, 0, -1], np.eye(3)), "not both"),
+    ],
+)
+def test_what_is_no_target_is_refused_in_one_sentence(fabrik, robot, arguments, sentence):
+    with pytest.raises(InputError, match=sentence):
+        fabrik.solve(*arguments, q_start=robot.home)
+
+
+@pytest.mark.parametrize("q", [[0.0] * 6, [0.0] * 6 + [math.nan]])
+def test_what_is_no_posture_is_refused_in_one_sentence(fabrik, q):
+    with pytest.raises(InputError, match="joint angles"):
+        fabrik.solve([0.5, 0.1, 0.3], q_start=q)
