@@ -33,7 +33,7 @@ format: .venv/installed
 lock: .venv/installed
 	$(BIN)/pip install -q uv
 	$(BIN)/uv pip compile pyproject.toml --extra test $(LOCK) -o requirements.lock
-	$(BIN)/uv pip compile pyproject.toml --extra test --extra bench -c requirements.lock $(LOCK) -o requirements-bench.lock
+	$(BIN)/uv pip compile pyproject.toml --extra bench --constraints requirements.lock $(LOCK) -o requirements-bench.lock
 
 LOCK := --quiet --universal --python-version 3.10 --generate-hashes --no-emit-index-url \
 	--no-annotate --no-header --upgrade

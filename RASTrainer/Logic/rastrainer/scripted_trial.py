@@ -17,6 +17,7 @@ from rastrainer.scenario import Scenario
 from rastrainer.scripted_trainee import Observation, ScriptedTrainee, Skill, seeded_skill
 
 ANSWER_TIMEOUT_S = 10.0
+LONGEST_TRIAL_S = 1800.0
 
 
 class TrialStoppedError(RASTrainerError):
@@ -68,7 +69,9 @@ def play_trial(
     start = {"task": task_name, "trainee": trainee_id, "mode": Mode.DESKTOP.value, "seed": seed}
     trial_id = _send(client, CommandName.START_TASK, start)["trialId"]
     view = _View(client, trial_id, on_progress)
-    while True:
+    observation = view.next_observation()
+    ends_at_s = observation.sim_time_s + LONGEST_TRIAL_S
+    while observation.sim_time_s < ends_at_s:
         observation = view.next_observation()
         action = trainee.decide(observation)
         if action is None:
@@ -81,6 +84,10 @@ def play_trial(
             raise TrialStoppedError(f"{name} was refused: {reply.error}")
         if name == CommandName.REGISTER:
             return PlayedTrial(trial_id, view.state)
+    raise TrialStoppedError(
+        f"{task_name} was not finished in {LONGEST_TRIAL_S:g} s of simulated time: the tip did not "
+        f"get to point {observation.next_point}."
+    )
 
 
 class _View:
