@@ -9,7 +9,7 @@ the line from shoulder to wrist, so their limit is the nearest point of the elbo
 
 from __future__ import annotations
 
-from math import sqrt
+from math import dist, sqrt
 
 from rastrainer_simulator.robot.canonical_arm import CanonicalArm
 from rastrainer_simulator.vectors import Vector, any_perpendicular
@@ -18,6 +18,7 @@ _SHOULDER = (0.0, 0.0, 0.0)
 _UP = (0.0, 0.0, 1.0)
 _TINY = 1e-12
 _ROUNDING = 1e-15
+_SETTLED = 1e-6
 
 
 def backward(
@@ -54,11 +55,13 @@ def settle(
     """
     wanted = wrist
     for _ in range(passes):
+        before = wrist
         fore = _inside(_toward(elbow, wanted), tool, arm.wrist_cosines)
-        ex, ey, ez = _minus(wanted, arm.fore, fore)
-        wrist, elbow = forward(arm, wanted, (ex, ey, ez))
+        wrist, elbow = forward(arm, wanted, _minus(wanted, arm.fore, fore))
         fore = _inside(_toward(elbow, wrist), tool, arm.wrist_cosines)
         wrist = _minus(elbow, -arm.fore, fore)
+        if dist(before, wrist) < _SETTLED:
+            break
     return wrist, elbow
 
 

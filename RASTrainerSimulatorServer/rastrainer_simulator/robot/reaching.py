@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, inf, remainder
+from math import atan2, dist, inf, remainder
 from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import TURN, fit, joint_angles, nearest_branch
@@ -13,6 +13,9 @@ from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.nearest_reach import nearest_links
 from rastrainer_simulator.robot.restarts import planar_starts
 from rastrainer_simulator.vectors import Vector, dot
+
+# Passes that change the gap between them by less than this part of it lead nowhere.
+_STALLED = 1e-3
 
 
 class Start(NamedTuple):
@@ -77,15 +80,19 @@ def _iterate(
     arm: CanonicalArm, target: Vector, start: Start, most: int
 ) -> tuple[Angles | None, int]:
     last, wrist, elbow, farthest = start
+    gap = inf
     for passes in range(1, most + 1):
         reached = backward(arm, target, wrist, elbow)
         if reached is None:
             return None, passes
-        wrist, tool = reached
-        theta = close(arm, wrist, tool, None, elbow, last, farthest)
+        held, tool = reached
+        theta = close(arm, held, tool, None, elbow, last, farthest)
         if theta is not None:
             return theta, passes
-        wrist, elbow = forward(arm, wrist, elbow)
+        wrist, elbow = forward(arm, held, elbow)
+        before, gap = gap, dist(wrist, held)
+        if abs(before - gap) < _STALLED * gap:
+            return None, passes
     return None, most
 
 
