@@ -46,7 +46,7 @@ def postures(head):
     """Postures with the tip near, at and in the head, the tool from any side it can come from."""
     random = np.random.default_rng(21)
     found = []
-    while len(found) < 150:
+    while len(found) < 100:
         place = head[0][random.integers(len(head[0]))]
         outward = place / np.linalg.norm(place) + random.normal(size=3) * 0.4
         outward /= np.linalg.norm(outward)
@@ -94,7 +94,7 @@ def test_clearances_of_tip_and_shaft_are_those_of_brute_force(
         tool = range(ARM.link_count, len(ARM.capsules))
         expected, _ = brute_capsules(posed, tool, corners, signed)
         assert found.shaft_m == pytest.approx(expected, abs=FIVE_HUNDREDTHS_MM)
-    assert inside > 10
+    assert inside > 8
 
 
 def test_the_nearest_link_and_its_clearance_are_those_of_brute_force(head, head_to_world):
@@ -120,7 +120,7 @@ def test_the_arm_against_itself_is_as_brute_force_says(collision):
     random = np.random.default_rng(23)
     near = overlapping = 0
     folded = np.radians([170.0, 120.0, 170.0, 120.0, 170.0, 120.0, 175.0])
-    for q in random.uniform(-1.0, 1.0, (300, 7)):
+    for q in random.uniform(-1.0, 1.0, (200, 7)):
         q[[1, 3]] = np.sign(q[[1, 3]]) * (0.8 + 0.2 * np.abs(q[[1, 3]]))
         q *= folded
         links = KINEMATICS.links(q)

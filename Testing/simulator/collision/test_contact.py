@@ -83,7 +83,7 @@ def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
     high = np.flatnonzero(head.vertices[:, 2] > head.vertices[:, 2].min() + 0.03)
     places = random.permutation([*random.choice(high, 100), *head.hollows(1500)[::15]])
     rams, deepest = 0, 0.0
-    for q, direction in islice(approaches(head, places, random), 100):
+    for q, direction in islice(approaches(head, places, random), 70):
         driver = Driver(head.collision, q, holds)
         speed, aside = random.uniform(0.25, 0.5), random.normal(size=3)
         for tick in range(40):
@@ -91,7 +91,7 @@ def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
             driver.push(push / np.linalg.norm(push) * speed * TICK)
             deepest = min(deepest, driver.clearance.shaft_m, head.distance(driver.tip))
         rams += 1
-    assert rams == 100
+    assert rams == 70
     assert deepest >= -DEEPEST
 
 
@@ -99,7 +99,7 @@ def test_every_fiducial_of_the_default_tasks_can_be_touched_with_the_tip(head, s
     planner = TouchPlanner(ROBOT, head.collision)
     for task in scenario.tasks:
         fiducials = transforms.apply(head.to_world, np.asarray(task.fiducials) / 1000.0)
-        for fiducial in fiducials[::3]:
+        for fiducial in fiducials[::4]:
             normal = np.array(head.collision.nearest_to_point(tuple(fiducial)).normal)
             touch = planner.touch(fiducial, normal)
             assert touch is not None

@@ -44,20 +44,20 @@ def distances(surface, points):
 
 def test_the_distance_of_a_point_is_that_of_brute_force(bumpy):
     vertices, triangles = bumpy
-    points = np.concatenate([around(*bumpy[:1], 150, 2), near(*bumpy, 150, 3)])
+    points = np.concatenate([around(*bumpy[:1], 100, 2), near(*bumpy, 100, 3)])
     expected = [point_to_triangles(p, vertices[triangles]).min() for p in points]
     found = np.abs(distances(HeadSurface(*bumpy), points))
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
 
 def test_a_ball_is_as_far_as_its_radius_says():
-    surface = HeadSurface(*ball(0.1, 6))
+    surface = HeadSurface(*ball(0.1, 5))
     for distance in (-0.09, -0.05, -1e-3, 1e-3, 0.2):
         direction = np.array([0.48, -0.6, 0.64])
         found = surface.nearest_to_point(tuple((0.1 + distance) * direction))
-        assert found.distance_m == pytest.approx(distance, abs=1e-5)
-        np.testing.assert_allclose(found.normal, direction, atol=0.02)
-        np.testing.assert_allclose(found.point, 0.1 * direction, atol=2e-3)
+        assert found.distance_m == pytest.approx(distance, abs=4e-5)
+        np.testing.assert_allclose(found.normal, direction, atol=0.04)
+        np.testing.assert_allclose(found.point, 0.1 * direction, atol=4e-3)
 
 
 def test_the_sign_is_right_inside_outside_and_at_every_feature(bumpy):
@@ -94,9 +94,9 @@ def test_a_point_on_the_surface_has_the_outward_normal():
     np.testing.assert_allclose(on_top.normal, (0.0, 0.0, 1.0), atol=1e-12)
 
 
-def test_a_capsule_is_as_far_as_brute_force_says_of_its_axis(bumpy):
-    vertices, triangles = bumpy
-    surface, random = HeadSurface(*bumpy), np.random.default_rng(9)
+def test_a_capsule_is_as_far_as_brute_force_says_of_its_axis():
+    vertices, triangles = bumpy_head(subdivisions=3)
+    surface, random = HeadSurface(vertices, triangles), np.random.default_rng(9)
     checked = 0
     for point in around(vertices, 150, 10):
         axis = random.normal(size=3)
