@@ -58,7 +58,7 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     if seal != _SEAL + digest.encode("ascii") + b'"}':
         raise DamagedLineError("its bytes do not match its hash")
     try:
-        entry = json.loads(line)
+        entry = json.loads(line, parse_constant=_refuse)
     except (ValueError, RecursionError):
         raise DamagedLineError("it is not JSON") from None
     if not isinstance(entry, dict) or not isinstance(entry.get("kind"), str):
@@ -68,3 +68,7 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     if entry.get("previous") != previous:
         raise DamagedLineError("it does not follow the line before")
     return entry
+
+
+def _refuse(_word: str) -> float:
+    raise ValueError

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName, check_arguments
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.record.journal_reader import JournalReading
 from rastrainer_simulator.record.replay_metrics import ReplayMetrics
@@ -19,9 +20,11 @@ from rastrainer_simulator.settings import SimulationSettings, settings_from_json
 from rastrainer_simulator.setup import SimulationSetup, load_setup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import StartingPoint
+from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
 
 LONGEST_TRIAL_TICKS = 10_000_000
 """A journal that claims more (11 hours at 250 Hz) is not replayed."""
+SHORTEST_TICK_S, LONGEST_TICK_S = 1e-4, 0.1
 
 _NOT_SIMULATED = frozenset({"header", "stopped", "scored", "acknowledged"})
 _OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record"})
@@ -64,9 +67,11 @@ def replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
     """
     try:
         return _replay(reading, setup)
-    except (KeyError, TypeError, AttributeError, IndexError) as error:
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         raise InputError(
-            f"{reading.path} cannot be replayed: an entry lacks something ({error!r})."
+            f"{reading.path} cannot be replayed: an entry is not as it should be ({error!r})."
         ) from None
 
 
@@ -97,6 +102,8 @@ def _replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
     last = max((entry["tick"] for entry in recorded), default=start.tick)
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
         raise InputError(f"{reading.path} claims {last - start.tick} ticks: no trial is so long.")
+    if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:
+        raise InputError(f"{reading.path} claims ticks of {header['tickS']} s: no loop has them.")
     simulation = Simulation(setup, header["seed"])
     simulation.continue_from(start)
     dt = header["tickS"]
@@ -138,17 +145,21 @@ def _inputs(
                 operator=entry["operator"],
             )
         elif entry["kind"] == "command":
-            command = Command(entry["name"], _tuples(entry["arguments"]), 0, entry["sender"])
-            commands[entry["tick"]].append(command)
+            commands[entry["tick"]].append(_command(entry))
     held = HANDS_OFF
     for tick in range(before + 1, last + 1):
         held = sticks.get(tick, held)
         yield replace(held, commands=tuple(commands[tick])) if tick in commands else held
 
 
-def _tuples(arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Return arguments as the protocol's checks give them: lists of numbers are tuples."""
-    return {k: tuple(v) if isinstance(v, list) else v for k, v in arguments.items()}
+def _command(entry: Mapping[str, Any]) -> Command:
+    """Return a recorded command; its arguments are checked anew, as the file may be forged."""
+    name = entry["name"]
+    arguments = {key: value for key, value in entry["arguments"].items() if value is not None}
+    if name == RECORDING_FAILED:
+        return Command(name, arguments)
+    own = {"trialId": arguments.pop("trialId")} if name == CommandName.START_TASK else {}
+    return Command(name, check_arguments(name, arguments) | own, 0, entry["sender"])
 
 
 def _first_difference(

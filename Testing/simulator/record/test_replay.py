@@ -1,0 +1,157 @@
+"""`rastrainer verify` and `rastrainer replay` on journals of real trials, honest and forged."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rastrainer.protocol import CommandName, check_arguments
+from rastrainer_simulator.cli import main
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_reader import read_journal
+from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.simulation import Simulation
+
+CHAIN = ("n", "previous", "sha256")
+
+
+@pytest.fixture(scope="module")
+def recorded(setup, tmp_path_factory) -> Path:
+    """Return the journal of a short trial: sticks, a move, a refused touch, a pause, the abort."""
+    folder = tmp_path_factory.mktemp("records")
+    with ControlLoop(Simulation(setup, 5), folder, speed=None) as loop:
+
+        def do(command, **arguments):
+            return loop.submit(command, check_arguments(command, arguments)).result(30.0)
+
+        do(CommandName.SET_CAMERA, camera="far")
+        do(CommandName.START_TASK, task="task-2", trainee="P07", mode="hmd")
+        x, y, z = (1000.0 * loop.latest.tool_tip_to_world[:3, 3]).tolist()
+        do(CommandName.JOG, velocityMmS=[0, -80, 0], frame="camera", durationS=0.2)
+        do(CommandName.MOVE_TIP_TO, positionMm=[x, y, z - 20.0], direction=[0, 0.1, -1])
+        do(CommandName.CAPTURE)
+        until = loop.latest.tick + 60
+        loop.hold_sticks(OperatorInput((0.1, 0.9, -0.4), fine=True, operator="gamepad"))
+        while loop.latest.tick < until:
+            do(CommandName.LIST_TASKS)
+        do(CommandName.PAUSE)
+        do(CommandName.RESUME)
+        do(CommandName.ABORT)
+    (path,) = folder.glob(f"*{SUFFIX}")
+    return path
+
+
+def forged(recorded: Path, tmp_path: Path, change) -> Path:
+    """Return a copy with changed entries, under hashes that are right."""
+    entries = [
+        {key: value for key, value in entry.items() if key not in CHAIN}
+        for entry in read_journal(recorded).entries
+    ]
+    change(entries)
+    journal = Journal(tmp_path / "forged.journal")
+    journal.write(entries, sync=False)
+    journal.close()
+    return journal.path
+
+
+def test_an_untouched_journal_is_intact_and_replays_to_the_last_bit(recorded, capsys):
+    assert main(["verify", str(recorded)]) == 0
+    assert "intact" in capsys.readouterr().out
+    assert main(["replay", str(recorded)]) == 0
+    assert "equal to the last bit" in capsys.readouterr().out
+
+
+def test_the_report_as_json_tells_what_was_compared_and_metrics(recorded, capsys):
+    assert main(["replay", str(recorded), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["identical"] is True
+    assert report["compared"]["sample"] >= 10
+    assert report["compared"]["rejected"] == 1
+    assert report["metrics"]["path_mm"] > 1.0
+    assert report["metrics"]["rejected"] == 1
+
+
+def test_cut_short_altered_and_foreign_files_are_told_apart_by_sentence_and_status(
+    recorded, tmp_path, capsys
+):
+    data = recorded.read_bytes()
+    cut, altered, foreign = (tmp_path / name for name in ("cut", "altered", "foreign"))
+    cut.write_bytes(data[:-100])
+    altered.write_bytes(data.replace(b'"P07"', b'"P08"', 1))
+    foreign.write_bytes(b"label,x,y,z\n")
+    assert main(["verify", str(recorded), str(cut)]) == 1
+    assert "cut short: recovered up to line" in capsys.readouterr().out
+    assert main(["verify", str(altered)]) == 1
+    assert "altered: line 1 " in capsys.readouterr().out
+    assert main(["verify", str(foreign)]) == 2
+    assert main(["verify", str(tmp_path / "missing")]) == 2
+    said = capsys.readouterr().err
+    assert "not a trial's journal" in said
+    assert "cannot be read" in said
+
+
+def test_a_journal_that_was_cut_short_replays_as_far_as_it_goes(recorded, tmp_path):
+    cut = tmp_path / "cut"
+    cut.write_bytes(recorded.read_bytes()[:-3000])
+    assert main(["replay", str(cut)]) == 0
+
+
+def moved_sample(entries):
+    sample = [entry for entry in entries if entry["kind"] == "sample"][5]
+    sample["q"][0] += 1e-12
+
+
+def other_stick(entries):
+    stick = [entry for entry in entries if entry["kind"] == "input"][-1]
+    stick["translation"] = [0.1, 0.9, -0.41]
+
+
+def missing_event(entries):
+    entries.remove(next(entry for entry in entries if entry["kind"] == "rejected"))
+
+
+@pytest.mark.parametrize("change", [moved_sample, other_stick, missing_event])
+def test_a_forgery_under_right_hashes_is_found_by_the_replay(recorded, tmp_path, change, capsys):
+    path = forged(recorded, tmp_path, change)
+    assert main(["verify", str(path)]) == 0
+    assert main(["replay", str(path)]) == 1
+    assert "line" in capsys.readouterr().out
+
+
+def set_in(kind, **values):
+    def change(entries):
+        [entry for entry in entries if entry["kind"] == kind][-1].update(values)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        set_in("aborted", tick=10**12),
+        set_in("aborted", tick="soon"),
+        set_in("header", tickS=0.0),
+        set_in("header", before={"tick": "x"}),
+        set_in("header", before=7),
+        set_in("header", settings={"teleoperation": {"coarse_speed": "fast"}}),
+        set_in("header", settings={"unknown": 1}),
+        set_in("header", settings=[1]),
+        set_in("header", scenario={"name": "other", "sha256": "0" * 64}),
+        set_in("header", scenario=None),
+        set_in("header", versions=None),
+        set_in("input", translation=["a", "b", "c"]),
+        set_in("command", name="FormatDisk"),
+        set_in("command", name="Jog", arguments={"velocityMmS": [1e9, 0, 0]}),
+        set_in("command", arguments=None),
+    ],
+)
+def test_a_hostile_journal_ends_with_one_sentence_and_status_2(recorded, tmp_path, change, capsys):
+    path = forged(recorded, tmp_path, change)
+    assert main(["replay", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("rastrainer: ")
+    assert "Traceback" not in said

@@ -1,0 +1,147 @@
+"""The archive of registered trials: what is to be delivered, and the truth kept until scored."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName
+from rastrainer.trial_record import TouchedPoint, TrialRecord
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_line import FORMAT, FORMAT_VERSION
+from rastrainer_simulator.record.journal_reader import Integrity, read_journal
+from rastrainer_simulator.record.stamps import stamp
+from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
+from rastrainer_simulator.training.true_error import Truth
+
+TRIAL_ID = "5c6f1d0e-6a4e-4c37-9d0c-0f6a2f7d9b11"
+UTC = "2024-05-17T09:30:00.000Z"
+HEAD_TO_WORLD = np.array([[-1.0, 0, 0, 500], [0, -1, 0, 20], [0, 0, 1, 300], [0, 0, 0, 1]])
+FIDUCIALS = {str(i): np.array([10.0 * i, -5.0 * i, i * i]) for i in range(1, 16)}
+TRUTH = Truth(HEAD_TO_WORLD, np.array([1.0, 2.0, 3.0]), FIDUCIALS)
+RECORD = TrialRecord(
+    trial_id=TRIAL_ID,
+    trainee="P01",
+    task="task-1",
+    mode="desktop",
+    scenario="colin27",
+    started_utc=UTC,
+    completed_utc=UTC,
+    completion_time_s=93.5,
+    points=tuple(
+        TouchedPoint(label, tuple(TRUTH.in_world(point).tolist()), float(label), UTC)
+        for label, point in FIDUCIALS.items()
+    ),
+    rejected_touches=1,
+    undone_touches=0,
+    versions={"rastrainer": "0"},
+)
+SCORE = {
+    "trialId": TRIAL_ID,
+    "matrix": tuple(np.linalg.inv(HEAD_TO_WORLD).ravel()),
+    "freMm": 1.0,
+    "expectedTreMm": 1.0,
+    "score": 50.0,
+    "details": {"kind": "acknowledged", "previous": "0" * 64},
+}
+NOW = stamp(0, 0.0)
+
+
+def write_trial(folder, *more, trial_id=TRIAL_ID):
+    journal = Journal(folder / f"20240517T093000Z_{trial_id}{SUFFIX}")
+    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, "seed": 7}
+    registered = {
+        "kind": "registered",
+        "record": RECORD.to_json() | {"trialId": trial_id},
+        "truth": TRUTH.to_json(),
+    }
+    samples = [{"kind": "sample", "i": i} for i in range(2000)]
+    journal.write([header, *samples, registered, *more], sync=False)
+    journal.close()
+    return journal.path
+
+
+def test_a_registered_trial_is_offered_until_it_is_acknowledged_also_after_a_restart(tmp_path):
+    path = write_trial(tmp_path)
+    archive = TrialArchive(tmp_path)
+    assert archive.unacknowledged() == (RECORD,)
+    archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert archive.unacknowledged() == ()
+    assert TrialArchive(tmp_path).unacknowledged() == ()
+    assert read_journal(path).integrity is Integrity.INTACT
+
+
+def test_an_acknowledgment_that_arrives_twice_is_written_once(tmp_path):
+    path = write_trial(tmp_path)
+    archive = TrialArchive(tmp_path)
+    for _ in range(2):
+        archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert len(read_journal(path).of_kind("acknowledged")) == 1
+
+
+def test_the_truth_of_an_older_trial_is_told_only_once_it_is_scored(tmp_path):
+    write_trial(tmp_path)
+    archive = TrialArchive(tmp_path)
+    before = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert before["record"] == RECORD.to_json()
+    assert not {"headToWorld", "trueTreMm", "seed"} & set(before)
+    answer = archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+    assert answer["headToWorld"] == list(HEAD_TO_WORLD.ravel())
+    assert answer["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
+    assert max(answer["touchErrorsMm"].values()) == pytest.approx(0.0, abs=1e-9)
+    after = TrialArchive(tmp_path).answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert after["trueTreMm"] == answer["trueTreMm"]
+    assert after["seed"] == 7
+
+
+def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(tmp_path):
+    write_trial(tmp_path)
+    TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+    assert TrialArchive(tmp_path).unacknowledged() == (RECORD,)
+
+
+def test_a_trial_is_found_behind_any_number_of_later_lines(tmp_path):
+    scored = {"kind": "scored", "arguments": SCORE | {"details": {"x": "y" * 60_000}}}
+    path = write_trial(tmp_path, *[scored] * 12)
+    assert find_unacknowledged(tmp_path) == [path]
+
+
+def test_a_trial_that_was_acknowledged_can_still_be_asked_for_and_scored(tmp_path):
+    write_trial(tmp_path, {"kind": "acknowledged"})
+    archive = TrialArchive(tmp_path)
+    assert archive.unacknowledged() == ()
+    assert archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)["acknowledged"]
+    assert "headToWorld" in archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+
+
+def test_a_half_written_line_after_the_record_does_not_hide_the_trial(tmp_path):
+    path = write_trial(tmp_path)
+    with path.open("ab") as file:
+        file.write(b'{"n":9999,"previous":"abc')
+    archive = TrialArchive(tmp_path)
+    archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert read_journal(path).integrity is Integrity.INTACT
+
+
+def test_an_altered_journal_is_not_delivered_and_named(tmp_path):
+    path = write_trial(tmp_path)
+    path.write_bytes(path.read_bytes().replace(b'"i":1000', b'"i":1001'))
+    archive = TrialArchive(tmp_path)
+    assert archive.unacknowledged() == ()
+    assert path.name in archive.problems[0]
+    assert "altered" in archive.problems[0]
+
+
+def test_a_trial_that_is_not_there_gets_a_sentence(tmp_path):
+    archive = TrialArchive(tmp_path)
+    with pytest.raises(InputError, match="no registered trial"):
+        archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+
+
+def test_a_folder_with_foreign_files_is_read_without_trouble(tmp_path):
+    (tmp_path / f"notes{SUFFIX}").write_text("hello")
+    (tmp_path / f"zeros{SUFFIX}").write_bytes(bytes(1_000_000))
+    (tmp_path / "notes.txt").write_text("hello")
+    path = write_trial(tmp_path)
+    assert find_unacknowledged(tmp_path) == [path]
