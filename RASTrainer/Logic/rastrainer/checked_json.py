@@ -22,10 +22,6 @@ class Fields:
         self._file = file
         self._path = path
 
-    def names(self) -> list[str]:
-        """Return the names of all fields."""
-        return list(self._values)
-
     def text(self, name: str, longest: int = 200) -> str:
         """Return printable text of 1 to `longest` characters."""
         value = self._values.get(name)
