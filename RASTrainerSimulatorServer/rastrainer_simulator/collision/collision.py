@@ -42,9 +42,7 @@ class Collision:
             InputError: a mesh cannot be read, or the head's surface is not closed.
         """
         self._arm = ArmCapsules(robot_shape(model))
-        surface = HeadSurface(head_vertices, head_triangles)
-        self._head_base = surface.base
-        self._head = HeadClearance(surface, self._arm)
+        self._head = HeadClearance(HeadSurface(head_vertices, head_triangles), self._arm)
         self._self = SelfClearance(self._arm)
         surroundings = surroundings or Surroundings()
         self.table_height = surroundings.table_height
@@ -58,7 +56,7 @@ class Collision:
             InputError: the matrix is not a rigid transform.
         """
         self._head.set_pose(head_to_world)
-        self._table.put_stand_under(head_to_world[:3, :3] @ self._head_base + head_to_world[:3, 3])
+        self._table.put_stand_under(self._head.base)
 
     def check(self, link_to_world: Mapping[str, np.ndarray]) -> Clearance:
         """Return the clearances of a posture.

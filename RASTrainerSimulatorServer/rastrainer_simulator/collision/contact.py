@@ -13,7 +13,7 @@ the links are, all clearances, and what stopped the motion.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,8 +43,8 @@ class Moved:
         q: joint angles, rad.
         link_to_world: (4, 4) float, m, by the names of the links.
         clearance: of this posture.
-        stopped_by: "shaft", "links", "self" or "table" where the motion was cut short because of
-            it, else "". Sliding along the surface is no stop.
+        stopped_by: "links", "self" or "table" (rarely "tip" or "shaft", at the edge of the arm's
+            reach) where the motion was cut short because of it, else "". Sliding is no stop.
     """
 
     q: Joints
@@ -70,7 +70,7 @@ class Contact:
 
     def at(self, q: Sequence[float]) -> Moved:
         """Return the links and clearances of a posture, wherever it may be."""
-        joints = tuple(q)
+        joints = tuple(map(float, q))
         if self._last is None or self._last.q != joints:
             links = self._kinematics.links(joints)
             self._last = Moved(joints, links, self._collision.check(links))
@@ -84,7 +84,8 @@ class Contact:
         already may move, but not deeper.
         """
         start = self.at(q)
-        self._last = moved = self._move(start, displacement, to_joints)
+        moved = self._move(start, displacement, to_joints)
+        self._last = replace(moved, stopped_by="")
         return moved
 
     def _move(self, start: Moved, displacement: Vector, to_joints: ToJoints) -> Moved:

@@ -51,6 +51,8 @@ class HeadClearance:
         self._world_to_head = np.eye(4)
         self._world_to_head[:3, :3] = rotation.T
         self._world_to_head[:3, 3] = -rotation.T @ pose[:3, 3]
+        self.base = rotation @ self._head.base + pose[:3, 3]
+        """(3,) float: the middle of the head's base, World, m."""
         self._head_to_world_rows = pose[:3].tolist()
         self._world_to_head_rows = self._world_to_head[:3].tolist()
         self._known[:] = -math.inf
