@@ -65,11 +65,11 @@ def head(scenario):
 
 
 def approaches(head, vertices, random):
-    """Starting postures 30 mm before some vertices, leaning, that touch nothing yet."""
+    """Starting postures 20 mm before some vertices, leaning, that touch nothing yet."""
     for vertex in np.repeat(vertices, 3):
         direction = -head.normals[vertex] + 0.4 * random.normal(size=3)
         direction /= np.linalg.norm(direction)
-        q = posture(head.vertices[vertex] - 0.03 * direction, direction)
+        q = posture(head.vertices[vertex] - 0.02 * direction, direction)
         if q is None:
             continue
         clearance = head.collision.check(KINEMATICS.links(q))
@@ -82,7 +82,7 @@ def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
     random = np.random.default_rng(41)
     high = np.flatnonzero(head.vertices[:, 2] > head.vertices[:, 2].min() + 0.03)
     places = random.permutation([*random.choice(high, 100), *head.hollows(1500)[::15]])
-    rams, deepest = 0, 0.0
+    touched, deepest = 0, 0.0
     for q, direction in islice(approaches(head, places, random), 70):
         driver = Driver(head.collision, q, holds)
         speed, aside = random.uniform(0.25, 0.5), random.normal(size=3)
@@ -90,8 +90,8 @@ def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
             push = direction if tick < 25 else direction + 0.5 * aside
             driver.push(push / np.linalg.norm(push) * speed * TICK)
             deepest = min(deepest, driver.clearance.shaft_m, head.distance(driver.tip))
-        rams += 1
-    assert rams == 70
+            touched += tick == 24 and driver.clearance.tool_m < TOUCHING
+    assert touched >= 65
     assert deepest >= -DEEPEST
 
 
