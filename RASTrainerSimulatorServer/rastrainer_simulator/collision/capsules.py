@@ -1,16 +1,17 @@
-"""Capsules that cover a solid: two fitted along it, or a row of them along a tool's axis."""
+"""Capsules fitted about a solid: one, or one for each half of a long solid."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
+from rastrainer.errors import InputError
+
 _LONG = 1.35  # A solid longer than this times its width gets a capsule for each half.
 _FIRST_STEP, _LAST_STEP = 0.02, 0.0003
-_SLICE = 0.0005
+_MOST_POINTS = 5_000_000
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,20 @@ def surface_points(vertices: np.ndarray, triangles: np.ndarray, spacing: float) 
     """Return points (k, 3) along the edges of a mesh, no two neighbors farther than `spacing`.
 
     `vertices` is (n, 3) float, `triangles` (m, 3) int.
+
+    Raises:
+        InputError: the mesh is so large, or has so many edges, that these are too many points.
     """
     edges = np.sort(
         np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     )
     start, end = vertices[np.unique(edges, axis=0).T]
     counts = np.ceil(np.linalg.norm(end - start, axis=1) / spacing).astype(int) + 1
+    if counts.sum() > _MOST_POINTS:
+        raise InputError(
+            f"A collision mesh has {len(start)} edges of {counts.sum() * spacing:.0f} m in all; "
+            "it should be a coarse hull of its link."
+        )
     rows = np.repeat(np.arange(len(start)), counts)
     steps = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
     shares = steps / np.maximum(counts[rows] - 1, 1)
@@ -113,58 +122,3 @@ def _sphere_directions(count: int = 200) -> np.ndarray:
     turn = math.pi * (1.0 + math.sqrt(5.0)) * index
     width = np.sqrt(1.0 - z * z)
     return np.column_stack([width * np.cos(turn), width * np.sin(turn), z])
-
-
-def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Capsule, ...]:
-    """Return a row of capsules about the z axis that hold all `points` (k, 3) float with z ≥ start.
-
-    The tool's tip is at the origin: of all ways to cut the tool into `count` pieces, the one is
-    taken whose pieces look slenderest from there, so that a taper stays a taper. `points` are
-    `surface_points` spaced by at most half a millimetre.
-    """
-    profile = _profile(points, start)
-    cuts = _slenderest_cuts(profile, start, count)
-    return tuple(
-        _section(profile[first:last], start + first * _SLICE) for first, last in pairwise(cuts)
-    )
-
-
-def _profile(points: np.ndarray, start: float) -> np.ndarray:
-    """Return the radius of each slice of half a millimetre, from z = start on."""
-    slices = np.floor((points[:, 2] - start) / _SLICE).astype(int)
-    kept = slices >= 0
-    radii = np.zeros(slices.max() + 1)
-    np.maximum.at(radii, slices[kept], np.hypot(points[kept, 0], points[kept, 1]))
-    # What touches the border of two slices belongs to both.
-    return np.maximum(radii, np.concatenate([radii[1:], [0.0]]))
-
-
-def _slenderest_cuts(profile: np.ndarray, start: float, count: int) -> list[int]:
-    """Return where to cut (count + 1 slices) for the least sum of radius² / z² over all slices.
-
-    Dynamic programming: the best cuts before a slice, for each number of pieces so far.
-    """
-    size = len(profile)
-    weights = np.cumsum(1.0 / (start + np.arange(size + 1) * _SLICE) ** 2)
-    least = np.full((count + 1, size + 1), np.inf)
-    least[0, 0] = 0.0
-    before = np.zeros((count + 1, size + 1), dtype=int)
-    for end in range(1, size + 1):
-        radii = np.maximum.accumulate(profile[:end][::-1])[::-1]
-        totals = least[:-1, :end] + radii**2 * (weights[end] - weights[:end])
-        before[1:, end] = totals.argmin(axis=1)
-        least[1:, end] = totals.min(axis=1)
-    cuts = [size]
-    for pieces in range(count, 0, -1):
-        cuts.append(int(before[pieces, cuts[-1]]))
-    return cuts[::-1]
-
-
-def _section(profile: np.ndarray, start: float) -> Capsule:
-    """Return the capsule about the slices of a section: its round ends stick out only as needed."""
-    radius = float(profile.max())
-    low = start + np.arange(len(profile)) * _SLICE
-    rounding = np.sqrt(radius**2 - profile**2)
-    first = float((low + rounding).min())
-    last = max(float((low + _SLICE - rounding).max()), first)
-    return Capsule(np.array([0.0, 0.0, first]), np.array([0.0, 0.0, last]), radius)

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer_simulator.collision.capsules import (
-    Capsule,
-    capsules_along,
-    covering_capsules,
-    surface_points,
-)
+from rastrainer_simulator.collision.capsules import Capsule, covering_capsules, surface_points
+from rastrainer_simulator.collision.tool_capsules import capsules_along
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import Link, RobotModel
 
 SHAFT_START = 0.003
 """Distance behind the tip, m, from which the tool is a shaft that must not touch the head."""
 
+Mesh = tuple[np.ndarray, np.ndarray]
+"""Vertices (n, 3) float, m, and triangles (m, 3) int."""
+
+_ROD_RADIUS = 0.003
 _LINK_SPACING = 0.01
 _TOOL_SPACING = 0.0005
 
@@ -43,8 +43,9 @@ class RobotShape:
 def robot_shape(model: RobotModel) -> RobotShape:
     """Return the capsules that cover the collision meshes of a robot.
 
-    The tool is the link behind the last joint whose mesh comes nearest to the tip. A link without
-    a collision mesh collides with nothing, as in any URDF.
+    The tool is the link behind the last joint whose mesh comes nearest to the tip; where none has
+    a mesh, it is a thin rod from the tip to the wrist. Any other link without a collision mesh
+    collides with nothing, as in any URDF.
 
     Raises:
         InputError: a mesh cannot be read.
@@ -54,48 +55,50 @@ def robot_shape(model: RobotModel) -> RobotShape:
         name: [(np.asarray(mesh.vertices), np.asarray(mesh.faces)) for mesh, _ in parts]
         for name, parts in load_meshes(model, "collision").items()
     }
-    tool = _tool_name(model, meshes)
-    tool_to_tip = np.linalg.inv(model.tip.offset) @ links[tool].offset
-    tool_capsules = _tool_capsules(
-        _moved(tool_to_tip, _points(meshes.pop(tool), _TOOL_SPACING)), _shaft_to_tip(model)
-    )
+    tool = _tool_link(model, meshes)
+    tool_capsules = _tool_capsules(model, tool, meshes.pop(tool.name, []))
     shapes = tuple(
         LinkShape(
             name, links[name].joint, covering_capsules(_points(parts, _LINK_SPACING), _LINK_SPACING)
         )
         for name, parts in meshes.items()
     )
-    return RobotShape(shapes, LinkShape(tool, links[tool].joint, tool_capsules), model.tip.name)
+    return RobotShape(shapes, LinkShape(tool.name, tool.joint, tool_capsules), model.tip.name)
 
 
-def _points(parts: list[tuple[np.ndarray, np.ndarray]], spacing: float) -> np.ndarray:
+def _points(parts: list[Mesh], spacing: float) -> np.ndarray:
     return np.concatenate([surface_points(*part, spacing) for part in parts])
 
 
-def _tool_name(model: RobotModel, meshes: dict[str, list[tuple[np.ndarray, np.ndarray]]]) -> str:
+def _tool_link(model: RobotModel, meshes: dict[str, list[Mesh]]) -> Link:
     def distance_to_tip(link: Link) -> float:
         tip = (np.linalg.inv(link.offset) @ model.tip.offset)[:3, 3]
-        return min(np.linalg.norm(v - tip, axis=1).min() for v, _ in meshes[link.name])
+        return min(
+            np.linalg.norm(vertices - tip, axis=1).min() for vertices, _ in meshes[link.name]
+        )
 
     behind = [link for link in model.links if link.joint == 7 and link.name in meshes]
-    return min(behind, key=distance_to_tip).name
+    return min(behind, key=distance_to_tip, default=model.tip)
 
 
-def _tool_capsules(points: np.ndarray, shaft_to_tip: np.ndarray) -> tuple[Capsule, ...]:
-    in_shaft_frame = _moved(np.linalg.inv(shaft_to_tip), points)
+def _tool_capsules(model: RobotModel, tool: Link, parts: list[Mesh]) -> tuple[Capsule, ...]:
+    """Return the capsules, in the tip's frame, of a tool whose mesh is in its link's frame."""
+    shaft_to_tip = _shaft_to_tip(model)
+    if parts:
+        tool_to_shaft = np.linalg.inv(model.tip.offset @ shaft_to_tip) @ tool.offset
+        capsules = capsules_along(_moved(tool_to_shaft, _points(parts, _TOOL_SPACING)), SHAFT_START)
+    else:
+        ends = np.outer((SHAFT_START, model.geometry.tool), (0.0, 0.0, 1.0))
+        capsules = (Capsule(*ends, _ROD_RADIUS),)
     return tuple(
         Capsule(*_moved(shaft_to_tip, np.array([capsule.start, capsule.end])), capsule.radius)
-        for capsule in capsules_along(in_shaft_frame, SHAFT_START)
+        for capsule in capsules
     )
 
 
 def _shaft_to_tip(model: RobotModel) -> np.ndarray:
-    """Return the pose (4, 4), in the tip's frame, of a frame at the tip whose z runs up the tool.
-
-    The tip lies on the axis of the last joint, and so does the shaft.
-    """
-    to_joint = np.linalg.inv(model.tip.offset)[:3, 3]
-    up = to_joint / np.linalg.norm(to_joint)
+    """Return the pose (4, 4), in the tip's frame, of a frame there whose z runs up the tool."""
+    up = -model.geometry.tip_rotation[2]
     x = np.cross(np.eye(3)[np.abs(up).argmin()], up)
     x /= np.linalg.norm(x)
     pose = np.eye(4)

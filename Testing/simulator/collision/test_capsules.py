@@ -1,16 +1,21 @@
+import re
+import shutil
+
 import numpy as np
 import pytest
 import trimesh
 
-from rastrainer_simulator.collision.capsules import (
-    capsules_along,
-    covering_capsules,
-    surface_points,
-)
+from rastrainer.errors import InputError
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.collision.capsules import covering_capsules, surface_points
+from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import SHAFT_START, robot_shape
+from rastrainer_simulator.collision.tool_capsules import capsules_along
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import load_robot
-from Testing.simulator.collision.arms import ROBOT
+from Testing.simulator.collision.arms import KINEMATICS, ROBOT
+from Testing.simulator.collision.heads import ball
 
 SHAPE = robot_shape(ROBOT)
 MESHES = load_meshes(ROBOT, "collision")
@@ -113,3 +118,55 @@ def test_the_same_robot_always_gets_the_same_capsules():
             assert (a.start == b.start).all()
             assert (a.end == b.end).all()
             assert a.radius == b.radius
+
+
+def test_a_robot_without_meshes_is_a_rod_from_the_tip_to_the_wrist(tmp_path):
+    text = asset_path("robots", "iiwa7", "iiwa7.urdf").read_text(encoding="utf-8")
+    bare = tmp_path / "bare.urdf"
+    bare.write_text(re.sub(r"(?s)<(visual|collision)>.*?</\1>", "", text), encoding="utf-8")
+    robot = load_robot(bare)
+    shape = robot_shape(robot)
+    (rod,) = shape.tool.capsules
+    assert shape.links == ()
+    np.testing.assert_allclose(rod.start, [0.0, 0.0, -SHAFT_START], atol=1e-9)
+    np.testing.assert_allclose(rod.end, [0.0, 0.0, -robot.geometry.tool], atol=1e-9)
+    vertices, triangles = ball(0.05, 3)
+    found = Collision(robot, vertices, triangles).check(KINEMATICS.links(robot.home))
+    assert (found.links_m, found.self_m) == (FAR, FAR)
+    assert found.shaft_m == pytest.approx(found.tip_m, abs=0.02)
+
+
+def test_the_flange_is_the_tool_where_it_carries_none(tmp_path):
+    text = asset_path("robots", "iiwa7", "iiwa7.urdf").read_text(encoding="utf-8")
+    folder = tmp_path / "arm"
+    shutil.copytree(asset_path("robots", "iiwa7"), folder)
+    toolless = re.sub(r'(?s)<link name="iiwa_link_tool">.*?</link>', "", text)
+    toolless = re.sub(r'(?s)<joint name="iiwa_joint_tool(_tip)?".*?</joint>', "", toolless)
+    tip = re.search(r'(?s)<link name="iiwa_tool_tip_ee"( />|>.*?</link>)', toolless).group(0)
+    (folder / "iiwa7.urdf").write_text(toolless.replace(tip, ""), encoding="utf-8")
+    robot = load_robot(folder / "iiwa7.urdf")
+    assert robot.tip.name == "iiwa_link_7"
+    shape = robot_shape(robot)
+    assert shape.tool.name == "iiwa_link_7"
+    assert len(shape.links) == 7
+
+
+def test_a_tool_of_a_millimetre_is_covered_too():
+    stub = trimesh.creation.cylinder(0.004, 0.001)
+    stub.apply_translation([0.0, 0.0, 0.0028])
+    points = surface_points(stub.vertices, stub.faces, 0.0005)
+    (capsule,) = capsules_along(points, 0.003)
+    assert capsule.radius == pytest.approx(0.004)
+
+
+@pytest.mark.parametrize("shift", [0.0, -0.1])
+def test_a_tool_that_lies_before_its_tip_is_refused(shift):
+    points = np.array([[0.001, 0.0, shift], [0.0, 0.001, shift]])
+    with pytest.raises(InputError, match="from its tip toward the wrist"):
+        capsules_along(points, 0.003)
+
+
+def test_a_mesh_with_kilometres_of_edges_is_refused():
+    vertices = np.random.default_rng(1).uniform(-10.0, 10.0, (3000, 3))
+    with pytest.raises(InputError, match="should be a coarse hull"):
+        surface_points(vertices, np.arange(3000).reshape(-1, 3), 0.0005)
