@@ -15,7 +15,7 @@ from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.virtual_trial import play_virtual_trial
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
-STEP_S = 0.02
+STEP_S = 0.05
 SEEDS = range(100)
 
 
