@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
-import math
 import os
 import shutil
 import stat
@@ -13,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_finite_json
 
 
 def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
@@ -55,8 +54,8 @@ def read_json(path: str | os.PathLike[str], limit_bytes: int) -> Any:
     """
     text = read_text(path, limit_bytes)
     try:
-        return json.loads(text, parse_constant=_refuse_constant, parse_float=_finite_float)
-    except (ValueError, RecursionError):
+        return decode_finite_json(text)
+    except ValueError:
         raise InputError(f"The file {path} is not JSON with finite numbers.") from None
 
 
@@ -108,14 +107,3 @@ def _reason(error: Exception) -> str:
 
 def _printable(path: object) -> str:
     return ascii(str(path)) if not str(path).isprintable() else str(path)
-
-
-def _refuse_constant(_word: str) -> float:
-    raise ValueError
-
-
-def _finite_float(digits: str) -> float:
-    value = float(digits)
-    if not math.isfinite(value):
-        raise ValueError
-    return value

@@ -7,7 +7,6 @@ Both sides import this one file, so that neither can drift from the other. It sa
 from __future__ import annotations
 
 import json
-import math
 import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from enum import Enum
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_finite_json
 
 PROTOCOL_VERSION = 1
 DEFAULT_HOST = "127.0.0.1"
@@ -282,22 +282,9 @@ def decode_json_object(body: str) -> dict[str, Any]:
         InputError: not JSON, not an object, too deeply nested, or with a number that is not finite.
     """
     try:
-        value = json.loads(body or "{}", parse_constant=_refuse_constant, parse_float=_finite)
-    except (ValueError, RecursionError):
-        raise InputError(
-            "The command's body must be one JSON object with finite numbers."
-        ) from None
+        value = decode_finite_json(body or "{}")
+    except ValueError:
+        value = None
     if not isinstance(value, dict):
         raise InputError("The command's body must be one JSON object with finite numbers.")
-    return value
-
-
-def _refuse_constant(_word: str) -> float:
-    raise ValueError
-
-
-def _finite(digits: str) -> float:
-    value = float(digits)
-    if not math.isfinite(value):
-        raise ValueError
     return value

@@ -12,6 +12,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from rastrainer.finite_json import decode_finite_json
+
 FORMAT = "rastrainer-trial-journal"
 FORMAT_VERSION = 1
 NO_LINE = "0" * 64
@@ -58,8 +60,8 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     if seal != _SEAL + digest.encode("ascii") + b'"}':
         raise DamagedLineError("its bytes do not match its hash")
     try:
-        entry = json.loads(line, parse_constant=_refuse)
-    except (ValueError, RecursionError):
+        entry = decode_finite_json(line.decode("ascii"))
+    except ValueError:
         raise DamagedLineError("it is not JSON") from None
     if not isinstance(entry, dict) or not isinstance(entry.get("kind"), str):
         raise DamagedLineError("it is not an entry of a journal")
@@ -68,7 +70,3 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     if entry.get("previous") != previous:
         raise DamagedLineError("it does not follow the line before")
     return entry
-
-
-def _refuse(_word: str) -> float:
-    raise ValueError
