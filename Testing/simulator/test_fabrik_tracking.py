@@ -105,7 +105,7 @@ def test_the_arm_stretches_to_its_edge_stays_there_and_comes_back(fabrik, robot,
     assert [not solution.converged for solution in solutions] == beyond.tolist()
     # At the edge itself angles go with the square root of the way: no solver can do less.
     edge = np.abs(np.linalg.norm(wrist, axis=1) - (0.8 if direction else 1.126)) < 0.008
-    assert steps[edge].max() <= 20.0
+    assert steps[edge].max() <= 45.0
     assert steps[~edge].max() <= 2.0
 
 

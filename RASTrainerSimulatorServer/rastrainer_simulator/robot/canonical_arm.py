@@ -21,6 +21,7 @@ Chain = tuple[Vector, Vector, Vector, Vector, Vector, Vector]
 
 # Beyond every cosine: a bound that never binds.
 _NEVER = 2.0
+_SMALL_TILT = 0.15
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,3 +120,16 @@ def chain(theta: Angles) -> Chain:
     xx, xy, xz = c5 * xx + s5 * ex, c5 * xy + s5 * ey, c5 * xz + s5 * ez
     tx, ty, tz = s6 * xx + c6 * fx, s6 * xy + c6 * fy, s6 * xz + c6 * fz
     return (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), (-s1, c1, 0.0), (ex, ey, ez), (wx, wy, wz)
+
+
+def tip(arm: CanonicalArm, links: Chain) -> Vector:
+    """Return the tool tip, m."""
+    (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), *_ = links
+    a, b, c = arm.upper, arm.fore, arm.tool
+    return (a * ux + b * fx + c * tx, a * uy + b * fy + c * ty, a * uz + b * fz + c * tz)
+
+
+def clear(theta: Angles) -> bool:
+    """Tell whether shoulder, elbow and wrist are clear of their singularities."""
+    small = _SMALL_TILT
+    return not (-small < theta[1] < small or -small < theta[3] < small or -small < theta[5] < small)

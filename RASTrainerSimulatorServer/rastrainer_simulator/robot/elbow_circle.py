@@ -8,12 +8,12 @@ elbow nearest to φ = 0 is therefore φ = 0 itself or one of those ends.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import acos, atan2, cos, hypot, remainder, sin, sqrt
 from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import TURN, Roll
-from rastrainer_simulator.robot.canonical_arm import CanonicalArm
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm
 from rastrainer_simulator.vectors import Vector, any_perpendicular, cross, dot, scale
 
 # Cosines may pass their bounds by rounding.
@@ -114,13 +114,28 @@ def elbows_at_limits(
     for joint, cosine, length in ((1, up, arm.upper), (5, back, arm.fore)):
         a, b, c = cosine
         waves += [(a, b, c - length * cos(limit)) for limit in arm.limits[joint]]
-    for joint, (sine, cosine) in _pan_waves(arm, circle, wrist, tool, roll).items():
-        for limit in arm.limits[joint]:
-            # tan θ = sine / cosine: at the limit the two are as sin and cos of it, up to a sign.
-            c, s = cos(limit), sin(limit)
-            waves.append(tuple([a * c - b * s for a, b in zip(sine, cosine, strict=True)]))
+    waves += _pans_at(_pan_waves(arm, circle, wrist, tool, roll), arm.limits)
     for angle in _nearest_first(waves):
         yield circle.at(angle)
+
+
+def elbows_that_keep_a_pan(
+    arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector, roll: Roll, last: Angles
+) -> Iterator[Vector]:
+    """Yield the elbows where one of the pans is as in `last`, those nearest to φ = 0 first."""
+    waves = _pans_at(_pan_waves(arm, circle, wrist, tool, roll), [(angle,) for angle in last])
+    for angle in _nearest_first(waves):
+        yield circle.at(angle)
+
+
+def _pans_at(pans: dict[int, tuple[Wave, Wave]], angles: Sequence[tuple[float, ...]]) -> list[Wave]:
+    """Return what vanishes where a pan is at one of the `angles` of its joint, or turned by π."""
+    waves = []
+    for joint, (sine, cosine) in pans.items():
+        for angle in angles[joint]:
+            c, s = cos(angle), sin(angle)
+            waves.append(tuple([a * c - b * s for a, b in zip(sine, cosine, strict=True)]))
+    return waves
 
 
 def _tilt_waves(arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector) -> list[Wave]:

@@ -1,10 +1,11 @@
 """FABRIK for 7R S-R-S arms: tool position, position and direction, or full pose to joint angles.
 
-1. A near goal is predicted by a step along the Jacobian (`prediction`); a far one starts from the
-   last posture.
+1. A goal close by continues a motion: a position is predicted by a step along the Jacobian
+   (`prediction`), with the tool held the elbow slides to where the joints move least
+   (`elbow_slide`). A goal far away starts from the last posture.
 2. FABRIK reaches backward from the target and forward from the base (`fabrik_passes`), and each
    pass closes the elbow exactly (`closure`, `elbow_circle`): FABRIK alone converges slowly below a
-   micrometre (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
+   micrometer (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
 3. The joint angles are read off the links, on the branch nearest to the last ones (`branches`).
 4. What is out of reach is replaced by the nearest that is not (`reaching`, `nearest_reach`).
 """
@@ -85,11 +86,12 @@ class Fabrik:
         aim = goal.within_lengths(self._arm)
         start = self._frame.theta(q_start)
         links = chain(start)
-        near = predict(self._arm, start, links, aim)
-        if near:
-            reached = self._reach(goal, aim, *near, _JUMP)
-        else:
+        if not aim.is_near(self._arm, links):
             reached = self._reach(goal, aim, start, links, inf)
+        else:
+            if aim.tool is None:
+                start, links = predict(self._arm, start, links, aim.position)
+            reached = self._reach(goal, aim, start, links, _JUMP)
         return self._solution(goal, reached)
 
     def _goal(

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, dist, sin
+from math import atan2, cos, dist, sin, sqrt
 from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import Roll
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, tip
 from rastrainer_simulator.vectors import Vector, add, cross, dot, length, scale, subtract
 
 _TINY = 1e-12
+_NEAR_M = 0.03
+_NEAR_COSINE = 0.95
 
 
 class Goal(NamedTuple):
@@ -23,11 +25,23 @@ class Goal(NamedTuple):
         """Return where a wrist has to be that holds the tool's direction, m."""
         return subtract(self.position, scale(self.tool, arm.tool))
 
+    def is_near(self, arm: CanonicalArm, links: Chain) -> bool:
+        """Tell whether the goal continues a motion: the tool is already almost there."""
+        tx, ty, tz = tip(arm, links)
+        x, y, z = self.position
+        tx, ty, tz = x - tx, y - ty, z - tz
+        if tx * tx + ty * ty + tz * tz > _NEAR_M * _NEAR_M:
+            return False
+        return self.tool is None or dot(links[2], self.tool) > _NEAR_COSINE
+
     def within_lengths(self, arm: CanonicalArm) -> Goal:
         """Return the nearest goal that the lengths of the links and the elbow's tilt allow."""
         if self.tool is None:
-            far = length(self.position)
-            return self if far <= arm.reach else self._moved(scale(self.position, arm.reach / far))
+            x, y, z = self.position
+            square = x * x + y * y + z * z
+            if square <= arm.reach * arm.reach:
+                return self
+            return self._moved(scale(self.position, arm.reach / sqrt(square)))
         wrist = self.wrist(arm)
         far = length(wrist)
         if arm.nearest <= far <= arm.farthest or far < _TINY:
@@ -55,13 +69,6 @@ class Goal(NamedTuple):
             sine = scale(add(add(sine, cross(x, goal_x)), cross(y, goal_y)), 0.5)
             cosine = (cosine + dot(x, goal_x) + dot(y, goal_y) - 1.0) / 2.0
         return sine, cosine
-
-
-def tip(arm: CanonicalArm, links: Chain) -> Vector:
-    """Return the tool tip, m."""
-    (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), *_ = links
-    a, b, c = arm.upper, arm.fore, arm.tool
-    return (a * ux + b * fx + c * tx, a * uy + b * fy + c * ty, a * uz + b * fz + c * tz)
 
 
 def tool_axes(theta: Angles, links: Chain) -> tuple[Vector, Vector]:

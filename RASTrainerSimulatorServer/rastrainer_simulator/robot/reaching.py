@@ -8,6 +8,7 @@ from typing import NamedTuple
 from rastrainer_simulator.robot.branches import TURN, fit, joint_angles, nearest_branch
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, chain
 from rastrainer_simulator.robot.closure import close
+from rastrainer_simulator.robot.elbow_slide import with_least_motion
 from rastrainer_simulator.robot.fabrik_passes import backward, forward, settle
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.nearest_reach import nearest_links
@@ -63,6 +64,8 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
     wrist, tool = aim.wrist(arm), goal.tool
     theta = close(arm, wrist, tool, goal.roll, start.elbow, start.theta, start.farthest)
     if theta is not None:
+        if start.farthest < inf:
+            theta = with_least_motion(arm, theta, wrist, goal, start.theta, start.elbow)
         return Reached(theta, 1)
     passes = 1
     if goal.roll:

@@ -1,0 +1,223 @@
+"""FABRIK beside pin-pink and a damped-least-squares loop, on the same seeded targets.
+
+Cold starts go from the home pose to targets anywhere in reach; tracking follows a path of 1 mm
+steps around the head. A time is the median of the runs of one target; Pinocchio judges success:
+ours within 1 nm and inside the limits, the peers within 0.1 mm.
+"""
+
+from __future__ import annotations
+
+import gc
+import time
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import pinocchio as pin
+
+from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.model import load_robot
+from Testing.benchmarks.ik_peers import LeastSquares, Pinocchio, PinPink
+
+MODES = ("position", "direction", "pose")
+SEED = 2011
+EXACT_M = 1e-9
+EXACT_RAD = 1e-7
+CLINICAL_BOX = ([0.35, -0.15, 0.15], [0.65, 0.15, 0.5])
+STEP_M = 0.001
+STEP_LIMIT = 0.15
+
+
+class Sizes(NamedTuple):
+    """How much is measured."""
+
+    verified: int
+    timed: int
+    runs: int
+
+
+class Solver(Protocol):
+    """One way to solve inverse kinematics."""
+
+    name: str
+
+    def question(self, target: pin.SE3, mode: str) -> tuple:
+        """Put a target as this solver takes it; not part of its time."""
+
+    def solve(self, question: tuple, q_start: Sequence[float]) -> Sequence[float] | None:
+        """Return joint angles, or None."""
+
+
+class Ours:
+    """FABRIK, asked as the control loop asks it: with plain floats."""
+
+    name = "FABRIK"
+
+    def __init__(self) -> None:
+        model = load_robot()
+        self.home = model.home
+        self._fabrik = Fabrik(model)
+
+    def question(self, target: pin.SE3, mode: str) -> tuple:
+        direction = target.rotation[:, 2].tolist() if mode == "direction" else None
+        rotation = target.rotation.tolist() if mode == "pose" else None
+        return target.translation.tolist(), direction, rotation
+
+    def solve(self, question: tuple, q_start: Sequence[float]) -> Sequence[float]:
+        return self._fabrik.solve(*question, q_start=q_start).q
+
+
+def rows(quick: bool = True) -> list[dict]:
+    """Return `ik.<mode>.cold` and `ik.<mode>.track` beside each peer, and `ik.position.step`."""
+    sizes = Sizes(3_000, 200, 3) if quick else Sizes(100_000, 2_000, 5)
+    robot, ours = Pinocchio(), Ours()
+    peers = (PinPink(robot), LeastSquares(robot))
+    gc.collect()
+    gc.freeze()  # as the server does
+    try:
+        cold = [row for mode in MODES for row in _cold(robot, ours, peers, mode, sizes)]
+        track = [row for mode in MODES for row in _track(robot, ours, peers, mode, sizes)]
+    finally:
+        gc.unfreeze()
+    return cold + track
+
+
+def _cold(
+    robot: Pinocchio, ours: Ours, peers: Sequence[Solver], mode: str, sizes: Sizes
+) -> list[dict]:
+    random = np.random.default_rng(SEED)
+    postures = random.uniform(robot.lower, robot.upper, (sizes.verified, 7))
+    targets = [robot.tip(q).copy() for q in postures]
+    solved = 0
+    for target in targets:
+        q = ours.solve(ours.question(target, mode), ours.home)
+        solved += _exact(robot, np.array(q), target, mode)
+    success = solved / len(targets)
+    few = targets[: sizes.timed]
+    times = _cold_times(ours, few, mode, ours.home, sizes.runs)
+    return [
+        _row(
+            f"ik.{mode}.cold{_suffix(peer)}",
+            (times, _cold_times(peer, few, mode, ours.home, sizes.runs)),
+            peer.name,
+            success,
+            len(targets),
+        )
+        for peer in peers
+    ]
+
+
+def _track(
+    robot: Pinocchio, ours: Ours, peers: Sequence[Solver], mode: str, sizes: Sizes
+) -> list[dict]:
+    targets = _path(sizes.timed)
+    start = np.array(ours.solve(ours.question(targets[0], "direction"), ours.home))
+    for target in targets:
+        target.rotation = robot.tip(start).rotation
+    times, postures = _track_times(ours, targets, mode, start, sizes.runs)
+    success = np.mean(
+        [
+            _exact(robot, np.array(q), target, mode)
+            for q, target in zip(postures, targets, strict=True)
+        ]
+    )
+    found = [
+        _row(
+            f"ik.{mode}.track{_suffix(peer)}",
+            (times, _track_times(peer, targets, mode, start, sizes.runs)[0]),
+            peer.name,
+            float(success),
+            len(targets),
+        )
+        for peer in peers
+    ]
+    if mode == "position":
+        steps = np.degrees(np.abs(np.diff(postures, axis=0)).max(axis=1))
+        found.append(
+            _row(
+                "ik.position.step",
+                (steps, None),
+                None,
+                float((steps <= STEP_LIMIT).mean()),
+                len(steps),
+                "°/mm",
+            )
+        )
+    return found
+
+
+def _suffix(peer: Solver) -> str:
+    return "" if peer.name == "pin-pink" else f".{peer.name}"
+
+
+def _exact(robot: Pinocchio, q: np.ndarray, target: pin.SE3, mode: str) -> bool:
+    off, turned = robot.errors(q, target, mode)
+    inside = bool(np.all(robot.lower <= q) and np.all(q <= robot.upper))
+    return inside and off <= EXACT_M and turned <= EXACT_RAD
+
+
+def _path(count: int) -> list[pin.SE3]:
+    """Return a walk of 1 mm steps between random points around the head."""
+    random = np.random.default_rng(SEED)
+    point, goal, path = random.uniform(*CLINICAL_BOX), random.uniform(*CLINICAL_BOX), []
+    while len(path) < count:
+        rest = goal - point
+        far = np.linalg.norm(rest)
+        if far < STEP_M:
+            goal = random.uniform(*CLINICAL_BOX)
+            continue
+        point = point + rest * (STEP_M / far)
+        path.append(pin.SE3(np.diag([1.0, -1.0, -1.0]), point))
+    return path
+
+
+def _cold_times(
+    solver: Solver, targets: list[pin.SE3], mode: str, home: Sequence[float], runs: int
+) -> np.ndarray:
+    """Return each target's time in µs, the median of the runs."""
+    questions = [solver.question(target, mode) for target in targets]
+    times = np.empty((runs, len(questions)))
+    for run in range(runs):
+        for index, question in enumerate(questions):
+            begin = time.perf_counter_ns()
+            solver.solve(question, home)
+            times[run, index] = time.perf_counter_ns() - begin
+    return np.median(times, axis=0) / 1000.0
+
+
+def _track_times(
+    solver: Solver, targets: list[pin.SE3], mode: str, start: Sequence[float], runs: int
+) -> tuple[np.ndarray, list[Sequence[float]]]:
+    """Return each step's time in µs, the median of the runs, and the postures."""
+    questions = [solver.question(target, mode) for target in targets]
+    times = np.empty((runs, len(questions)))
+    for run in range(runs):
+        postures = [start]
+        for index, question in enumerate(questions):
+            begin = time.perf_counter_ns()
+            q = solver.solve(question, postures[-1])
+            times[run, index] = time.perf_counter_ns() - begin
+            postures.append(postures[-1] if q is None else q)
+    return np.median(times, axis=0) / 1000.0, postures[1:]
+
+
+def _row(
+    name: str,
+    values: tuple[np.ndarray, np.ndarray | None],
+    peer: str | None,
+    success: float,
+    n: int,
+    unit: str = "µs",
+) -> dict:
+    own, other = values
+    return {
+        "name": name,
+        "median": float(np.median(own)),
+        "p99": float(np.percentile(own, 99)),
+        "unit": unit,
+        "peer": peer,
+        "peer_median": None if other is None else float(np.median(other)),
+        "peer_p99": None if other is None else float(np.percentile(other, 99)),
+        "success": success,
+        "n": n,
+    }
