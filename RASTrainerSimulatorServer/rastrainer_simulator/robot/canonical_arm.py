@@ -21,7 +21,7 @@ Chain = tuple[Vector, Vector, Vector, Vector, Vector, Vector]
 
 # Beyond every cosine: a bound that never binds.
 _NEVER = 2.0
-_SMALL_TILT = 0.15
+_SMALL_TILT = 0.05
 
 
 @dataclass(frozen=True, slots=True)

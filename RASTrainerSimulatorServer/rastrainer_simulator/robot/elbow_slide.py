@@ -16,7 +16,7 @@ from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.vectors import Vector, scale
 
 _FLAT = 1e-9
-_NO_MOTION = 1e-5
+_NO_MOTION = 2e-4
 # Squared: what no step of teleoperation asks of a joint away from a singularity, rad.
 _LEAP = 0.02 * 0.02
 _MOST_SLIDES = 4
@@ -31,7 +31,7 @@ def with_least_motion(
     `theta` already holds the wrist (m) and the goal's tool, and so does what is returned.
     """
     theta = _slide(arm, theta, wrist, goal, last)
-    if _motion(theta, last) < _LEAP or clear(theta):
+    if _motion(theta, last) < _LEAP:
         return theta
     # Close to a singularity the nearest elbow can need a pan to turn far: try to keep each.
     circle = elbow_circle(arm, wrist, guess)
