@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import logging
 import threading
 import time
@@ -19,6 +18,7 @@ from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.loop_statistics import LoopStatistics, Punctuality
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
+from rastrainer_simulator.pending_answers import PendingAnswers
 from rastrainer_simulator.precise_clock import precise_timing, sleep_until
 from rastrainer_simulator.record.held_back import HeldBack
 from rastrainer_simulator.record.stamps import stamp
@@ -31,6 +31,8 @@ from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
 COMMANDS_PER_TICK = 16
+TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
+SHUTTING_DOWN = "The simulator is shutting down."
 
 _OF_ANY_TRIAL = (
     CommandName.GET_TRIAL,
@@ -85,10 +87,9 @@ class ControlLoop:
         self._held = HeldBack(self._state.training)
         self._sticks = HANDS_OFF
         self._arrived: deque[Command] = deque()
-        self._tickets = itertools.count(1)
-        self._answers: dict[int, Future[Answer]] = {}
+        self._answers = PendingAnswers()
         self._refused: str | None = None
-        self._successor: tuple[Simulation, Future[Answer]] | None = None
+        self._successor: tuple[Simulation, int] | None = None
         self._subscribers: tuple[Callable[[StepResult], None], ...] = ()
         self._punctuality = Punctuality()
         self._thread = threading.Thread(target=self._run, name="control loop", daemon=True)
@@ -157,22 +158,20 @@ class ControlLoop:
         `arguments` have passed `rastrainer.protocol.check_arguments`. The answer comes once what it
         says is on the disk.
         """
-        future: Future[Answer] = Future()
-        ticket = next(self._tickets)
-        self._answers[ticket] = future
+        ticket, future = self._answers.expect()
         arguments = dict(arguments or {})
         if name == CommandName.START_TASK:
             # Drawn outside of the simulation: a seed used twice must not make one trial of two.
             arguments.setdefault("trialId", str(uuid.uuid4()))
         self._arrived.append(Command(name, arguments, ticket, sender))
         if self._is_over:
-            self._refuse(ticket)
+            self._answers.refuse_all(SHUTTING_DOWN)
         return future
 
     def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
         """Go on with another simulation, such as one of another scenario, between two trials."""
-        future: Future[Answer] = Future()
-        self._successor = (simulation, future)
+        ticket, future = self._answers.expect()
+        self._successor = (simulation, ticket)
         return future
 
     def _run(self) -> None:
@@ -246,44 +245,34 @@ class ControlLoop:
             try:
                 data = self._archive.answer(command.name, command.arguments, times)
             except RASTrainerError as error:
-                self._give(Answer(command.ticket, False, str(error)))
+                self._answers.give(Answer(command.ticket, False, str(error)))
             else:
-                self._give(Answer(command.ticket, True, data=data))
+                self._answers.give(Answer(command.ticket, True, data=data))
 
         self._writer.submit(ask)
 
-    def _succeed(self, simulation: Simulation, future: Future[Answer]) -> None:
+    def _succeed(self, simulation: Simulation, ticket: int) -> None:
         self._successor = None
         phase = self._state.training.phase
         if self._held.is_waiting or phase in (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE):
-            sentence = "A trial is running: Register or Abort it before another scenario."
-            future.set_result(Answer(0, False, sentence))
+            self._answers.give(Answer(ticket, False, TRIAL_IS_OPEN))
             return
         simulation.continue_from(StartingPoint.after(self._state))
         self._simulation = simulation
-        future.set_result(Answer(0, True))
+        self._answers.give(Answer(ticket, True))
 
     def _tell(self, result: StepResult) -> None:
         self.latest = result.state
         for answer in result.answers:
-            self._give(answer)
+            self._answers.give(answer)
         for callback in self._subscribers:
             callback(result)
 
-    def _give(self, answer: Answer) -> None:
-        future = self._answers.pop(answer.ticket, None)
-        if future is not None and future.set_running_or_notify_cancel():
-            future.set_result(answer)
-
-    def _refuse(self, ticket: int) -> None:
-        self._give(Answer(ticket, False, "The simulator is shutting down."))
-
     def _finish(self) -> None:
         """Write all, answer what was on its way to the disk, and refuse what came too late."""
-        self._is_over = True
         self._recorder.stop(self._state)
         self._writer.shutdown(wait=True)
         for answer in self._held.pass_on(StepResult(self._state), None)[0].answers:
-            self._give(answer)
-        for ticket in tuple(self._answers):
-            self._refuse(ticket)
+            self._answers.give(answer)
+        self._is_over = True
+        self._answers.refuse_all(SHUTTING_DOWN)

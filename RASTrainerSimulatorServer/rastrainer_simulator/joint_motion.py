@@ -5,15 +5,20 @@ from __future__ import annotations
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.robot.velocity_limit import limit_step
-from rastrainer_simulator.vectors import Vector, add, scale
+from rastrainer_simulator.vectors import Vector, add, length, scale
 
 Joints = tuple[float, ...]
+
+RELAXING_WAY = 0.4
+"""m: on such a way of the tip the arm's redundancy relaxes by the factor e."""
 
 
 class JointMotion:
     """Moves the joints toward a target of the tip; it keeps no posture itself."""
 
-    def __init__(self, robot: RobotModel) -> None:
+    def __init__(self, robot: RobotModel, rest: Joints) -> None:
+        """`rest` are the joint angles (rad) to which the arm's redundancy relaxes."""
+        self._rest = rest
         self._fabrik = Fabrik(robot)
         self._fastest = tuple(robot.velocity.tolist())
 
@@ -27,7 +32,8 @@ class JointMotion:
         position comes first: where the joint limits forbid the direction, or the joints are too
         slow for it, the tool turns as far as it can while the tip stays on its straight way.
         """
-        solution = self._fabrik.solve(add(tip, displacement), direction, q_start=start)
+        near = self._relaxed(start, length(displacement))
+        solution = self._fabrik.solve(add(tip, displacement), direction, q_start=near)
         step = limit_step(start, solution.q, self._fastest, dt)
         if direction is None or (solution.converged and not step.limited):
             return step.q, solution.converged
@@ -35,6 +41,17 @@ class JointMotion:
         on_the_way = add(tip, scale(displacement, share))
         found = self._fabrik.solve(on_the_way, q_start=step.q)
         return limit_step(start, found.q, self._fastest, dt).q, found.converged
+
+    def _relaxed(self, q: Joints, way: float) -> Joints:
+        """Return the angles a little nearer to rest: FABRIK then brings the tip to its target.
+
+        Without it the elbow would wander with the ways of the tip until it hangs on a limit or the
+        table. The farther the tip moves, the more: a resting tip moves no joint.
+        """
+        share = way / RELAXING_WAY
+        return tuple(
+            angle + share * (rest - angle) for angle, rest in zip(q, self._rest, strict=True)
+        )
 
 
 def _share(start: Joints, part: Joints, whole: Joints) -> float:

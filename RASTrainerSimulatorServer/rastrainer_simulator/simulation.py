@@ -7,7 +7,7 @@ import numpy as np
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.contact import Contact
+from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import next_proximity
 from rastrainer_simulator.collision.table_clearance import Surroundings
 from rastrainer_simulator.joint_motion import JointMotion, Joints
@@ -36,6 +36,9 @@ from rastrainer_simulator.training.training import Moment, Reply, Training
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector
 
+BEHIND_THE_TOOL = ("links", "self", "table")
+"""Parts of the arm that the trainee does not steer and that may still be in the way."""
+
 
 class Simulation:
     """The robot, the head and the trial.
@@ -53,11 +56,13 @@ class Simulation:
         self._training = Training(setup.scenario, seed, settings.training, self._texts)
         self._view = SceneView(setup.scenario, settings.camera, settings.axes)
         self._teleoperation = Teleoperation(settings.teleoperation)
-        self._joint_motion = JointMotion(setup.robot)
         self._collision = _collision(setup)
-        self._contact = Contact(self._collision, make_kinematics(setup.robot))
+        kinematics = make_kinematics(setup.robot)
+        self.kinematics_name = type(kinematics).__name__
+        self._contact = Contact(self._collision, kinematics)
         self._postures = Postures(setup.robot)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
+        self._joint_motion = JointMotion(setup.robot, self._start)
         self._operator = ""
         self._put_in_place()
         self.state = self._state(0, 0.0, Motion.NONE)
@@ -154,22 +159,28 @@ class Simulation:
 
     def _move(self, dt: float, wish: Wish, sim_time: float) -> list[Event]:
         """Follow the wish as far as arm, head and table allow."""
-        start = self._posture
         was_within_reach = self._is_within_reach
-
-        def to_joints(displacement: Vector) -> Joints:
-            q, self._is_within_reach = self._joint_motion.toward(
-                start.q, start.tip.position, displacement, wish.direction, dt
-            )
-            return q
-
-        moved = self._contact.move(start.q, wish.displacement, to_joints)
+        moved = self._moved(dt, wish.displacement, wish.direction)
+        if moved.stopped_by in BEHIND_THE_TOOL and wish.direction is not None:
+            # The turn of the tool may be what the arm has no room for: the tip comes first.
+            moved = self._moved(dt, wish.displacement, None)
         self._posture = self._postures.of(moved)
         settings = self.setup.settings.proximity
         self._proximity = next_proximity(self._proximity, moved.clearance, settings)
         if self._is_within_reach == was_within_reach:
             return []
         return [Event(EventKind.REACH, sim_time, {"isWithinReach": self._is_within_reach})]
+
+    def _moved(self, dt: float, displacement: Vector, direction: Vector | None) -> Moved:
+        q, tip = self._posture.q, self._posture.tip.position
+
+        def to_joints(allowed: Vector) -> Joints:
+            joints, self._is_within_reach = self._joint_motion.toward(
+                q, tip, allowed, direction, dt
+            )
+            return joints
+
+        return self._contact.move(q, displacement, to_joints)
 
     def _state(self, tick: int, sim_time: float, motion: Motion) -> SimulationState:
         posture = self._posture

@@ -228,7 +228,7 @@ def near_the_head(clearance, normal, shaft_clearance=0.1, shaft_normal=(0.0, 0.0
 
 
 def test_near_the_head_the_tool_turns_along_the_surface_normal_where_chosen():
-    normal = (0.0, -1.0, 0.3)
+    normal = (0.0, -1.0, 0.5)
     near = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.005, normal))
     far = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.2, normal))
     for _ in range(600):
@@ -239,16 +239,23 @@ def test_near_the_head_the_tool_turns_along_the_surface_normal_where_chosen():
 
 
 def test_in_position_mode_the_tool_leans_no_farther_than_its_shaft_can_stay_off_the_skin():
-    normal = (0.0, -1.0, 0.0)
+    normal = (0.0, -1.0, 0.5)
     leans = []
     for clearance in (0.2, 0.12, 0.08, 0.04, 0.01, 0.0):
         hand = Hand(steered(ToolDirection.CLEAR), surface=near_the_head(clearance, normal))
         for _ in range(600):
             hand.step(push(0.2, 0.0, 0.0))
-        leans.append(angle(hand.tip.direction, (0.0, 1.0, 0.0)))
+        leans.append(angle(hand.tip.direction, (0.0, 1.0, -0.5)))
     assert leans == sorted(leans, reverse=True)
-    assert leans[:2] == pytest.approx([math.pi / 2] * 2)
+    assert leans[:2] == pytest.approx([angle(DOWN, (0.0, 1.0, -0.5))] * 2)
     assert leans[-2:] == pytest.approx([SteeringSettings().largest_lean] * 2)
+
+
+def test_the_tool_comes_from_above_even_where_the_skin_faces_down():
+    hand = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.0, (0.0, -1.0, -0.4)))
+    for _ in range(600):
+        hand.step(push(0.2, 0.0, 0.0))
+    assert hand.tip.direction[2] < -0.2
 
 
 def test_a_tool_that_leans_little_enough_is_left_alone():

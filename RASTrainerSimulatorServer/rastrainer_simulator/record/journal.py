@@ -35,6 +35,7 @@ class Journal:
         self._count = 0
         self._previous = NO_LINE
         self._size: int | None = None
+        self._is_new = True
         self._unwritten: list[Mapping[str, Any]] = []
 
     @classmethod
@@ -45,6 +46,7 @@ class Journal:
         off.
         """
         journal = cls(reading.path)
+        journal._is_new = False
         journal._take_up(reading)
         return journal
 
@@ -72,7 +74,7 @@ class Journal:
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
-        if self._size == 0:
+        if self._is_new and self._size == 0:
             self.path.unlink(missing_ok=True)
             self._size = None
 

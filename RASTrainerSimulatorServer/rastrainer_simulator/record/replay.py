@@ -15,7 +15,6 @@ from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInpu
 from rastrainer_simulator.record.journal_reader import JournalReading
 from rastrainer_simulator.record.replay_metrics import ReplayMetrics
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.settings import SimulationSettings, settings_from_json
 from rastrainer_simulator.setup import SimulationSetup, load_setup
 from rastrainer_simulator.simulation import Simulation
@@ -125,7 +124,7 @@ def _replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
         ticks=last - start.tick,
         compared=dict(compared),
         difference=_first_difference(recorded, again),
-        changed_versions=_changed(header["versions"]),
+        changed_versions=_changed(header["versions"], entries.versions if entries else {}),
         metrics=metrics,
     )
 
@@ -179,8 +178,7 @@ def _comparable(entry: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in entry.items() if key not in _OF_THE_CLOCK}
 
 
-def _changed(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    present = versions()
+def _changed(recorded: Mapping[str, str], present: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     return {
         name: (recorded.get(name, "absent"), present.get(name, "absent"))
         for name in sorted(recorded.keys() | present.keys())

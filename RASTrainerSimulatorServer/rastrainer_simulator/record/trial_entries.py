@@ -40,7 +40,7 @@ class TrialEntries:
         self.trial_id = training.trial_id
         self._seed = simulation.trial_seed
         self._scenario = simulation.setup.scenario.name
-        self._versions = versions()
+        self.versions = versions() | {"kinematics": simulation.kinematics_name}
         self._every = max(1, round(1.0 / (SAMPLE_HZ * dt)))
         self._sticks: tuple[Any, ...] | None = None
         self._trajectory = hashlib.sha256()
@@ -61,7 +61,7 @@ class TrialEntries:
                 "tickS": dt,
                 "before": asdict(StartingPoint.after(before)),
                 **simulation.setup.description(),
-                "versions": self._versions,
+                "versions": self.versions,
             }
         ]
 
@@ -145,7 +145,7 @@ class TrialEntries:
             points=points,
             rejected_touches=training.rejected,
             undone_touches=training.undone,
-            versions=self._versions,
+            versions=self.versions,
         )
 
 

@@ -51,16 +51,19 @@ class SteeringSettings:
         near: clearance of the tip up to which the lean is limited to that.
         far: clearance from which the lean is not limited.
         shaft_clearance: of the shaft, below which the tool turns away from what is near to it.
+        from_above: least downward part of the direction toward which the tool leans, 0…1: coming
+            from below, the wrist would be at the table.
     """
 
     choice: ToolDirection = ToolDirection.CLEAR
     coarse_turn: float = 0.8
     fine_turn: float = 0.15
     leaning_turn: float = 2.0
-    largest_lean: float = math.radians(30.0)
+    largest_lean: float = math.radians(45.0)
     near: float = 0.01
     far: float = 0.12
     shaft_clearance: float = 0.001
+    from_above: float = 0.3
 
 
 @dataclass(frozen=True)
@@ -131,7 +134,8 @@ class ToolSteering:
         most = settings.leaning_turn * dt
         if surface.shaft_clearance < min(settings.shaft_clearance, surface.clearance):
             return turned_toward(direction, scale(surface.shaft_normal, -1.0), most)
-        inward = scale(surface.normal, -1.0)
+        x, y, z = surface.normal
+        inward = unit((-x, -y, -max(z, settings.from_above)))
         excess = angle(direction, inward) - self._lean_limit(surface.clearance)
         return turned_toward(direction, inward, min(excess, most)) if excess > 0.0 else None
 
