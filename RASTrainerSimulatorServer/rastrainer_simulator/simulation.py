@@ -44,7 +44,7 @@ class Simulation:
     """The robot, the head and the trial.
 
     `step` is deterministic: the same setup, seed and inputs give the same states to the last bit.
-    A trial always starts with the arm at home, and with nothing left over from before: a replay
+    A trial always starts with the arm above the head and nothing left over from before: a replay
     needs nothing but the trial's own inputs.
     """
 
@@ -63,7 +63,6 @@ class Simulation:
         self._postures = Postures(setup.robot)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
         self._joint_motion = JointMotion(setup.robot, self._start)
-        self._operator = ""
         self._put_in_place()
         self.state = self._state(0, 0.0, Motion.NONE)
 
@@ -154,12 +153,14 @@ class Simulation:
         self._posture = self._postures.of(self._contact.at(self._start))
         self._proximity = Proximity.FREE
         self._is_within_reach = True
+        self._obstacle = ""
+        self._operator = ""
         self._teleoperation.stop()
         self._view.planned_target = None
 
     def _move(self, dt: float, wish: Wish, sim_time: float) -> list[Event]:
         """Follow the wish as far as arm, head and table allow."""
-        was_within_reach = self._is_within_reach
+        before = self._is_within_reach, self._obstacle
         moved = self._moved(dt, wish.displacement, wish.direction)
         if moved.stopped_by in BEHIND_THE_TOOL and wish.direction is not None:
             # The turn of the tool may be what the arm has no room for: the tip comes first.
@@ -167,9 +168,11 @@ class Simulation:
         self._posture = self._postures.of(moved)
         settings = self.setup.settings.proximity
         self._proximity = next_proximity(self._proximity, moved.clearance, settings)
-        if self._is_within_reach == was_within_reach:
+        self._obstacle = moved.stopped_by if moved.stopped_by in BEHIND_THE_TOOL else ""
+        if before == (self._is_within_reach, self._obstacle):
             return []
-        return [Event(EventKind.REACH, sim_time, {"isWithinReach": self._is_within_reach})]
+        data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
+        return [Event(EventKind.REACH, sim_time, data)]
 
     def _moved(self, dt: float, displacement: Vector, direction: Vector | None) -> Moved:
         q, tip = self._posture.q, self._posture.tip.position

@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rastrainer.head_mesh import read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import EventKind, Motion, StartingPoint
-from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.teleoperation.axes import AxesChoice, camera_axes
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
 from rastrainer_simulator.teleoperation.tool_steering import SteeringSettings, ToolDirection
 
@@ -151,12 +152,17 @@ def test_the_tip_goes_where_the_stick_points_and_no_joint_is_ever_too_fast(trial
         assert ((lower <= q) & (q <= upper)).all()
 
 
-def test_the_tip_moves_right_when_the_stick_is_pushed_right(trial):
+def axes_of_the_camera(scenario):
+    view = scenario.cameras["close-up"]
+    return camera_axes(tuple(view.focal_point - view.position), tuple(view.view_up))
+
+
+def test_the_tip_moves_right_when_the_stick_is_pushed_right(trial, scenario):
     start = trial.tip
     for _ in range(100):
         trial.step(OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad"))
     way = trial.tip - start
-    right = trial.simulation._view.camera_axes.right
+    right = axes_of_the_camera(scenario).right
     assert way @ right == pytest.approx(np.linalg.norm(way), rel=1e-6)
     assert np.linalg.norm(way) > 0.03
     assert trial.state.operator == "gamepad"
@@ -218,10 +224,11 @@ def test_a_move_out_of_reach_comes_as_near_as_the_arm_gets_and_says_so(trial):
 
 
 @pytest.mark.parametrize("frame", ["world", "camera", "tool"])
-def test_a_jog_moves_along_the_axes_of_its_frame(trial, frame):
+def test_a_jog_moves_along_the_axes_of_its_frame(trial, scenario, frame):
+    camera = axes_of_the_camera(scenario)
     axes = {
         "world": np.eye(3),
-        "camera": np.array([getattr(trial.simulation._view.camera_axes, name) for name in AXES]),
+        "camera": np.array([camera.right, camera.forward, camera.up]),
         "tool": trial.state.tool_tip_to_world[:3, :3].T,
     }[frame]
     start = trial.tip
@@ -230,9 +237,6 @@ def test_a_jog_moves_along_the_axes_of_its_frame(trial, frame):
     way = trial.tip - start
     assert way / np.linalg.norm(way) == pytest.approx(-axes[1], abs=1e-3)
     assert np.linalg.norm(way) == pytest.approx(0.04 * 0.5, rel=0.05)
-
-
-AXES = ("right", "forward", "up")
 
 
 def test_while_the_trial_is_paused_the_arm_stands_still_and_motions_are_refused(trial):
@@ -305,15 +309,33 @@ def test_the_robots_axes_are_followed_where_chosen(setup):
     assert (driver.tip - start)[1:] == pytest.approx([0.0, 0.0], abs=1e-6)
 
 
-def test_in_direction_mode_the_tool_comes_down_along_the_surface_normal(setup):
-    steering = SteeringSettings(choice=ToolDirection.NORMAL)
+def driver_with(setup, choice):
+    steering = SteeringSettings(choice=choice)
     settings = SimulationSettings(teleoperation=TeleoperationSettings(steering=steering))
     driver = Driver(Simulation(replace(setup, settings=settings), 1))
     driver.start()
+    return driver
+
+
+def test_in_direction_mode_the_tool_comes_down_along_the_surface_normal(setup):
+    driver = driver_with(setup, ToolDirection.NORMAL)
     driver.until(DOWN, lambda state: state.clearance < 0.004)
-    normal = np.array(driver.simulation._posture.surface.normal)
+    mesh = read_head_mesh(setup.scenario.head_mesh)
+    head = driver.simulation.truth.in_head(1000.0 * driver.tip)
+    nearest = np.linalg.norm(mesh.vertices - head, axis=1).argmin()
+    outward = driver.simulation.truth.head_to_world[:3, :3] @ mesh.vertex_normals[nearest]
     tool = driver.state.tool_tip_to_world[:3, 2]
-    assert math.degrees(math.acos(-normal @ tool)) < 5.0
+    assert math.degrees(math.acos(-outward @ tool)) < 8.0
+
+
+def test_a_steered_tool_turns_about_its_tip(setup):
+    driver = driver_with(setup, ToolDirection.HELD)
+    tip, direction = driver.tip, driver.state.tool_tip_to_world[:3, 2].copy()
+    for _ in range(100):
+        driver.step(OperatorInput(rotation=(1.0, 0.0)))
+    turned = math.acos(direction @ driver.state.tool_tip_to_world[:3, 2])
+    assert turned == pytest.approx(100 * DT * SteeringSettings().coarse_turn, rel=0.01)
+    assert driver.tip == pytest.approx(tip, abs=1e-6)
 
 
 def hover(truth, label):
