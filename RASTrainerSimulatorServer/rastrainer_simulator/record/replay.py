@@ -12,7 +12,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, check_arguments
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
-from rastrainer_simulator.record.journal_reader import JournalReading
+from rastrainer_simulator.record.journal_reader import Integrity, JournalReading
 from rastrainer_simulator.record.replay_metrics import ReplayMetrics
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.settings import SimulationSettings, settings_from_json
@@ -116,6 +116,8 @@ def _replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
         entries.add(simulation, operator_input, result)
         metrics = metrics.after(dt, before, result)
     again = entries.taken()[1:] if entries else []
+    if reading.integrity is Integrity.CUT_SHORT:
+        again = _without_what_was_cut(again, recorded)
     compared: dict[str, int] = defaultdict(int)
     for entry in recorded:
         compared[entry["kind"]] += 1
@@ -172,6 +174,15 @@ def _first_difference(
     if len(recorded) != len(again):
         return f"{len(recorded)} entries were recorded, now there are {len(again)}"
     return None
+
+
+def _without_what_was_cut(
+    again: Sequence[Mapping[str, Any]], recorded: Sequence[Mapping[str, Any]]
+) -> Sequence[Mapping[str, Any]]:
+    """Leave out what the last tick says beyond the cut, which may lie between its lines."""
+    beyond = again[len(recorded) :]
+    is_last_tick = all(entry["tick"] == recorded[-1]["tick"] for entry in beyond)
+    return again[: len(recorded)] if is_last_tick else again
 
 
 def _comparable(entry: Mapping[str, Any]) -> dict[str, Any]:

@@ -100,6 +100,17 @@ def test_a_journal_that_was_cut_short_replays_as_far_as_it_goes(recorded, tmp_pa
     assert main(["replay", str(cut)]) == 0
 
 
+def test_a_journal_that_was_cut_between_the_lines_of_one_tick_replays_up_to_there(
+    recorded, tmp_path
+):
+    lines = recorded.read_bytes().splitlines(keepends=True)
+    ticks = [json.loads(line).get("tick") for line in lines]
+    shared = next(n for n in range(20, len(ticks)) if ticks[n] == ticks[n - 1])
+    cut = tmp_path / "cut"
+    cut.write_bytes(b"".join(lines[:shared]) + lines[shared][:10])
+    assert main(["replay", str(cut)]) == 0
+
+
 def moved_sample(entries):
     sample = [entry for entry in entries if entry["kind"] == "sample"][5]
     sample["q"][0] += 1e-12
