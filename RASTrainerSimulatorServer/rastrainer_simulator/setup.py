@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.model import RobotModel, load_robot
 from rastrainer_simulator.settings import SimulationSettings, settings_to_json
@@ -23,7 +23,7 @@ class SimulationSetup:
         scenario: head, tasks and cameras.
         robot: the arm and its tool.
         settings: how it behaves.
-        scenario_sha256: of the scenario's files, so that a journal tells which it was.
+        scenario_sha256: of what a trial depends on, so that a journal tells which it was.
     """
 
     scenario: Scenario
@@ -52,18 +52,20 @@ def load_setup(
         InputError: a file of theirs cannot be used.
     """
     folder = scenario_folder or asset_path(*DEFAULT_SCENARIO)
+    scenario = load_scenario(folder)
     return SimulationSetup(
-        scenario=load_scenario(folder),
+        scenario=scenario,
         robot=load_robot(urdf_path, robot_meshes),
         settings=settings or SimulationSettings(),
-        scenario_sha256=folder_sha256(folder),
+        scenario_sha256=scenario_sha256(scenario),
     )
 
 
-def folder_sha256(folder: Path) -> str:
-    """Return one hash of a folder's files: their names and contents, in the names' order."""
+def scenario_sha256(scenario: Scenario) -> str:
+    """Return one hash of what a trial depends on: `scenario.json`, the head and the fiducials."""
     whole = hashlib.sha256()
-    for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-        whole.update(path.relative_to(folder).as_posix().encode())
+    for path in (scenario.folder / FILE_NAME, scenario.head_mesh):
         whole.update(hashlib.sha256(path.read_bytes()).digest())
+    for task in scenario.tasks:
+        whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
     return whole.hexdigest()
