@@ -1,4 +1,4 @@
-"""What the trainee reads and can choose at a moment: values that every view draws in its own way."""
+"""What the trainee reads and can choose at a moment, for every view to draw in its own way."""
 
 from __future__ import annotations
 
