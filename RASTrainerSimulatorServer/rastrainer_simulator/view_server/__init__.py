@@ -1,0 +1,1 @@
+"""How views join: pairing, the scene, its stream and the input, as told in docs/views.md."""
