@@ -26,7 +26,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print what the replay has found and return the exit status."""
     # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.record.journal_reader import read_journal
+    from rastrainer.journal.journal_reader import read_journal
     from rastrainer_simulator.record.replay import replay, setup_of
 
     reading = read_journal(arguments.journal)

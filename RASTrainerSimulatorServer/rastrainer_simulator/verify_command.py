@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.record.journal_reader import Integrity, read_journal
+from rastrainer.journal.journal_reader import Integrity, read_journal
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

@@ -5,10 +5,10 @@ import pytest
 import scipy.signal
 
 from rastrainer.errors import InputError
-from rastrainer.metrics import idle_time, movements, path_efficiency, path_length
-from rastrainer.signals import low_pass, resample, speeds
-from rastrainer.smoothness import log_dimensionless_jerk, sparc
-from rastrainer.throughput import effective_throughput
+from rastrainer.motion.path_metrics import idle_time, movements, path_efficiency, path_length
+from rastrainer.motion.signals import low_pass, resample, speeds
+from rastrainer.motion.smoothness import log_dimensionless_jerk, sparc
+from rastrainer.motion.throughput import effective_throughput
 
 RATE_HZ = 100.0
 BELL = np.exp(-5 * np.arange(-1, 1, 0.01) ** 2)

@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rastrainer.journal.journal_reader import Integrity, read_journal
 from rastrainer.protocol import CommandName, Phase, check_arguments
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import Command, OperatorInput
-from rastrainer_simulator.record.journal_reader import Integrity, read_journal
 from rastrainer_simulator.record.replay import replay
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.simulation import Simulation

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.journal.journal_reader import Integrity, JournalReading
 from rastrainer.protocol import CommandName, check_arguments
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
-from rastrainer_simulator.record.journal_reader import Integrity, JournalReading
 from rastrainer_simulator.record.replay_metrics import ReplayMetrics
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.settings import SimulationSettings, settings_from_json

@@ -7,10 +7,10 @@ import struct
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.operator_input import Command, OperatorInput
-from rastrainer_simulator.record.journal_line import FORMAT, FORMAT_VERSION
 from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.state import Event, EventKind, SimulationState, StartingPoint, StepResult

@@ -12,9 +12,9 @@ import sys
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
+from rastrainer.journal.journal_reader import Integrity, read_journal
 from rastrainer_simulator.record.journal import Journal, RecordError
-from rastrainer_simulator.record.journal_line import FORMAT, FORMAT_VERSION
-from rastrainer_simulator.record.journal_reader import Integrity, read_journal
 
 HEADER = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, "trialId": "T"}
 TRIAL = [

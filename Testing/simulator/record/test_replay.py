@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.journal.journal_reader import read_journal
 from rastrainer.protocol import CommandName, check_arguments
 from rastrainer_simulator.cli import main
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.record.journal_reader import read_journal
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.simulation import Simulation
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
+from rastrainer.journal.journal_reader import Integrity, read_journal
 from rastrainer.protocol import CommandName
 from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.record.journal_line import FORMAT, FORMAT_VERSION
-from rastrainer_simulator.record.journal_reader import Integrity, read_journal
 from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
 from rastrainer_simulator.training.true_error import Truth

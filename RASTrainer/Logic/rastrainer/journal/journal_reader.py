@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.record.journal_line import (
+from rastrainer.journal.journal_line import (
     FIRST_BYTES,
     FORMAT_VERSION,
     LONGEST_LINE,

@@ -1,0 +1,1 @@
+"""Motion metrics of a trial, from the recorded trajectory of the tool."""
