@@ -1,5 +1,7 @@
 """The study keeps what it is given: once, whole, and only as long as the trainee wants."""
 
+import csv
+import json
 import sqlite3
 import uuid
 
@@ -9,7 +11,8 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.registration import KINDS, register
 from rastrainer.scoring import score_trial, task_reference
-from rastrainer.study import StoredRegistration, Study
+from rastrainer.study import DeletedTrialError, StoredRegistration, Study
+from rastrainer.study_export import export_history, export_trainee
 from rastrainer.target_error import target_error
 from rastrainer.trial_record import TrialRecord
 from Testing.domain.trial_records import make_record
@@ -208,3 +211,52 @@ def test_everything_is_there_after_opening_again(path, results):
         assert study.trainee("a").consent
         assert study.history("a")[0].score == results[2]
         assert study.has_trial(record()["trialId"])
+
+
+def test_a_deleted_trainee_does_not_come_back_with_a_trial_that_is_offered_again(study, path):
+    study.add_trial(record(1, trainee="gone"))
+    study.delete_trainee("gone")
+    with pytest.raises(DeletedTrialError, match="deleted from the study"):
+        study.add_trial(record(1, trainee="gone"))
+    assert study.trainees() == ()
+    with Study.open(path) as again, pytest.raises(DeletedTrialError):
+        again.add_trial(record(1, trainee="gone"))
+    assert study.add_trial(record(2, trainee="gone"))
+
+
+def test_motion_metrics_are_stored_once_and_finite(study):
+    study.add_trial(record())
+    study.set_motion(record()["trialId"], {"path_mm": 2500.5, "sparc": -1.9})
+    study.set_motion(record()["trialId"], {"path_mm": 1.0})
+    assert study.trial(record()["trialId"]).motion == {"path_mm": 2500.5, "sparc": -1.9}
+    study.add_trial(record(1))
+    assert study.trial(record(1)["trialId"]).motion == {}
+    with pytest.raises(InputError, match="motion metric must be a number"):
+        study.set_motion(record(1)["trialId"], {"path_mm": float("inf")})
+
+
+def test_everything_about_one_trainee_is_exported_and_nothing_about_others(
+    study, results, tmp_path
+):
+    study.add_trial(record(1, trainee="a"), *results)
+    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    study.set_motion(record(1)["trialId"], {"path_mm": 2500.5})
+    study.add_trial(record(2, trainee="b"))
+    assert export_trainee(study, "a", tmp_path / "a.json") == 1
+    text = (tmp_path / "a.json").read_text()
+    (trial,) = json.loads(text)["trials"]
+    assert TrialRecord.from_json(trial["record"]) == TrialRecord.from_json(record(1, trainee="a"))
+    assert (trial["true_tre_mm"], trial["motion"]) == (0.5, {"path_mm": 2500.5})
+    assert record(2)["trialId"] not in text
+
+
+def test_the_history_is_a_table_with_empty_cells_for_what_is_unknown(study, results, tmp_path):
+    study.add_trial(record(1, trainee="=SUM(A1)"), *results)
+    study.set_motion(record(1)["trialId"], {"path_mm": 2500.5})
+    study.add_trial(record(2, trainee="b"))
+    assert export_history(study, ["=SUM(A1)", "b"], tmp_path / "history.csv") == 2
+    with (tmp_path / "history.csv").open(newline="") as file:
+        first, second = csv.DictReader(file)
+    assert first["trainee"] == "'=SUM(A1)"
+    assert float(first["fre_mm"]) == results[0][0].fre_mm
+    assert (first["path_mm"], second["path_mm"], second["score"]) == ("2500.5", "", "")

@@ -5,11 +5,11 @@ import multiprocessing
 import os
 import random
 import resource
-import signal
 import sqlite3
 import subprocess
 import sys
 import tempfile
+import time
 import uuid
 from pathlib import Path
 
@@ -60,19 +60,51 @@ def test_two_processes_that_write_at_once_lose_and_double_nothing(tmp_path):
     assert check(path) == "ok"
 
 
-def test_a_killed_writer_loses_no_trial_that_it_was_told_is_stored(tmp_path):
+def write_until_killed(path, first, acknowledged):
+    """Store trials of rising number and tell each once it is stored."""
+    record = make_record()
+    with Study.open(path) as study:
+        for number in range(first, 100_000):
+            record["trialId"] = f"00000000-0000-0000-0000-{number:012d}"
+            study.add_trial(record)
+            os.write(acknowledged, b"%d\n" % number)
+
+
+class KilledWriter:
+    """A process that stores trials as fast as it can, until it is killed in the middle."""
+
+    def __init__(self, path, first):
+        context = multiprocessing.get_context("fork")
+        self._told, telling = os.pipe()
+        self._process = context.Process(target=write_until_killed, args=(path, first, telling))
+        self._process.start()
+        os.close(telling)
+
+    def kill(self):
+        """Kill it and return the numbers of the trials that it was told are stored."""
+        self._process.kill()
+        self._process.join()
+        with os.fdopen(self._told) as lines:
+            return {int(line) for line in lines}
+
+
+def test_two_hundred_kills_of_two_writers_lose_and_double_nothing(tmp_path):
     path = tmp_path / "study.db"
-    rng = random.Random(0)
-    acknowledged, first = set(), 0
-    for _ in range(6):
-        process = writer(path, first, 10_000)
-        for _ in range(rng.randint(1, 25)):
-            acknowledged.add(int(process.stdout.readline()))
-        process.send_signal(signal.SIGKILL)
-        rest, _ = process.communicate()
-        acknowledged |= {int(line) for line in rest.splitlines() if line.isdigit()}
-        first = max(acknowledged)
+    rng = random.Random(5)
+    acknowledged, kills = set(), 0
+    writers = [KilledWriter(path, 0), KilledWriter(path, 0)]
+    while kills < 200:
+        time.sleep(rng.uniform(0.0, 0.08))
+        victim = rng.randrange(2)
+        acknowledged |= writers[victim].kill()
+        kills += 1
+        # Both start near the same number, so that they race for the same trials.
+        first = max(0, max(acknowledged, default=0) - rng.randrange(4))
+        writers[victim] = KilledWriter(path, first)
+    for process in writers:
+        acknowledged |= process.kill()
     stored = stored_numbers(path)
+    assert len(acknowledged) > 200
     assert acknowledged <= set(stored)
     assert len(stored) == len(set(stored))
     assert check(path) == "ok"

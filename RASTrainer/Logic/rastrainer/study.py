@@ -15,11 +15,12 @@ from rastrainer.ctps import Trial
 from rastrainer.registration import Registration
 from rastrainer.scoring import TrialScore
 from rastrainer.study_database import StudyDatabase
+from rastrainer.study_tombstones import DeletedTrialError
 from rastrainer.study_values import StoredRegistration, StoredTrial, Trainee
 from rastrainer.target_error import TargetError
 from rastrainer.trial_record import TrialRecord
 
-__all__ = ["StoredRegistration", "StoredTrial", "Study", "Trainee"]
+__all__ = ["DeletedTrialError", "StoredRegistration", "StoredTrial", "Study", "Trainee"]
 
 
 class Study:
@@ -83,6 +84,8 @@ class Study:
     def delete_trainee(self, pseudonym: str) -> int:
         """Delete a trainee with all trials and results, for good; return the number of trials.
 
+        Should the simulator offer one of the trials again, `add_trial` refuses it.
+
         Raises:
             InputError: the study has none of this pseudonym.
         """
@@ -109,6 +112,7 @@ class Study:
 
         Raises:
             InputError: the record is not one, or another trial has its UUID.
+            DeletedTrialError: the trial was deleted with its trainee.
         """
         json_object = record.to_json() if isinstance(record, TrialRecord) else record
         checked = TrialRecord.from_json(json_object)
@@ -150,6 +154,15 @@ class Study:
         """
         with self._database.writing() as connection:
             study_trials.set_truth(connection, trial_id, true_tre_mm, head_to_world)
+
+    def set_motion(self, trial_id: str, motion: Mapping[str, float]) -> None:
+        """Store the motion metrics of a trial by name; a second time changes nothing.
+
+        Raises:
+            InputError: the study has no such trial, or a metric is no finite number.
+        """
+        with self._database.writing() as connection:
+            study_trials.set_motion(connection, trial_id, motion)
 
     def trial(self, trial_id: str) -> StoredTrial:
         """Return a trial; raise `InputError` if the study has no such trial."""

@@ -65,4 +65,16 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         )
         """,
     ),
+    (
+        # So that a simulator that offers a deleted trial again does not bring its trainee back.
+        # A hash, not the UUID: it can be recognized but leads to nobody.
+        "CREATE TABLE deleted_trials (trial_sha256 TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
+        """
+        CREATE TABLE motions (
+            trial_id TEXT PRIMARY KEY NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            motion_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+    ),
 )

@@ -8,6 +8,7 @@ import sqlite3
 from rastrainer import protocol
 from rastrainer.errors import InputError
 from rastrainer.study_clock import utc_now
+from rastrainer.study_tombstones import bury
 from rastrainer.study_values import Trainee
 
 TRAINEE_ID = "SELECT id FROM trainees WHERE pseudonym = ?"
@@ -77,15 +78,18 @@ def change(
 def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
     """Delete a trainee with all that hangs on it; return how many trials that were.
 
+    The trials cannot be stored again.
+
     Raises:
         InputError: the study has no such trainee.
     """
     find(connection, pseudonym)
-    (trials,) = connection.execute(
-        f"SELECT count(*) FROM trials WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
-    ).fetchone()
+    trials = connection.execute(
+        f"SELECT trial_id FROM trials WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+    ).fetchall()
+    bury(connection, (trial_id for (trial_id,) in trials))
     connection.execute("DELETE FROM trainees WHERE pseudonym = ?", (pseudonym,))
-    return trials
+    return len(trials)
 
 
 def _next_pseudonym(connection: sqlite3.Connection) -> str:

@@ -14,6 +14,7 @@ from rastrainer.errors import InputError
 from rastrainer.registration import RIGID, Registration
 from rastrainer.scoring import TrialScore
 from rastrainer.study_clock import utc_now
+from rastrainer.study_tombstones import check_not_buried
 from rastrainer.study_trainees import TRAINEE_ID
 from rastrainer.study_values import StoredRegistration, StoredTrial
 from rastrainer.target_error import TargetError
@@ -21,6 +22,7 @@ from rastrainer.trial_record import TrialRecord
 
 RECORD_LIMIT_BYTES = 2**20
 TRUTH_LIMIT = 1e6
+MOTION_LIMIT = 1e9
 
 Value = TypeVar("Value")
 
@@ -37,10 +39,12 @@ def add(
 
     Raises:
         InputError: the object is larger than 1 MiB, or another trial has its UUID.
+        DeletedTrialError: the trial was deleted with its trainee.
     """
     text = json_text(json_object)
     if len(text) > RECORD_LIMIT_BYTES:
         raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+    check_not_buried(connection, record.trial_id)
     if exists(connection, record.trial_id):
         _check_same(find_record(connection, record.trial_id), record)
         return False
@@ -110,6 +114,25 @@ def set_truth(
     )
 
 
+def set_motion(connection: sqlite3.Connection, trial_id: str, motion: Mapping[str, float]) -> None:
+    """Store the motion metrics of a trial; a second time changes nothing.
+
+    Raises:
+        InputError: the study has no such trial, or a metric is no finite number.
+    """
+    _check_exists(connection, trial_id)
+    try:
+        checked = {
+            protocol.text()(name): protocol.number(-MOTION_LIMIT, MOTION_LIMIT)(value)
+            for name, value in motion.items()
+        }
+    except ValueError as error:
+        raise InputError(f"A motion metric must be {error}.") from None
+    connection.execute(
+        "INSERT OR IGNORE INTO motions VALUES (?, ?, ?)", (trial_id, json_text(checked), utc_now())
+    )
+
+
 def exists(connection: sqlite3.Connection, trial_id: str) -> bool:
     """Return whether the study has a trial of this UUID."""
     query = "SELECT 1 FROM trials WHERE trial_id = ?"
@@ -138,6 +161,9 @@ def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
     truth = connection.execute(
         "SELECT true_tre_mm, head_to_world_json FROM truths WHERE trial_id = ?", (trial_id,)
     ).fetchone()
+    motion = connection.execute(
+        "SELECT motion_json FROM motions WHERE trial_id = ?", (trial_id,)
+    ).fetchone()
     return StoredTrial(
         record=record,
         registrations={
@@ -146,6 +172,7 @@ def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
         score=None if score is None else decoded(score[0], TrialScore.from_json),
         true_tre_mm=None if truth is None else truth[0],
         head_to_world=None if truth is None else decoded(truth[1], tuple),
+        motion={} if motion is None else decoded(motion[0], dict),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -97,6 +97,7 @@ class StoredTrial:
         score: None until the trial is scored.
         true_tre_mm: True error at the target; None until the simulator reveals it.
         head_to_world: 16 numbers row by row, RAS to `World`, mm; None until revealed.
+        motion: Motion metrics by name, with the unit at its end; empty where nobody watched.
     """
 
     record: TrialRecord
@@ -104,3 +105,4 @@ class StoredTrial:
     score: TrialScore | None
     true_tre_mm: float | None
     head_to_world: tuple[float, ...] | None
+    motion: dict[str, float] = field(default_factory=dict)
