@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol, Union
+from typing import Any, Protocol
 
 from rastrainer_simulator.flow.screen import Screen
 
@@ -66,7 +66,7 @@ class Control:
     view: int | None = None
 
 
-News = Union[Screen, Feedback, Control]  # noqa: UP007  (also on Python 3.10 at run time)
+News = Screen | Feedback | Control
 
 
 class OperatorDesk(Protocol):
