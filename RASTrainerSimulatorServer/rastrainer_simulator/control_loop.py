@@ -176,7 +176,7 @@ class ControlLoop:
 
     def _run(self) -> None:
         try:
-            with precise_timing():
+            with precise_timing(is_first_in_line=self._period >= self._dt):
                 self._tick_on_time()
         except Exception:
             _log.exception("The control loop has broken down")
