@@ -24,9 +24,11 @@ from rastrainer_simulator.record.held_back import HeldBack
 from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
+from rastrainer_simulator.training.true_error import Truth
 
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
@@ -124,6 +126,16 @@ class ControlLoop:
     def statistics(self) -> LoopStatistics:
         """How punctual it has been."""
         return self._punctuality.told()
+
+    @property
+    def setup(self) -> SimulationSetup:
+        """What the present simulation was made from."""
+        return self._simulation.setup
+
+    @property
+    def truth(self) -> Truth:
+        """Where the head is: for what the trainee is shown; clients learn it with the score."""
+        return self._simulation.truth
 
     @property
     def problems(self) -> tuple[str, ...]:
