@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from rastrainer.head_mesh import read_head_mesh
@@ -13,6 +16,7 @@ from rastrainer_simulator.collision.table_clearance import Surroundings
 from rastrainer_simulator.joint_motion import JointMotion, Joints
 from rastrainer_simulator.motion_command import MM, commanded_motion
 from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer_simulator.planning.plan_reach import PlanReach
 from rastrainer_simulator.posture import Postures
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene_view import SceneView
@@ -60,6 +64,7 @@ class Simulation:
         kinematics = make_kinematics(setup.robot)
         self.kinematics_name = type(kinematics).__name__
         self._contact = Contact(self._collision, kinematics)
+        self._plan_reach = PlanReach(setup.robot, kinematics, self._collision)
         self._postures = Postures(setup.robot)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
         self._joint_motion = JointMotion(setup.robot, self._start)
@@ -120,13 +125,24 @@ class Simulation:
             self._view.camera = arguments["camera"]
             return Reply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
         if command.name == CommandName.PLAN_TARGET:
-            position = tuple(value / MM for value in arguments["positionMm"])
-            self._view.planned_target = PlannedTarget(arguments["name"], position)
-            return Reply(True, events=(Event(EventKind.PLAN, sim_time, dict(arguments)),))
+            return self._plan(arguments, sim_time)
         tool = self._posture.tool_axes
         self._teleoperation.start(commanded_motion(command, self._view.camera_axes, tool))
         self._operator = command.sender
         return Reply(True)
+
+    def _plan(self, arguments: Mapping[str, Any], sim_time: float) -> Reply:
+        """Show what was planned and answer whether the robot can carry it out."""
+        position, entry = (
+            None if point is None else tuple(value / MM for value in point)
+            for point in (arguments["positionMm"], arguments["entryMm"])
+        )
+        answer = self._plan_reach.judge(position, entry)
+        self._view.planned_target = PlannedTarget(
+            arguments["name"], position, entry, answer.reachable
+        )
+        event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
+        return Reply(True, data=answer._asdict(), events=(event,))
 
     def _tasks(self) -> list[dict[str, object]]:
         return [

@@ -70,10 +70,16 @@ class Touch:
 
 @dataclass(frozen=True)
 class PlannedTarget:
-    """A point planned on the MRI, mapped to World (m) by the client's registration."""
+    """A point planned on the MRI, mapped to World (m) by the client's registration.
+
+    `entry` is where the trajectory to it begins, None where only a point was planned. `reachable`
+    tells whether the robot can carry it out.
+    """
 
     name: str
     position: Vector
+    entry: Vector | None = None
+    reachable: bool = True
 
 
 @dataclass(frozen=True)

@@ -275,9 +275,17 @@ def test_a_planned_target_is_shown_once_the_trial_is_registered(setup):
     for _ in range(15):
         driver.do(CommandName.CAPTURE)
     driver.do(CommandName.REGISTER)
-    assert driver.do(CommandName.PLAN_TARGET, **plan).ok
+    assert driver.do(CommandName.PLAN_TARGET, **plan).data == {"reachable": True, "reason": ""}
     assert driver.state.planned_target.name == "tumor"
     assert driver.state.planned_target.position == (0.5, 0.0, 0.3)
+    steep = driver.do(CommandName.PLAN_TARGET, **plan, entryMm=[500.0, 0.0, 360.0])
+    assert steep.data["reachable"]
+    assert driver.state.planned_target.entry == (0.5, 0.0, 0.36)
+    below = driver.do(CommandName.PLAN_TARGET, **plan, entryMm=[500.0, 0.0, 150.0])
+    assert "along the whole trajectory" in below.data["reason"]
+    far = driver.do(CommandName.PLAN_TARGET, positionMm=[2000.0, 0.0, 300.0])
+    assert far.data == {"reachable": False, "reason": "The target is out of the robot's reach."}
+    assert not driver.state.planned_target.reachable
     driver.start()
     assert driver.state.planned_target is None
 

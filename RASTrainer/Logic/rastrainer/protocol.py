@@ -234,6 +234,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     },
     CommandName.PLAN_TARGET: {
         "positionMm": Argument(numbers(3, WORLD_LIMIT_MM, "mm")),
+        "entryMm": Argument(numbers(3, WORLD_LIMIT_MM, "mm"), None),
         "name": Argument(text(), "target"),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
