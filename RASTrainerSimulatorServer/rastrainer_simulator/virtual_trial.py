@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.protocol import CommandName, Mode, Phase, check_arguments
-from rastrainer.scripted_trainee import Observation, ScriptedTrainee, Skill, seeded_skill
+from rastrainer.scripted_trainee import Action, Observation, ScriptedTrainee, Skill, seeded_skill
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.state import Answer, SimulationState
+from rastrainer_simulator.state import SimulationState, StepResult
 
 MM = 1000.0
 LONGEST_S = 1800.0
+
+OnStep = Callable[[Simulation, SimulationState, OperatorInput, StepResult], Any]
+"""Is told the simulation, the state before, the input and the result of each step."""
 
 
 class UnfinishedTrialError(RASTrainerError):
@@ -40,12 +45,26 @@ class VirtualTrial:
 
 
 def play_virtual_trial(
-    simulation: Simulation, task_name: str, seed: int, skill: Skill, dt: float
+    simulation: Simulation,
+    task_name: str,
+    seed: int,
+    skill: Skill,
+    dt: float,
+    on_step: OnStep | None = None,
+    trainee: str | None = None,
+    mode: Mode = Mode.DESKTOP,
 ) -> VirtualTrial:
-    """Play one task to its registration; the seed is of the head's pose and of the hands.
+    """Play one task to its registration; the simulation is left in the phase `registered`.
 
-    `dt` is the simulation's step in s. The simulation is left in the phase `registered`, ready for
-    the next trial.
+    Args:
+        simulation: free for the next trial.
+        task_name: of the scenario.
+        seed: of the head's pose and of the hands.
+        skill: of the hands.
+        dt: the simulation's step in s.
+        on_step: is called after each step as a recorder wants it.
+        trainee: pseudonym; by default told from the seed.
+        mode: goes into the record; the hands do not see it.
 
     Raises:
         InputError: there is no such task.
@@ -54,7 +73,7 @@ def play_virtual_trial(
     scenario = simulation.setup.scenario
     task = scenario.task(task_name)
     head_to_world = scenario.perturbed_head_to_world(seed)
-    trainee = ScriptedTrainee(
+    hands = ScriptedTrainee(
         transforms.apply(head_to_world, task.fiducials),
         transforms.apply(head_to_world, scenario.target_position[None])[0],
         seeded_skill(skill, seed),
@@ -62,21 +81,30 @@ def play_virtual_trial(
     )
     start = {
         "task": task_name,
-        "trainee": f"virtual-{seed}",
-        "mode": Mode.DESKTOP.value,
+        "trainee": trainee or f"virtual-{seed}",
+        "mode": mode.value,
         "seed": seed,
     }
-    state, _ = _step(simulation, dt, (CommandName.START_TASK, start))
+
+    def step(action: Action | None) -> StepResult:
+        before, operator_input = simulation.state, _input(action)
+        result = simulation.step(dt, operator_input)
+        if on_step is not None:
+            on_step(simulation, before, operator_input, result)
+        return result
+
+    state = step((CommandName.START_TASK, start)).state
     while state.training.phase is not Phase.REGISTERED:
         if state.elapsed > LONGEST_S:
             raise UnfinishedTrialError(
                 f"The scripted trainee of seed {seed} did not finish {task_name} in "
                 f"{LONGEST_S:g} s: it is at point {state.training.next_point}."
             )
-        action = trainee.decide(_observation(state))
-        state, answers = _step(simulation, dt, action)
-        if action is not None and action[0] == CommandName.CAPTURE and not answers[0].ok:
-            trainee.touch_refused()
+        action = hands.decide(_observation(state))
+        result = step(action)
+        state = result.state
+        if action is not None and action[0] == CommandName.CAPTURE and not result.answers[0].ok:
+            hands.touch_refused()
     touches = state.training.touches
     return VirtualTrial(
         touches_mm=MM * np.array([touch.position for touch in touches]),
@@ -86,14 +114,11 @@ def play_virtual_trial(
     )
 
 
-def _step(simulation: Simulation, dt: float, action) -> tuple[SimulationState, tuple[Answer, ...]]:
+def _input(action: Action | None) -> OperatorInput:
     if action is None:
-        result = simulation.step(dt, HANDS_OFF)
-    else:
-        name, arguments = action
-        command = Command(name, check_arguments(name, arguments))
-        result = simulation.step(dt, OperatorInput(commands=(command,)))
-    return result.state, result.answers
+        return HANDS_OFF
+    name, arguments = action
+    return OperatorInput(commands=(Command(name, check_arguments(name, arguments)),))
 
 
 def _observation(state: SimulationState) -> Observation:

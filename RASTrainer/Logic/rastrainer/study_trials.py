@@ -64,6 +64,8 @@ def add(
             utc_now(),
         ),
     )
+    if record.motion:
+        set_motion(connection, record.trial_id, record.motion)
     return True
 
 

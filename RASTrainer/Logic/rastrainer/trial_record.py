@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import Any
 
@@ -21,6 +21,7 @@ from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM, Argument, Mode
 TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000
 VERSIONS_LIMIT = 32
+MOTION_LIMIT = 100
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class TrialRecord:
         undone_touches: Number of touches that the trainee took back.
         versions: Name and version of each program and format that made the record.
         seed: Seed of the trial, where the simulator tells it.
+        motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
     """
 
     trial_id: str
@@ -73,6 +75,7 @@ class TrialRecord:
     undone_touches: int
     versions: Mapping[str, str]
     seed: int | None = None
+    motion: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -107,6 +110,7 @@ class TrialRecord:
         """Return the JSON object that `from_json` reads."""
         json_object = {key: getattr(self, name) for key, name in _PYTHON_NAMES.items()}
         json_object["versions"] = dict(self.versions)
+        json_object["motion"] = dict(self.motion)
         json_object["points"] = [
             {
                 "label": point.label,
@@ -153,6 +157,17 @@ def _versions(value: Any) -> dict[str, str]:
     check = protocol.text()
     try:
         return {check(name): check(version) for name, version in value.items()}
+    except ValueError:
+        raise ValueError(words) from None
+
+
+def _motion(value: Any) -> dict[str, float]:
+    words = f"an object of at most {MOTION_LIMIT} names with finite numbers"
+    if not isinstance(value, Mapping) or len(value) > MOTION_LIMIT:
+        raise ValueError(words)
+    check_name, check_number = protocol.text(), protocol.number(-1e9, 1e9)
+    try:
+        return {check_name(name): check_number(number) for name, number in value.items()}
     except ValueError:
         raise ValueError(words) from None
 
@@ -212,6 +227,7 @@ _RECORD_KEYS = {
     "undoneTouches": Argument(protocol.whole_number(0, TOUCH_LIMIT)),
     "versions": Argument(_versions),
     "seed": Argument(_optional(protocol.whole_number(0, 2**63 - 1)), None),
+    "motion": Argument(_motion, {}),
 }
 
 _PYTHON_NAMES = {
@@ -228,4 +244,5 @@ _PYTHON_NAMES = {
     "undoneTouches": "undone_touches",
     "versions": "versions",
     "seed": "seed",
+    "motion": "motion",
 }

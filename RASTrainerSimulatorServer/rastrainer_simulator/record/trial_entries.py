@@ -8,6 +8,8 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.operator_input import Command, OperatorInput
@@ -45,9 +47,11 @@ class TrialEntries:
         self._sticks: tuple[Any, ...] | None = None
         self._trajectory = hashlib.sha256()
         self._utc: dict[float, str] = {}
+        self._recording = Recording()
         times = stamp(state.tick, state.sim_time)
         self.started_utc = times["utc"]
-        self.pending: list[dict[str, Any]] = [
+        self.pending: list[dict[str, Any]] = []
+        self._append(
             {
                 "kind": "header",
                 "format": FORMAT,
@@ -63,7 +67,7 @@ class TrialEntries:
                 **simulation.setup.description(),
                 "versions": self.versions,
             }
-        ]
+        )
 
     def add(
         self, simulation: Simulation, operator_input: OperatorInput, result: StepResult
@@ -79,22 +83,27 @@ class TrialEntries:
         times = stamp(state.tick, state.sim_time)
         if sticks != self._sticks:
             self._sticks = sticks
-            self.pending.append(_input_entry(times, operator_input))
+            self._append(_input_entry(times, operator_input))
         for command in operator_input.commands:
-            self.pending.append(self._command_entry(times, command))
+            self._append(self._command_entry(times, command))
         record = None
         for event in result.events:
             if event.kind is EventKind.TOUCH:
                 self._utc[event.sim_time] = times["utc"]
             entry = self._event_entry(times, event)
             if entry["kind"] == "registered":
+                entry["truth"] = simulation.truth.to_json()
+            self._append(entry)
+            if entry["kind"] == "registered":
                 record = self._record(state)
                 entry["record"] = record.to_json()
-                entry["truth"] = simulation.truth.to_json()
-            self.pending.append(entry)
         if is_sampled:
-            self.pending.append(_sample_entry(times, state))
+            self._append(_sample_entry(times, state))
         return record
+
+    def _append(self, entry: dict[str, Any]) -> None:
+        self.pending.append(entry)
+        self._recording.add(entry)
 
     def taken(self) -> list[dict[str, Any]]:
         """Return what is pending, which then counts as handed over."""
@@ -146,6 +155,7 @@ class TrialEntries:
             rejected_touches=training.rejected,
             undone_touches=training.undone,
             versions=self.versions,
+            motion=trial_motion(self._recording.trajectory()),
         )
 
 

@@ -1,0 +1,164 @@
+"""From a journal's entries, as they are formed or as they are read, to a trial's trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.motion.trajectory import Interval, Touch, Trajectory
+from rastrainer.protocol import Phase, Proximity
+
+
+class Recording:
+    """Takes a journal's entries one by one; `trajectory` is what they amount to so far.
+
+    The simulator feeds it while the trial runs, a reader from the file: the numbers are the same.
+    """
+
+    def __init__(self) -> None:
+        self._start_s = self._tick_s = 0.0
+        self._paused_s = 0.0
+        self._paused_since: float | None = None
+        self._samples: list[tuple[float, list[float], float]] = []
+        self._touches: list[Touch] = []
+        self._refused: list[Touch] = []
+        self._undone = self._cameras = self._pauses = 0
+        self._near: list[Interval] = []
+        self._contacts: list[Interval] = []
+        self._state, self._near_since, self._contact_since = Proximity.FREE, 0.0, 0.0
+        self._fiducials: dict[str, np.ndarray] = {}
+
+    @classmethod
+    def of(cls, entries: Iterable[Mapping[str, Any]]) -> Recording:
+        """Return the recording of entries.
+
+        Raises:
+            InputError: an entry is not as the journal's format has it.
+        """
+        recording = cls()
+        try:
+            for entry in entries:
+                recording.add(entry)
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise InputError(
+                f"An entry of the journal is not as it should be ({error!r})."
+            ) from None
+        return recording
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        """Take in one entry."""
+        kind = entry["kind"]
+        if kind == "sample":
+            time = self._trial_time(entry["simTime"])
+            if not self._samples or time > self._samples[-1][0]:
+                self._samples.append((time, entry["tipMm"], entry["clearanceMm"]))
+        elif kind in _HANDLERS:
+            _HANDLERS[kind](self, entry)
+
+    def trajectory(self) -> Trajectory:
+        """Return the movement so far; what is still going on ends with the last sample."""
+        times = np.array([sample[0] for sample in self._samples])
+        end = float(times[-1]) if len(times) else 0.0
+        near, contacts = list(self._near), list(self._contacts)
+        if self._state is not Proximity.FREE:
+            near.append(Interval(self._near_since, max(end, self._near_since)))
+        if self._state is Proximity.CONTACT:
+            contacts.append(Interval(self._contact_since, max(end, self._contact_since)))
+        clearance = np.array([sample[2] for sample in self._samples])
+        return Trajectory(
+            times_s=times,
+            tip_mm=np.array([sample[1] for sample in self._samples], dtype=float).reshape(-1, 3),
+            clearance_mm=clearance,
+            touches=tuple(self._touches),
+            refused=tuple(self._refused),
+            undone=self._undone,
+            near=tuple(_with_clearance(interval, times, clearance) for interval in near),
+            contacts=tuple(_with_clearance(interval, times, clearance) for interval in contacts),
+            camera_switches=self._cameras,
+            pauses=self._pauses,
+            fiducials_mm=self._fiducials,
+        )
+
+    def _trial_time(self, sim_time: float) -> float:
+        return sim_time - self._start_s - self._paused_s
+
+    def _event_time(self, entry: Mapping[str, Any]) -> float:
+        """Return the trial's time of an event: that of the tick before its line."""
+        return self._trial_time(entry["simTime"] - self._tick_s)
+
+    def _header(self, entry: Mapping[str, Any]) -> None:
+        self._tick_s = entry["tickS"]
+        self._start_s = entry["simTime"] - self._tick_s
+
+    def _touch(self, entry: Mapping[str, Any]) -> None:
+        self._touches.append(self._touch_of(entry))
+
+    def _rejected(self, entry: Mapping[str, Any]) -> None:
+        self._refused.append(self._touch_of(entry))
+
+    def _touch_of(self, entry: Mapping[str, Any]) -> Touch:
+        x, y, z = entry["positionMm"]
+        return Touch(entry["label"], (x, y, z), self._event_time(entry))
+
+    def _undo(self, entry: Mapping[str, Any]) -> None:
+        self._undone += 1
+        del self._touches[entry["kept"] :]
+
+    def _camera(self, _entry: Mapping[str, Any]) -> None:
+        self._cameras += 1
+
+    def _phase(self, entry: Mapping[str, Any]) -> None:
+        now = entry["simTime"] - self._tick_s
+        if entry["phase"] == Phase.PAUSED.value and self._paused_since is None:
+            self._paused_since = now
+            self._pauses += 1
+        elif entry["phase"] == Phase.RUNNING.value and self._paused_since is not None:
+            self._paused_s += now - self._paused_since
+            self._paused_since = None
+        # What the disk refused was taken back: the phase tells from which fiducial on.
+        labels = [touch.label for touch in self._touches]
+        if entry.get("nextPoint") in labels:
+            del self._touches[labels.index(entry["nextPoint"]) :]
+
+    def _proximity(self, entry: Mapping[str, Any]) -> None:
+        # This event is of the tick's end, unlike those of commands.
+        now, state = self._trial_time(entry["simTime"]), Proximity(entry["to"])
+        if self._state is Proximity.FREE:
+            self._near_since = now
+        if state is Proximity.FREE:
+            self._near.append(Interval(self._near_since, now))
+        if self._state is Proximity.CONTACT:
+            self._contacts.append(Interval(self._contact_since, now))
+        if state is Proximity.CONTACT:
+            self._contact_since = now
+        self._state = state
+
+    def _registered(self, entry: Mapping[str, Any]) -> None:
+        truth = entry["truth"]
+        head_to_world = np.array(truth["headToWorld"], dtype=float).reshape(4, 4)
+        self._fiducials = {
+            label: transforms.apply(head_to_world, np.array(position, dtype=float))
+            for label, position in truth["fiducials"].items()
+        }
+
+
+def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray) -> Interval:
+    part = clearance[(times >= interval.start_s) & (times <= interval.end_s)]
+    least = float(part.min()) if len(part) else np.inf
+    return Interval(interval.start_s, interval.end_s, least)
+
+
+_HANDLERS = {
+    "header": Recording._header,
+    "touch": Recording._touch,
+    "rejected": Recording._rejected,
+    "undo": Recording._undo,
+    "camera": Recording._camera,
+    "phase": Recording._phase,
+    "proximity": Recording._proximity,
+    "registered": Recording._registered,
+}

@@ -1,0 +1,245 @@
+"""What each motion metric means: unit, definition, thresholds, source, and which way is better."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rastrainer.motion.path_metrics import IDLE_DURATION_S, IDLE_SPEED_MM_S
+from rastrainer.motion.signals import CUTOFF_HZ
+from rastrainer.motion.smoothness import SPARC_CUTOFF_HZ, SPARC_PAD_LEVEL, SPARC_THRESHOLD
+from rastrainer.motion.trial_motion import ACCEPTANCE_MM, DWELL_RADIUS_MM, RATE_HZ
+
+OWN = "RASTrainer"
+FILTER = (
+    f"resampled to {RATE_HZ:g} Hz, zero-phase second-order Butterworth low pass at {CUTOFF_HZ:g} Hz"
+)
+
+
+@dataclass(frozen=True)
+class MetricDefinition:
+    """One motion metric.
+
+    Attributes:
+        name: the key under which it is stored, with the unit at its end where it has one.
+        title: what people read.
+        unit: "" where it has none.
+        definition: in one sentence, with every threshold.
+        source: who defined it.
+        better: -1 where less is better, 1 where more is, 0 where neither is.
+    """
+
+    name: str
+    title: str
+    unit: str
+    definition: str
+    source: str
+    better: int
+
+
+_BALASUBRAMANIAN = "Balasubramanian, Melendez-Calderon, Roby-Brami, Burdet 2015"
+
+DEFINITIONS: dict[str, MetricDefinition] = {
+    definition.name: definition
+    for definition in (
+        MetricDefinition(
+            "completion_time_s",
+            "Completion time",
+            "s",
+            "From the start of the trial to the last kept touch, pauses left out.",
+            "the paper, section V",
+            -1,
+        ),
+        MetricDefinition(
+            "path_length_mm",
+            "Path length",
+            "mm",
+            f"Length of the way of the tool's tip ({FILTER}).",
+            "Cotin et al. 2002",
+            -1,
+        ),
+        MetricDefinition(
+            "path_between_touches_mm",
+            "Path length between touches",
+            "mm",
+            f"Path length from the first touch to the last ({FILTER}).",
+            "Cotin et al. 2002",
+            -1,
+        ),
+        MetricDefinition(
+            "path_efficiency",
+            "Path efficiency",
+            "",
+            "Shortest free way through all fiducials (straight, or over the skin where the head is "
+            "in the way) over the path length between touches; 1 is direct.",
+            "Cotin et al. 2002; way over the skin: Dijkstra 1959 on the mesh",
+            1,
+        ),
+        MetricDefinition(
+            "mean_speed_mm_s",
+            "Mean speed",
+            "mm/s",
+            f"Mean speed of the tip ({FILTER}).",
+            OWN,
+            0,
+        ),
+        MetricDefinition(
+            "peak_speed_mm_s",
+            "Peak speed",
+            "mm/s",
+            f"Highest speed of the tip ({FILTER}).",
+            OWN,
+            0,
+        ),
+        MetricDefinition(
+            "sparc",
+            "Smoothness, SPARC",
+            "",
+            "Spectral arc length of the speed of each movement from touch to touch, median "
+            f"(cut-off {SPARC_CUTOFF_HZ:g} Hz, threshold {SPARC_THRESHOLD:g}, "
+            f"{SPARC_PAD_LEVEL} more powers of two of zero padding; {FILTER}).",
+            _BALASUBRAMANIAN,
+            1,
+        ),
+        MetricDefinition(
+            "ldlj",
+            "Smoothness, log dimensionless jerk",
+            "",
+            f"Negative log dimensionless jerk of the speed of each movement, median ({FILTER}).",
+            _BALASUBRAMANIAN,
+            1,
+        ),
+        MetricDefinition(
+            "movement_time_s",
+            "Movement time",
+            "s",
+            "Time from touch to touch, median.",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "time_to_peak_speed",
+            "Share of time to peak speed",
+            "",
+            "When in a movement the speed is highest, as a share of its time, median; an early "
+            "peak means long corrections.",
+            OWN,
+            0,
+        ),
+        MetricDefinition(
+            "idle_time_s",
+            "Idle time",
+            "s",
+            f"Time with the tip slower than {IDLE_SPEED_MM_S:g} mm/s for more than "
+            f"{IDLE_DURATION_S:g} s at a stretch.",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "dwell_before_touch_s",
+            "Dwell before a touch",
+            "s",
+            f"How long the tip had stayed within {DWELL_RADIUS_MM:g} mm of the place that was then "
+            "touched, median.",
+            OWN,
+            0,
+        ),
+        MetricDefinition(
+            "throughput_bit_s",
+            "Throughput",
+            "bit/s",
+            "Mean of log2(De/We + 1) over movement time, We = 4.133 SD of the end points along the "
+            "task axes.",
+            "ISO 9241-411; MacKenzie 1992",
+            1,
+        ),
+        MetricDefinition(
+            "effective_width_mm",
+            "Effective width of the targets",
+            "mm",
+            "We = 4.133 SD of the end points along the task axes.",
+            "ISO 9241-411",
+            -1,
+        ),
+        MetricDefinition(
+            "proximity_time_s",
+            "Time near the head",
+            "s",
+            "Time with the tip within 20 mm of the head (until 21 mm) or the tool touching it.",
+            "the paper, section III B 2",
+            0,
+        ),
+        MetricDefinition(
+            "contacts",
+            "Contacts",
+            "",
+            "How often the tool came to touch the head (clearance up to 0.05 mm, ended at 0.3 mm).",
+            OWN,
+            0,
+        ),
+        MetricDefinition(
+            "unintended_contacts",
+            "Contacts without a touch",
+            "",
+            "Contacts during which, and 0.1 s before and after which, no fiducial was touched.",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "contact_time_s",
+            "Contact time",
+            "s",
+            "Time in contact with the head.",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "deepest_contact_mm",
+            "Deepest contact",
+            "mm",
+            "How far the tool was in the head at most; the simulator lets it slide, not sink in.",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "least_clearance_mm",
+            "Least clearance",
+            "mm",
+            "Smallest signed distance of the tool to the head.",
+            OWN,
+            0,
+        ),
+        MetricDefinition(
+            "refused_touches",
+            "Refused touches",
+            "",
+            f"Touches farther than {ACCEPTANCE_MM:g} mm from the fiducial that was due.",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "wrong_order_touches",
+            "Touches of a wrong fiducial",
+            "",
+            f"Refused touches within {ACCEPTANCE_MM:g} mm of another fiducial.",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "undone_touches",
+            "Touches taken back",
+            "",
+            "How many touches the trainee took back.",
+            OWN,
+            0,
+        ),
+        MetricDefinition(
+            "camera_switches",
+            "Camera switches",
+            "",
+            "How often the view was changed.",
+            OWN,
+            0,
+        ),
+        MetricDefinition("pauses", "Pauses", "", "How often the trial was paused.", OWN, 0),
+    )
+}

@@ -1,0 +1,149 @@
+"""The motion metrics of a trial, by name, from its trajectory.
+
+`rastrainer.motion.definitions` says what each means, its unit, its thresholds and its source. The
+same function is used while a trial runs, when it is registered and when its journal is read again:
+equal samples give equal numbers.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.motion.path_metrics import idle_time, path_efficiency, path_length
+from rastrainer.motion.signals import low_pass, resample, speeds
+from rastrainer.motion.smoothness import log_dimensionless_jerk, sparc
+from rastrainer.motion.throughput import effective_throughput
+from rastrainer.motion.trajectory import Touch, Trajectory
+
+RATE_HZ = 50.0
+"""Samples a second after resampling; the journal holds as many."""
+DWELL_RADIUS_MM = 2.0
+ACCEPTANCE_MM = 10.0
+"""A refused touch within this distance of another fiducial was at the wrong one."""
+SHORTEST_MOVEMENT = 10
+"""Movements of fewer samples (0.2 s) tell nothing about smoothness."""
+
+
+def trial_motion(trajectory: Trajectory) -> dict[str, float]:
+    """Return the metrics that the trajectory of a trial, or of its part so far, allows.
+
+    What cannot be computed is left out.
+    """
+    metrics = _counts(trajectory)
+    if len(trajectory.times_s) < 2:
+        return metrics
+    tip = low_pass(resample(trajectory.times_s, trajectory.tip_mm, RATE_HZ), RATE_HZ)
+    times = trajectory.times_s[0] + np.arange(len(tip)) / RATE_HZ
+    speed = speeds(tip, RATE_HZ) if len(tip) > 1 else np.zeros(len(tip))
+    metrics |= {
+        "path_length_mm": path_length(tip),
+        "mean_speed_mm_s": float(speed.mean()),
+        "peak_speed_mm_s": float(speed.max()),
+        "idle_time_s": idle_time(speed, RATE_HZ),
+        "least_clearance_mm": float(trajectory.clearance_mm.min()),
+    }
+    if len(trajectory.touches) > 1:
+        metrics |= _of_movements(trajectory, times, tip, speed)
+        metrics |= _throughput(trajectory)
+    return metrics
+
+
+def with_path_efficiency(
+    motion: Mapping[str, float], shortest_mm: Sequence[float]
+) -> dict[str, float]:
+    """Return the metrics with `path_efficiency`, if they tell of a path between touches.
+
+    Args:
+        motion: Of `trial_motion`.
+        shortest_mm: The shortest way from each fiducial of the task to the next
+            (`rastrainer.motion.shortest_ways`).
+    """
+    actual = motion.get("path_between_touches_mm", 0.0)
+    if actual <= 0:
+        return dict(motion)
+    return {**motion, "path_efficiency": path_efficiency(actual, sum(shortest_mm))}
+
+
+def _counts(trajectory: Trajectory) -> dict[str, float]:
+    contacts = trajectory.contacts
+    touch_times = trajectory.touch_times_s
+    meant = [
+        bool(((touch_times >= c.start_s - 0.1) & (touch_times <= c.end_s + 0.1)).any())
+        for c in contacts
+    ]
+    metrics = {
+        "proximity_time_s": sum(interval.duration_s for interval in trajectory.near),
+        "contact_time_s": sum(contact.duration_s for contact in contacts),
+        "contacts": len(contacts),
+        "unintended_contacts": meant.count(False),
+        "deepest_contact_mm": max([0.0, *(-c.least_clearance_mm for c in contacts)]),
+        "refused_touches": len(trajectory.refused),
+        "undone_touches": trajectory.undone,
+        "camera_switches": trajectory.camera_switches,
+        "pauses": trajectory.pauses,
+    }
+    if len(touch_times):
+        metrics["completion_time_s"] = touch_times[-1]
+    if trajectory.fiducials_mm:
+        metrics["wrong_order_touches"] = sum(
+            _is_wrong(touch, trajectory) for touch in trajectory.refused
+        )
+    return {name: float(value) for name, value in metrics.items()}
+
+
+def _is_wrong(touch: Touch, trajectory: Trajectory) -> bool:
+    distances = {
+        label: np.linalg.norm(np.asarray(position) - touch.position_mm)
+        for label, position in trajectory.fiducials_mm.items()
+    }
+    nearest = min(distances, key=distances.__getitem__)
+    return nearest != touch.label and distances[nearest] <= ACCEPTANCE_MM
+
+
+def _of_movements(
+    trajectory: Trajectory, times: np.ndarray, tip: np.ndarray, speed: np.ndarray
+) -> dict[str, float]:
+    """Return the means and medians over the movements from each touch to the next."""
+    first = np.searchsorted(times, trajectory.touch_times_s[:-1])
+    last = np.searchsorted(times, trajectory.touch_times_s[1:], side="right")
+    parts = [slice(a, b) for a, b in zip(first, last, strict=True) if b - a >= SHORTEST_MOVEMENT]
+    found: dict[str, list[float]] = {"sparc": [], "ldlj": [], "time_to_peak_speed": []}
+    for part in parts:
+        with contextlib.suppress(InputError):
+            found["sparc"].append(sparc(speed[part], RATE_HZ))
+            found["ldlj"].append(log_dimensionless_jerk(speed[part], RATE_HZ))
+        found["time_to_peak_speed"].append(float(np.argmax(speed[part])) / len(speed[part]))
+    metrics = {name: float(np.median(values)) for name, values in found.items() if values}
+    metrics["movement_time_s"] = float(np.median(np.diff(trajectory.touch_times_s)))
+    dwells = [_dwell(touch, times, tip) for touch in trajectory.touches]
+    metrics["dwell_before_touch_s"] = float(np.median(dwells))
+    metrics["path_between_touches_mm"] = path_length(tip[first[0] : last[-1]])
+    return metrics
+
+
+def _dwell(touch: Touch, times: np.ndarray, tip: np.ndarray) -> float:
+    """Return how long the tip had been near the touched point when it was touched, in s."""
+    until = int(np.searchsorted(times, touch.time_s, side="right"))
+    is_far = np.linalg.norm(tip[:until] - touch.position_mm, axis=1) > DWELL_RADIUS_MM
+    left = np.flatnonzero(is_far)
+    return (until - 1 - int(left[-1]) if len(left) else until) / RATE_HZ
+
+
+def _throughput(trajectory: Trajectory) -> dict[str, float]:
+    labels = [touch.label for touch in trajectory.touches]
+    if not all(label in trajectory.fiducials_mm for label in labels):
+        return {}
+    fiducials = np.array([trajectory.fiducials_mm[label] for label in labels])
+    with contextlib.suppress(InputError):
+        result = effective_throughput(
+            fiducials, trajectory.touch_positions_mm, trajectory.touch_times_s
+        )
+        return {
+            "throughput_bit_s": result.bits_per_s,
+            "effective_width_mm": result.effective_width_mm,
+        }
+    return {}

@@ -1,0 +1,60 @@
+"""A trial's motion metrics are the same while it runs, in its record and from its journal."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.scripted_trainee import Skill
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.virtual_trial import play_virtual_trial
+
+DT = 0.02
+BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)
+
+
+@pytest.fixture(scope="module")
+def journal(setup, tmp_path_factory):
+    """Return the reading of a whole trial's journal."""
+    folder = tmp_path_factory.mktemp("records")
+    simulation = Simulation(setup, 5)
+    with ThreadPoolExecutor(1) as writer:
+        recorder = TrialRecorder(folder, TrialArchive(folder), writer, DT)
+        play_virtual_trial(simulation, "task-1", 3, BRISK, DT, recorder.record)
+    (path,) = folder.glob("*.journal")
+    return read_journal(path)
+
+
+def test_the_record_holds_the_metrics_that_the_journal_gives_to_the_last_bit(journal):
+    (registered,) = journal.of_kind("registered")
+    record = TrialRecord.from_json(registered["record"])
+    assert len(record.motion) > 20
+    assert record.motion == trial_motion(Recording.of(journal.entries).trajectory())
+    assert record.motion["completion_time_s"] == pytest.approx(record.completion_time_s, abs=1e-9)
+    assert record.motion["undone_touches"] == record.undone_touches
+    assert record.motion["contacts"] >= 15
+
+
+def test_metrics_of_a_part_are_those_of_the_trial_until_then(journal):
+    half = journal.entries[: len(journal.entries) // 2]
+    streamed = Recording()
+    for entry in half:
+        streamed.add(entry)
+    part = trial_motion(streamed.trajectory())
+    whole = trial_motion(Recording.of(journal.entries).trajectory())
+    assert 0 < part["path_length_mm"] < whole["path_length_mm"]
+    assert 0 < part["contacts"] < whole["contacts"]
+
+
+def test_what_comes_after_the_trial_changes_nothing(journal):
+    again = Recording.of([*journal.entries, {"kind": "acknowledged", "simTime": 1e6}])
+    assert trial_motion(again.trajectory()) == trial_motion(
+        Recording.of(journal.entries).trajectory()
+    )
