@@ -1,0 +1,52 @@
+"""How surfaces look: physically based materials, the same in every view."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Material:
+    """A surface's color (sRGB, 0…1), roughness and metallicity; a `glowing` one needs no light."""
+
+    name: str
+    color: Color
+    roughness: float = 0.5
+    metallic: float = 0.0
+    glowing: bool = False
+
+    @property
+    def linear_color(self) -> Color:
+        """The color as light, as glTF and physically based shading want it (IEC 61966-2-1)."""
+        return tuple(
+            value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+            for value in self.color
+        )
+
+
+SKIN = Material("skin", (0.87, 0.67, 0.56), 0.55)
+STEEL = Material("steel", (0.78, 0.79, 0.80), 0.35, 0.6)
+TABLE_TOP = Material("table_top", (0.68, 0.69, 0.68), 0.5)
+MAT = Material("mat", (0.26, 0.47, 0.52), 0.8)
+FLOOR = Material("floor", (0.47, 0.51, 0.55), 0.55)
+WALL = Material("wall", (0.92, 0.93, 0.92), 0.9)
+WALL_BAND = Material("wall_band", (0.55, 0.70, 0.72), 0.8)
+
+TIP_FREE = Material("tip_free", (0.05, 0.30, 1.0), glowing=True)
+TIP_NEAR = Material("tip_near", (1.0, 0.05, 0.05), glowing=True)
+
+WAITING = Material("waiting", (0.10, 0.24, 0.62), glowing=True)
+NEXT = Material("next", (1.0, 0.80, 0.05), glowing=True)
+TOUCHED = Material("touched", (0.10, 0.62, 0.25), glowing=True)
+MARK_RIM = Material("rim", (0.97, 0.97, 0.97), glowing=True)
+NUMBER = Material("number", (0.07, 0.09, 0.16), glowing=True)
+
+
+def painted(color: Sequence[float]) -> Material:
+    """Return the coating of a robot part: the color its URDF names, a little glossy."""
+    red, green, blue = (float(value) for value in color[:3])
+    name = "paint_" + "".join(f"{round(255 * value):02x}" for value in (red, green, blue))
+    return Material(name, (red, green, blue), 0.38)
