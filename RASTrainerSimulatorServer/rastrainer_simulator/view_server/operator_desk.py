@@ -41,6 +41,7 @@ class Feedback:
         number: counts from 1 without a gap.
         kind: what happened, such as "touch"; an `EventKind` or one of the flow's own.
         sound: name of the sound to play, "" for none.
+        volume: of the sound, 0 to 1; 0 while sounds are muted.
         rumble: strength of the vibration, 0 to 1.
         data: what else there is to tell, ready for JSON; lengths in mm.
     """
@@ -48,6 +49,7 @@ class Feedback:
     number: int
     kind: str
     sound: str = ""
+    volume: float = 1.0
     rumble: float = 0.0
     data: Mapping[str, Any] = field(default_factory=dict)
 
