@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_mesh import HeadMesh, read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.contact import Contact, Moved
@@ -60,7 +60,9 @@ class Simulation:
         self._training = Training(setup.scenario, seed, settings.training, self._texts)
         self._view = SceneView(setup.scenario, settings.camera, settings.axes)
         self._teleoperation = Teleoperation(settings.teleoperation)
-        self._collision = _collision(setup)
+        head = read_head_mesh(setup.scenario.head_mesh)
+        self._head_base = head.base / MM
+        self._collision = _collision(setup, head)
         kinematics = make_kinematics(setup.robot)
         self.kinematics_name = type(kinematics).__name__
         self._contact = Contact(self._collision, kinematics)
@@ -164,6 +166,9 @@ class Simulation:
         self._placed = self._training.truth
         head_to_world = np.array(self._placed.head_to_world)
         head_to_world[:3, 3] /= MM
+        self._head_to_world = head_to_world
+        self._stand_to_world = np.eye(4)
+        self._stand_to_world[:3, 3] = head_to_world[:3, :3] @ self._head_base + head_to_world[:3, 3]
         self._collision.set_head_pose(head_to_world)
         self._contact.head_has_moved()
         self._posture = self._postures.of(self._contact.at(self._start))
@@ -209,6 +214,8 @@ class Simulation:
             q=posture.q,
             tool_tip_to_world=posture.tool_tip_to_world,
             link_to_world=posture.links,
+            head_to_world=self._head_to_world,
+            stand_to_world=self._stand_to_world,
             proximity=self._proximity,
             clearance=posture.clearance.tool_m,
             training=self._training.state,
@@ -220,8 +227,7 @@ class Simulation:
         )
 
 
-def _collision(setup: SimulationSetup) -> Collision:
-    head = read_head_mesh(setup.scenario.head_mesh)
+def _collision(setup: SimulationSetup, head: HeadMesh) -> Collision:
     surroundings = Surroundings(stand_radius=setup.scenario.furniture.stand_diameter / 2.0 / MM)
     return Collision(setup.robot, head.vertices / MM, head.triangles, surroundings)
 

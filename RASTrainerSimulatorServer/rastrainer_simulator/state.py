@@ -124,7 +124,8 @@ class TrainingState:
 class SimulationState:
     """Everything a view needs after a tick (World, m, rad, s).
 
-    `q` are the seven joint angles; `tool_tip_to_world` and each of `link_to_world` (links 0 to 7)
+    `q` are the seven joint angles; `tool_tip_to_world`, each of `link_to_world` (links 0 to 7),
+    `head_to_world` and `stand_to_world` (its origin in the middle of the head's base, upright)
     are (4, 4) float arrays that are never written again. `clearance` is the signed distance of the
     tool to the head. `elapsed` is the running trial's time, pauses excluded. `operator` is
     who moved the arm last.
@@ -135,6 +136,8 @@ class SimulationState:
     q: tuple[float, ...]
     tool_tip_to_world: np.ndarray
     link_to_world: tuple[np.ndarray, ...]
+    head_to_world: np.ndarray
+    stand_to_world: np.ndarray
     proximity: Proximity
     clearance: float
     training: TrainingState

@@ -25,6 +25,7 @@ element face {triangles}
 property list uchar int vertex_indices
 end_header
 """
+BASE_THICKNESS_MM = 1.0
 _FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
 
 
@@ -50,6 +51,13 @@ class HeadMesh:
     def edges(self) -> np.ndarray:
         """(e, 2) int: every edge once, the lower vertex first."""
         return np.unique(np.sort(self.sides, axis=1), axis=0)
+
+    @cached_property
+    def base(self) -> np.ndarray:
+        """(3,) float: the middle of the flat base on which the head stands, RAS mm."""
+        heights = self.vertices[:, 2]
+        base = self.vertices[heights <= heights.min() + BASE_THICKNESS_MM]
+        return (base.min(axis=0) + base.max(axis=0)) / 2.0
 
     @property
     def euler_characteristic(self) -> int:

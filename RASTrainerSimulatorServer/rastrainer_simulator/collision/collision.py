@@ -6,15 +6,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import Clearance, Nearest
+from rastrainer_simulator.collision.clearance import FAR, Clearance, Nearest
 from rastrainer_simulator.collision.head_clearance import HeadClearance
 from rastrainer_simulator.collision.head_surface import HeadSurface
-from rastrainer_simulator.collision.posed_arm import ArmCapsules
+from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.collision.self_clearance import SelfClearance
 from rastrainer_simulator.collision.table_clearance import Surroundings, TableClearance
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.vectors import Vector
+
+_SPACE_DIAGONAL = 1.7320509
+"""Of a cube of edge 1, rounded up: a vector is at most so much longer than its longest part."""
 
 
 class Collision:
@@ -47,6 +50,10 @@ class Collision:
         surroundings = surroundings or Surroundings()
         self.table_height = surroundings.table_height
         self._table = TableClearance(self._arm, surroundings)
+        # Where the arm was when it was last found to be far from itself and all around, and how
+        # far each part of it can have moved since without coming near.
+        self._far_at = np.zeros((len(self._arm.capsules), 2, 3))
+        self._room = 0.0
         self.set_head_pose(np.eye(4))
 
     def set_head_pose(self, head_to_world: np.ndarray) -> None:
@@ -57,6 +64,7 @@ class Collision:
         """
         self._head.set_pose(head_to_world)
         self._table.put_stand_under(self._head.base)
+        self._room = 0.0
 
     def check(self, link_to_world: Mapping[str, np.ndarray]) -> Clearance:
         """Return the clearances of a posture.
@@ -66,8 +74,7 @@ class Collision:
         """
         posed = self._arm.pose(link_to_world)
         shaft, links_m, links_worst = self._head.nearest_to_arm(posed)
-        self_m, self_worst = self._self.nearest(posed)
-        table_m, table_worst = self._table.nearest(posed)
+        self_m, self_worst, table_m, table_worst = self._beside_the_head(posed)
         return Clearance(
             tip=self._head.nearest_to_point(posed.tip),
             shaft=shaft,
@@ -78,6 +85,18 @@ class Collision:
             table_m=table_m,
             table_worst=table_worst,
         )
+
+    def _beside_the_head(self, posed: PosedArm) -> tuple[float, tuple[str, ...], float, str]:
+        """Return what is nearest to the arm of itself, and of table and stand; at most FAR."""
+        moved = _SPACE_DIAGONAL * float(np.abs(posed.ends - self._far_at).max())
+        if moved < self._room:
+            return FAR, (), FAR, ""
+        self_m, self_worst = self._self.nearest(posed)
+        table_m, table_worst = self._table.nearest(posed)
+        # Two parts of the arm may have moved toward each other.
+        self._room = min((self_m - FAR) / 2.0, table_m - FAR)
+        self._far_at = posed.ends
+        return min(self_m, FAR), self_worst, min(table_m, FAR), table_worst
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""

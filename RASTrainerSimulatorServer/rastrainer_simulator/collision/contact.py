@@ -85,7 +85,8 @@ class Contact:
         """
         start = self.at(q)
         moved = self._move(start, displacement, to_joints)
-        self._last = replace(moved, stopped_by="")
+        if moved.stopped_by:
+            self._last = replace(moved, stopped_by="")
         return moved
 
     def _move(self, start: Moved, displacement: Vector, to_joints: ToJoints) -> Moved:
@@ -129,10 +130,16 @@ class Contact:
 
 def _broken(start: Clearance, end: Clearance) -> str:
     """Return the first part that overlaps more than it may, "" where none does."""
-    for part in ("tip", "shaft", "links", "self", "table"):
-        allowed = -TOLERANCE if part in ("tip", "shaft") else 0.0
-        if _value(end, part) < min(_value(start, part), allowed):
-            return part
+    if end.tip_m < -TOLERANCE and end.tip_m < start.tip_m:
+        return "tip"
+    if end.shaft_m < -TOLERANCE and end.shaft_m < start.shaft_m:
+        return "shaft"
+    if end.links_m < 0.0 and end.links_m < start.links_m:
+        return "links"
+    if end.self_m < 0.0 and end.self_m < start.self_m:
+        return "self"
+    if end.table_m < 0.0 and end.table_m < start.table_m:
+        return "table"
     return ""
 
 

@@ -66,34 +66,34 @@ class HeadClearance:
         moved = posed.ends - self._known_at
         motion = np.sqrt(np.einsum("nki,nki->kn", moved, moved))
         bounds = (self._known - np.maximum(motion[0], motion[1])).tolist()
-        poses = self._world_to_head @ posed.poses
         count = self._arm.link_count
-        shaft, _ = self._nearest(posed, poses, bounds, range(count, len(bounds)), math.inf)
-        links, row = self._nearest(posed, poses, bounds, range(count), FAR)
+        shaft, _ = self._nearest(posed, bounds, range(count, len(bounds)), math.inf)
+        links, row = self._nearest(posed, bounds, range(count), FAR)
         if links is None:
             return self._in_world(shaft), FAR, ""
         return self._in_world(shaft), links.distance_m, self._arm.names[row]
 
     def _nearest(
-        self, posed: PosedArm, poses: np.ndarray, bounds: list[float], rows: range, limit: float
+        self, posed: PosedArm, bounds: list[float], rows: range, limit: float
     ) -> tuple[Nearest | None, int]:
         """Return what is nearest to some of the capsules, and to which, if nearer than `limit`."""
         best, best_row = None, -1
-        for row in sorted(rows, key=bounds.__getitem__):
+        for row in sorted([row for row in rows if bounds[row] < limit], key=bounds.__getitem__):
             if bounds[row] >= limit:
                 break
-            found = self._query(posed, poses[self._bodies[row]], row)
+            found = self._query(posed, row)
             distance = found.distance_m
             # Of two equally near the first counts, in whatever order they were looked at.
             if distance < limit or (distance == limit and row < best_row):
                 best, best_row, limit = found, row, distance
         return best, best_row
 
-    def _query(self, posed: PosedArm, pose: np.ndarray, row: int) -> Nearest:
+    def _query(self, posed: PosedArm, row: int) -> Nearest:
         segment, radius = self._segments[row], self._arm.capsules[row].radius
+        pose = self._world_to_head @ posed.poses[self._bodies[row]]
         segment.setRotation(pose[:3, :3])
         segment.setTranslation(pose[:3, 3])
-        start, end = (_moved(self._world_to_head_rows, point) for point in posed.axes[row])
+        start, end = (_moved(self._world_to_head_rows, point) for point in posed.axis(row))
         found = self._head.nearest_to_segment(segment, start, end, radius)
         self._known[row] = found.distance_m - _ROUNDING
         self._known_at[row] = posed.ends[row]

@@ -16,9 +16,16 @@ class PosedArm(NamedTuple):
 
     poses: np.ndarray  # (links + 1, 4, 4) float: LinkToWorld of each link, ToolTipToWorld last
     ends: np.ndarray  # (n, 2, 3) float: start and end of each axis
-    axes: list[list[Vector]]  # the same as plain floats
-    middles: np.ndarray  # (n, 3) float
     tip: Vector
+
+    def axis(self, row: int) -> list[Vector]:
+        """Return start and end of a capsule's axis as plain floats."""
+        return self.ends[row].tolist()
+
+    @property
+    def middles(self) -> np.ndarray:
+        """Return the middle of each axis, (n, 3) float."""
+        return (self.ends[:, 0] + self.ends[:, 1]) / 2.0
 
 
 class ArmCapsules:
@@ -39,12 +46,16 @@ class ArmCapsules:
         self.reach = np.linalg.norm(ends - starts, axis=1) / 2.0 + self.radii
         """(n,) float: radius of the sphere about each capsule, m."""
         self._frames = (*(link.name for link in shape.links), shape.tip_name)
-        self._ends = np.ones((len(rows), 4, 2))
-        self._ends[:, :3] = np.stack([starts, ends], axis=2)
+        # One product with all poses, their columns one below the other, gives all ends.
+        self._ends = np.zeros((len(rows), 2, len(self._frames), 4))
+        for end, points in enumerate((starts, ends)):
+            self._ends[range(len(rows)), end, self.body, :3] = points
+            self._ends[range(len(rows)), end, self.body, 3] = 1.0
+        self._ends = self._ends.reshape(2 * len(rows), -1)
 
     def pose(self, link_to_world: Mapping[str, np.ndarray]) -> PosedArm:
         """Return the capsules in World; `link_to_world` holds (4, 4) float by link, the tip too."""
         poses = np.array([link_to_world[name] for name in self._frames])
-        ends = (poses.take(self.body, 0) @ self._ends)[:, :3].swapaxes(1, 2)
-        middles = (ends[:, 0] + ends[:, 1]) / 2.0
-        return PosedArm(poses, ends, ends.tolist(), middles, tuple(poses[-1, :3, 3].tolist()))
+        columns = poses[:, :3].swapaxes(1, 2).reshape(-1, 3)
+        ends = (self._ends @ columns).reshape(-1, 2, 3)
+        return PosedArm(poses, ends, tuple(poses[-1, :3, 3].tolist()))

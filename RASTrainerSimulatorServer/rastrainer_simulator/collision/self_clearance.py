@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from rastrainer_simulator.collision.clearance import FAR
@@ -26,14 +28,19 @@ class SelfClearance:
         self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
 
     def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...]]:
-        """Return the least signed distance, m, and the two links it is between; at most FAR."""
-        between = posed.middles.take(self._first, 0) - posed.middles.take(self._second, 0)
+        """Return the least signed distance, m, and the two links it is between.
+
+        Where that is FAR or more, a lower bound of it and no links.
+        """
+        middles = posed.middles
+        between = middles.take(self._first, 0) - middles.take(self._second, 0)
         bounds = np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
-        best, names = FAR, ()
-        for pair in np.flatnonzero(bounds < FAR).tolist():
+        is_near = bounds < FAR
+        best, names = float(bounds.min(initial=math.inf, where=~is_near)), ()
+        for pair in np.flatnonzero(is_near).tolist():
             first, second = self._pairs[pair]
-            axes = segment_distance(*posed.axes[first], *posed.axes[second])
+            axes = segment_distance(*posed.axis(first), *posed.axis(second))
             distance = axes - self._radii[pair]
             if distance < best:
-                best, names = distance, self._names[pair]
+                best, names = distance, self._names[pair] if distance < FAR else ()
         return best, names

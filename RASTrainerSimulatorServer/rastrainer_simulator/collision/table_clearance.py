@@ -45,24 +45,29 @@ class TableClearance:
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
 
     def nearest(self, posed: PosedArm) -> tuple[float, str]:
-        """Return the least signed distance, m, and the link that is nearest; at most FAR."""
+        """Return the least signed distance, m, and the link that is nearest.
+
+        Where that is FAR or more, a lower bound of it and "".
+        """
         heights = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
         row = int(heights.argmin())
-        best, name = min((FAR, ""), (float(heights[row]), self._arm.names[row]))
+        best, name = float(heights[row]), self._arm.names[row]
         tip = posed.tip[2] - self._table
         if tip < best:
             best, name = tip, self._arm.names[-1]
-        if self._stand is None:
-            return best, name
-        return self._nearest_to_stand(posed, best, name)
+        if self._stand is not None:
+            best, name = self._nearest_to_stand(posed, best, name)
+        return best, name if best < FAR else ""
 
     def _nearest_to_stand(self, posed: PosedArm, best: float, name: str) -> tuple[float, str]:
         start, end = self._stand
         away = posed.middles - end
         np.maximum(away[:, 2], 0.0, out=away[:, 2])
         bounds = np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around
-        for row in np.flatnonzero(bounds < best).tolist():
-            axes = segment_distance(*posed.axes[row], start, end)
+        is_near = bounds < FAR
+        best = min(best, float(bounds.min(initial=math.inf, where=~is_near)))
+        for row in np.flatnonzero(is_near).tolist():
+            axes = segment_distance(*posed.axis(row), start, end)
             distance = axes - self._arm.capsules[row].radius - self._stand_radius
             if distance < best:
                 best, name = distance, self._arm.names[row]

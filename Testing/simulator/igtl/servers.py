@@ -132,6 +132,8 @@ def at_rest(**changes) -> SimulationState:
         q=(0.0,) * 7,
         tool_tip_to_world=np.eye(4),
         link_to_world=(np.eye(4),) * 8,
+        head_to_world=np.eye(4),
+        stand_to_world=np.eye(4),
         proximity=Proximity.FREE,
         clearance=0.1,
         training=TrainingState(),
