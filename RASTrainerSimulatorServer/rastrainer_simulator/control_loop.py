@@ -25,7 +25,6 @@ from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.setup import SimulationSetup
-from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
@@ -137,11 +136,6 @@ class ControlLoop:
     def truth(self) -> Truth:
         """Where the head is: for what the trainee is shown; clients learn it with the score."""
         return self._simulation.truth
-
-    @property
-    def setup(self) -> SimulationSetup:
-        """Scenario, robot and settings of the present simulation."""
-        return self._simulation.setup
 
     @property
     def problems(self) -> tuple[str, ...]:
