@@ -59,11 +59,11 @@ class Postures:
         """Return the posture in which a motion has ended."""
         poses = moved.link_to_world
         tip = poses[self._tip]
-        (_, _, dx, x), (_, _, dy, y), (_, _, dz, z), _ = tip.tolist()
+        (ax, _, dx, x), (ay, _, dy, y), (az, _, dz, z), _ = tip.tolist()
         return Posture(
             q=moved.q,
             links=tuple(poses[name] for name in self._links),
             tool_tip_to_world=tip,
-            tip=Tip((x, y, z), (dx, dy, dz)),
+            tip=Tip((x, y, z), (dx, dy, dz), (ax, ay, az)),
             clearance=moved.clearance,
         )

@@ -9,6 +9,7 @@ from typing import Any, TypeVar, get_type_hints
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.collision.proximity import ProximitySettings
+from rastrainer_simulator.robot.solution import FabrikSettings
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
 from rastrainer_simulator.training.training import TrainingSettings
@@ -22,6 +23,7 @@ class SimulationSettings:
 
     Attributes:
         teleoperation: how the arm answers to the operator.
+        fabrik: tolerances and the most iterations of the inverse kinematics.
         training: what counts as a touch.
         proximity: where proximity and contact begin and end.
         start_height: of the tip above the head's target when a trial starts, m.
@@ -30,6 +32,7 @@ class SimulationSettings:
     """
 
     teleoperation: TeleoperationSettings = dataclasses.field(default_factory=TeleoperationSettings)
+    fabrik: FabrikSettings = dataclasses.field(default_factory=FabrikSettings)
     training: TrainingSettings = dataclasses.field(default_factory=TrainingSettings)
     proximity: ProximitySettings = dataclasses.field(default_factory=ProximitySettings)
     start_height: float = 0.165

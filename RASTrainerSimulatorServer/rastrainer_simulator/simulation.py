@@ -69,7 +69,7 @@ class Simulation:
         self._plan_reach = PlanReach(setup.robot, kinematics, self._collision)
         self._postures = Postures(setup.robot)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
-        self._joint_motion = JointMotion(setup.robot, self._start)
+        self._joint_motion = JointMotion(setup.robot, self._start, settings.fabrik)
         self._put_in_place()
         self.state = self._state(0, 0.0, Motion.NONE)
 
@@ -182,10 +182,10 @@ class Simulation:
     def _move(self, dt: float, wish: Wish, sim_time: float) -> list[Event]:
         """Follow the wish as far as arm, head and table allow."""
         before = self._is_within_reach, self._obstacle
-        moved = self._moved(dt, wish.displacement, wish.direction)
+        moved = self._moved(dt, wish)
         if moved.stopped_by in BEHIND_THE_TOOL and wish.direction is not None:
             # The turn of the tool may be what the arm has no room for: the tip comes first.
-            moved = self._moved(dt, wish.displacement, None)
+            moved = self._moved(dt, replace(wish, direction=None, across=None))
         self._posture = self._postures.of(moved)
         settings = self.setup.settings.proximity
         self._proximity = next_proximity(self._proximity, moved.clearance, settings)
@@ -195,16 +195,16 @@ class Simulation:
         data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
         return [Event(EventKind.REACH, sim_time, data)]
 
-    def _moved(self, dt: float, displacement: Vector, direction: Vector | None) -> Moved:
+    def _moved(self, dt: float, wish: Wish) -> Moved:
         q, tip = self._posture.q, self._posture.tip.position
 
         def to_joints(allowed: Vector) -> Joints:
             joints, self._is_within_reach = self._joint_motion.toward(
-                q, tip, allowed, direction, dt
+                q, tip, allowed, wish.direction, dt, wish.across
             )
             return joints
 
-        return self._contact.move(q, displacement, to_joints)
+        return self._contact.move(q, wish.displacement, to_joints)
 
     def _state(self, tick: int, sim_time: float, motion: Motion) -> SimulationState:
         posture = self._posture

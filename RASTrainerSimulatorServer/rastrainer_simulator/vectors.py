@@ -97,3 +97,12 @@ def any_perpendicular(direction: Vector) -> Vector:
     """Return a unit vector perpendicular to `direction`."""
     smallest = min(range(3), key=lambda i: abs(direction[i]))
     return unit(cross(direction, tuple(1.0 if i == smallest else 0.0 for i in range(3))))
+
+
+def carried_along(across: Vector, direction: Vector, goal: Vector) -> Vector:
+    """Return `across`, perpendicular to `direction`, after the shortest turn of that to `goal`.
+
+    All are unit vectors; `direction` and `goal` are not opposite.
+    """
+    share = dot(goal, across) / (1.0 + dot(direction, goal))
+    return unit(reject(subtract(across, scale(add(direction, goal), share)), goal))

@@ -11,6 +11,7 @@ import pytest
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
+from rastrainer_simulator.robot.solution import FabrikSettings
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import EventKind, Motion, StartingPoint
@@ -344,6 +345,24 @@ def test_a_steered_tool_turns_about_its_tip(setup):
     turned = math.acos(direction @ driver.state.tool_tip_to_world[:3, 2])
     assert turned == pytest.approx(100 * DT * SteeringSettings().coarse_turn, rel=0.01)
     assert driver.tip == pytest.approx(tip, abs=1e-6)
+
+
+def test_in_pose_mode_the_tool_keeps_its_whole_rotation_where_it_is_driven(setup):
+    driver = driver_with(setup, ToolDirection.POSE)
+    rotation, tip = driver.state.tool_tip_to_world[:3, :3].copy(), driver.tip
+    for stick in ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 1.0, -1.0)):
+        for _ in range(100):
+            driver.step(OperatorInput(translation=stick))
+    assert np.linalg.norm(driver.tip - tip) > 0.02
+    assert driver.state.tool_tip_to_world[:3, :3] == pytest.approx(rotation, abs=1e-7)
+
+
+def test_the_tolerances_of_the_inverse_kinematics_are_settings_of_the_simulation(setup):
+    impossible = SimulationSettings(fabrik=FabrikSettings(tolerance_m=1e-300))
+    driver = Driver(Simulation(replace(setup, settings=impossible), 1))
+    driver.start()
+    step = driver.step(DOWN)
+    assert [event.data["isWithinReach"] for event in step.events] == [False]
 
 
 def hover(truth, label):

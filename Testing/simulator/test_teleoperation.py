@@ -26,10 +26,11 @@ from rastrainer_simulator.teleoperation.tool_steering import (
     Surface,
     ToolDirection,
 )
-from rastrainer_simulator.vectors import ZERO, add, angle, distance, length, unit
+from rastrainer_simulator.vectors import ZERO, add, angle, distance, dot, length, unit
 
 DT = 0.004
 DOWN = (0.0, 0.0, -1.0)
+RIGHT = (1.0, 0.0, 0.0)
 FRONT_CAMERA = camera_axes((0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 SETTINGS = TeleoperationSettings()
 
@@ -41,14 +42,15 @@ class Hand:
         self.teleoperation = Teleoperation(settings)
         self.axes = axes
         self.surface = surface
-        self.tip = Tip((0.5, 0.0, 0.5), DOWN)
+        self.tip = Tip((0.5, 0.0, 0.5), DOWN, RIGHT)
         self.blocked = False
 
     def step(self, operator_input=HANDS_OFF):
         wish = self.teleoperation.step(DT, operator_input, self.tip, self.axes, self.surface)
         if not self.blocked:
             position = add(self.tip.position, wish.displacement)
-            self.tip = Tip(position, wish.direction or self.tip.direction)
+            direction = wish.direction or self.tip.direction
+            self.tip = Tip(position, direction, wish.across or self.tip.across)
         return wish
 
     def run_until_end(self, most_ticks=5000):
@@ -213,6 +215,27 @@ def test_a_held_direction_stays_until_the_second_stick_turns_it():
     assert turned[0] > 0.1
     assert turned[1] == pytest.approx(0.0)
     assert angle(turned, DOWN) == pytest.approx(50 * DT * SteeringSettings().coarse_turn)
+
+
+@pytest.mark.parametrize("choice", [choice for choice in ToolDirection if choice != "pose"])
+def test_the_tool_may_roll_in_every_mode_but_the_full_pose(choice):
+    hand = Hand(steered(choice), surface=near_the_head(0.005, (0.0, -1.0, 0.5)))
+    assert hand.step(push(1.0, 0.0, 0.0)).across is None
+
+
+def test_in_pose_mode_the_tool_does_not_roll_while_it_is_moved_and_turned():
+    hand = Hand(steered(ToolDirection.POSE))
+    for _ in range(50):
+        wish = hand.step(push(1.0, 0.0, 0.0))
+        assert (wish.direction, wish.across) == (DOWN, RIGHT)
+    for _ in range(200):
+        wish = hand.step(OperatorInput(rotation=(0.0, 1.0)))
+    assert angle(wish.direction, DOWN) > 0.5
+    assert wish.across == pytest.approx(RIGHT)
+    for _ in range(200):
+        wish = hand.step(OperatorInput(rotation=(1.0, 0.0)))
+    assert dot(wish.across, wish.direction) == pytest.approx(0.0, abs=1e-12)
+    assert length(wish.across) == pytest.approx(1.0)
 
 
 def test_steering_up_pitches_a_tool_that_points_down_away_from_the_viewer():

@@ -44,10 +44,17 @@ class TeleoperationSettings:
 
 @dataclass(frozen=True)
 class Tip:
-    """The tool's tip in World: position (m) and direction (unit vector from A7 to the tip)."""
+    """The tool's tip in World.
+
+    Attributes:
+        position: m.
+        direction: unit vector from A7 to the tip.
+        across: the tip's x axis, a unit vector.
+    """
 
     position: Vector
     direction: Vector
+    across: Vector
 
 
 @dataclass(frozen=True)
@@ -58,12 +65,14 @@ class Wish:
         motion: what asks for it; NONE means that the arm shall stand still.
         displacement: of the tip, m, World.
         direction: of the tool, unit vector; None where it is free.
+        across: the x axis of the tool's tip, unit vector; None where the tool may roll.
         ended: how a commanded motion has just ended, None while none has.
     """
 
     motion: Motion
     displacement: Vector = ZERO
     direction: Vector | None = None
+    across: Vector | None = None
     ended: Outcome | None = None
 
 
@@ -143,7 +152,7 @@ class Teleoperation:
             else accelerated(self._velocity, wanted, settings.acceleration * dt)
         )
         direction = self._steering.steer(dt, turn, fine, axes, tip.direction, surface)
-        return Wish(Motion.STICK, scale(self._velocity, dt), direction, ended)
+        return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
 
     def _by_command(self, dt: float, tip: Tip, axes: Axes, surface: Surface | None) -> Wish:
         running = self._running
@@ -155,4 +164,16 @@ class Teleoperation:
             direction = self._steering.turn_to(tip.direction, running.direction, dt)
         else:
             direction = self._steering.steer(dt, STRAIGHT, False, axes, tip.direction, surface)
-        return Wish(running.motion, displacement, direction)
+        return self._toward(running.motion, displacement, direction, tip)
+
+    def _toward(
+        self,
+        motion: Motion,
+        displacement: Vector,
+        direction: Vector | None,
+        tip: Tip,
+        ended: Outcome | None = None,
+    ) -> Wish:
+        steering = self._steering
+        across = steering.across(direction, tip.direction, tip.across) if direction else None
+        return Wish(motion, displacement, direction, across, ended)

@@ -12,6 +12,7 @@ from rastrainer_simulator.vectors import (
     Vector,
     add,
     angle,
+    carried_along,
     cross,
     length,
     reject,
@@ -30,12 +31,14 @@ class ToolDirection(str, Enum):
         keeps its shaft off the skin; the paper's skull let the tool through.
     HELD: the operator: it stays as it is until the second stick turns it.
     NORMAL: near the head the skin: the tool comes down along the surface normal; else as HELD.
+    POSE: as HELD, and the tool does not roll about its axis either.
     """
 
     FREE = "free"
     CLEAR = "clear"
     HELD = "held"
     NORMAL = "normal"
+    POSE = "pose"
 
 
 @dataclass(frozen=True)
@@ -86,15 +89,28 @@ class ToolSteering:
     def __init__(self, settings: SteeringSettings) -> None:
         self._settings = settings
         self._held: Vector | None = None
+        # The tool's direction and x axis by which its roll is held.
+        self._frame: tuple[Vector, Vector] | None = None
 
     @property
     def is_steered(self) -> bool:
         """Whether the steering stick has a say."""
-        return self._settings.choice in (ToolDirection.HELD, ToolDirection.NORMAL)
+        return self._settings.choice not in (ToolDirection.FREE, ToolDirection.CLEAR)
 
     def reset(self) -> None:
-        """Forget the held direction: the tool keeps the one it has when it is next moved."""
-        self._held = None
+        """Forget what is held: the tool keeps the direction it has when it is next moved."""
+        self._held = self._frame = None
+
+    def across(self, wanted: Vector, direction: Vector, across: Vector) -> Vector | None:
+        """Return the x axis that the tool shall have along `wanted`, None where its roll is free.
+
+        `direction` and `across` are the tool's direction and x axis now.
+        """
+        if self._settings.choice is not ToolDirection.POSE:
+            return None
+        before, held = self._frame or (direction, across)
+        self._frame = (wanted, carried_along(held, before, wanted))
+        return self._frame[1]
 
     def turn_to(self, direction: Vector, goal: Vector, dt: float) -> Vector:
         """Return the direction for a move that is to end with the tool along `goal`."""
@@ -129,7 +145,7 @@ class ToolSteering:
     def _leaned(self, dt: float, direction: Vector, surface: Surface) -> Vector | None:
         """Return the direction turned toward the normal, None where it may stay."""
         settings = self._settings
-        if settings.choice in (ToolDirection.FREE, ToolDirection.HELD):
+        if settings.choice not in (ToolDirection.CLEAR, ToolDirection.NORMAL):
             return None
         most = settings.leaning_turn * dt
         if surface.shaft_clearance < min(settings.shaft_clearance, surface.clearance):
