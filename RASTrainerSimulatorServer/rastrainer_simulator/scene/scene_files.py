@@ -1,0 +1,160 @@
+"""The scenes as files: built once by a process of its own, then kept for the next time."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hashlib
+import json
+import logging
+import os
+import struct
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.scene.cache_folder import forget_oldest
+from rastrainer_simulator.scene.scene_key import scene_key, setup_digest
+from rastrainer_simulator.setup import SimulationSetup
+
+_log = logging.getLogger(__name__)
+
+NO_TASK = ""
+SECRETS = ("RASTRAINER_VIEW_KEY",)
+_HEADER = struct.Struct("<4sII")
+_BELOW_NORMAL = getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0)
+
+
+@dataclass(frozen=True)
+class SceneFile:
+    """A scene that is ready.
+
+    Attributes:
+        sha256: of its content, in hexadecimal digits.
+        path: of the GLB file.
+    """
+
+    sha256: str
+    path: Path
+
+
+class SceneFiles:
+    """Gives the scenes of a setup; what is missing is built, the wanted one first."""
+
+    def __init__(self, folder: Path, robot_meshes: Path | None = None) -> None:
+        """Keep scenes in `folder`; `robot_meshes` are those that the setups were loaded with."""
+        self._folder = folder
+        self._robot_meshes = robot_meshes
+        self._ready: dict[Path, SceneFile] = {}
+        self._by_hash: dict[str, SceneFile] = {}
+        self._paths: tuple[SimulationSetup, Mapping[str, Path]] | None = None
+        self._one_at_a_time = asyncio.Lock()
+        self._process: asyncio.subprocess.Process | None = None
+
+    def find(self, sha256: str) -> SceneFile | None:
+        """Return the scene of that content, if it has been given before."""
+        return self._by_hash.get(sha256)
+
+    async def scene(self, setup: SimulationSetup, task: str) -> SceneFile:
+        """Return the scene of a task, or the one without a task; building it takes seconds.
+
+        Raises:
+            InputError: it cannot be built; the sentence says why.
+        """
+        path = (await self._paths_of(setup))[task]
+        if path not in self._ready:
+            async with self._one_at_a_time:
+                if path not in self._ready:
+                    await self._make(setup, task, path)
+        return self._ready[path]
+
+    async def build_all(self, setup: SimulationSetup) -> None:
+        """Build what is still missing of a setup, so that no task has to wait for its scene.
+
+        Raises:
+            InputError: a scene cannot be built; the sentence says why.
+        """
+        for task in await self._paths_of(setup):
+            await self.scene(setup, task)
+
+    async def close(self) -> None:
+        """End what is being built."""
+        if self._process is not None:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.kill()
+            await self._process.wait()
+
+    async def _paths_of(self, setup: SimulationSetup) -> Mapping[str, Path]:
+        if self._paths is None or self._paths[0] is not setup:
+            digest = await asyncio.to_thread(setup_digest, setup)
+            tasks = (NO_TASK, *(task.name for task in setup.scenario.tasks))
+            paths = {task: self._folder / f"{scene_key(digest, task)}.glb" for task in tasks}
+            self._paths = (setup, paths)
+        return self._paths[1]
+
+    async def _make(self, setup: SimulationSetup, task: str, path: Path) -> None:
+        """Take up the scene if it is in the folder already, else build it."""
+        if await self._take_up(path):
+            return
+        await self._build(setup, task, path)
+        await asyncio.to_thread(forget_oldest, self._folder)
+        if not await self._take_up(path):
+            raise InputError(f"The scene {path} has been deleted or changed by others.")
+
+    async def _take_up(self, path: Path) -> bool:
+        sha256 = await asyncio.to_thread(_sha256_of_glb, path)
+        if sha256 is None:
+            return False
+        file = SceneFile(sha256, path)
+        self._ready[path] = self._by_hash[sha256] = file
+        return True
+
+    async def _build(self, setup: SimulationSetup, task: str, path: Path) -> None:
+        meshes = self._robot_meshes
+        wanted = {
+            "scenario": str(setup.scenario.folder),
+            "robotMeshes": None if meshes is None else str(meshes),
+            "task": task,
+            "path": str(path),
+        }
+        self._process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "rastrainer_simulator.scene.build_process",
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            env={name: value for name, value in os.environ.items() if name not in SECRETS},
+            creationflags=_BELOW_NORMAL,
+        )
+        _, errors = await self._process.communicate(json.dumps(wanted).encode())
+        status, self._process = self._process.returncode, None
+        if status:
+            sentence = errors.decode(errors="replace").strip()
+            raise InputError(f"The scene could not be built: {sentence or f'status {status}'}")
+
+
+def read_scene(file: SceneFile) -> bytes | None:
+    """Return the content of a scene's file; None where it is not any more what it was."""
+    try:
+        content = file.path.read_bytes()
+    except OSError:
+        return None
+    return content if hashlib.sha256(content).hexdigest() == file.sha256 else None
+
+
+def _sha256_of_glb(path: Path) -> str | None:
+    """Return the hash of a whole GLB file; None where there is none."""
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return None
+    if len(content) < _HEADER.size:
+        return None
+    magic, version, length = _HEADER.unpack_from(content)
+    if (magic, version, length) != (b"glTF", 2, len(content)):
+        return None
+    return hashlib.sha256(content).hexdigest()
