@@ -1,0 +1,1 @@
+"""How trainees get better: learning curves, control charts, pass marks."""

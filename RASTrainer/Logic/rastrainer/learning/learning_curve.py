@@ -1,0 +1,90 @@
+"""The power law of practice: y = a·n^−b + c over the trials n = 1, 2, …"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.errors import InputError
+
+FEWEST_TRIALS = 5
+RATES = np.geomspace(0.02, 4.0, 200)
+
+
+@dataclass(frozen=True)
+class LearningCurve:
+    """A fitted power law (Newell and Rosenbloom 1981), in the unit of what was measured.
+
+    Attributes:
+        gain: a, how much the first trial is above the plateau.
+        rate: b, how fast it falls.
+        plateau: c, where it leads.
+        residual_sd: Standard deviation of the trials about the curve, divided by n − 3.
+        r_squared: Share of the variance that the curve explains.
+        has_learned: Whether the curve is better supported than no change at all (AICc).
+    """
+
+    gain: float
+    rate: float
+    plateau: float
+    residual_sd: float
+    r_squared: float
+    has_learned: bool
+
+    def at(self, trial: float) -> float:
+        """Return the value of the curve at a trial, the first is 1."""
+        return self.gain * trial**-self.rate + self.plateau
+
+    def trials_to_within(self, share: float) -> float:
+        """Return the trial at which all but this share of the gain is gone."""
+        return share ** (-1 / self.rate)
+
+
+def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
+    """Fit the power law to (n,) values of consecutive trials by least squares.
+
+    Gain and plateau are not below 0: what is measured falls with practice and stays above 0, as
+    times and errors do.
+
+    Raises:
+        InputError: fewer than five trials, or they hold no finite numbers of at least 0.
+    """
+    y = np.asarray(values, dtype=float)
+    if len(y) < FEWEST_TRIALS:
+        raise InputError(f"A learning curve needs at least {FEWEST_TRIALS} trials.")
+    if not np.all(np.isfinite(y) & (y >= 0)):
+        raise InputError("A learning curve needs times or errors that are finite and not below 0.")
+    trials = np.arange(1, len(y) + 1)
+    fits = [(rate, *_linear_fit(trials**-rate, y)) for rate in RATES]
+    rate, gain, plateau, squares = min(fits, key=lambda fit: fit[3])
+    total = float(((y - y.mean()) ** 2).sum())
+    return LearningCurve(
+        gain=gain,
+        rate=float(rate),
+        plateau=plateau,
+        residual_sd=math.sqrt(squares / (len(y) - 3)),
+        r_squared=1 - squares / total if total > 0 else 0.0,
+        has_learned=gain > 0 and _aicc(squares, len(y), 4) < _aicc(total, len(y), 2),
+    )
+
+
+def _linear_fit(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
+    """Return gain, plateau, both at least 0, and the sum of squares of y = gain·x + plateau."""
+    gain = float(((x - x.mean()) * (y - y.mean())).sum() / ((x - x.mean()) ** 2).sum())
+    plateau = float(y.mean() - gain * x.mean())
+    if gain < 0:
+        gain, plateau = 0.0, float(y.mean())
+    elif plateau < 0:
+        gain, plateau = float((x @ y) / (x @ x)), 0.0
+    return gain, plateau, float(((y - gain * x - plateau) ** 2).sum())
+
+
+def _aicc(squares: float, n: int, parameters: int) -> float:
+    """Return Akaike's criterion for few data; `parameters` counts the variance too."""
+    if n - parameters - 1 <= 0:
+        return math.inf
+    correction = 2 * parameters * (parameters + 1) / (n - parameters - 1)
+    return n * math.log(max(squares, 1e-300) / n) + 2 * parameters + correction

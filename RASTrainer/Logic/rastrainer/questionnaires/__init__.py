@@ -1,0 +1,1 @@
+"""What trainees are asked: SUS, raw NASA-TLX, SSQ; how answers are checked and scored."""

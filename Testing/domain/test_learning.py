@@ -1,0 +1,138 @@
+"""Learning curves, control charts and pass marks, against published values and simulation."""
+
+import numpy as np
+import pytest
+import scipy.optimize
+
+from rastrainer.errors import InputError
+from rastrainer.learning.contrasting_groups import pass_mark
+from rastrainer.learning.cusum import failure_cusum, tabular_cusum
+from rastrainer.learning.lc_cusum import lc_cusum, lc_cusum_limit, signal_probability
+from rastrainer.learning.learning_curve import fit_learning_curve
+
+# fmt: off
+MONTGOMERY = [
+    9.45, 7.99, 9.29, 11.66, 12.16, 10.18, 8.04, 11.46, 9.20, 10.34, 9.03, 11.47, 10.51, 9.40,
+    10.08, 9.37, 10.62, 10.31, 8.52, 10.84, 10.90, 9.33, 12.29, 11.50, 10.60, 11.08, 10.38, 11.62,
+    11.31, 10.52,
+]
+"""Montgomery, Introduction to Statistical Quality Control, table 9.1: target 10, sigma 1."""
+# fmt: on
+
+
+def test_the_tabular_cusum_is_montgomerys():
+    """His table 9.2 (k = 0.5, h = 5): C+ is 5.28 at value 29, the first signal, then 5.30."""
+    chart = tabular_cusum(MONTGOMERY, 10.0, 0.5, 5.0)
+    assert chart.above[27:] == pytest.approx([4.47, 5.28, 5.30])
+    assert chart.below[:3] == pytest.approx([0.05, 1.56, 1.77])
+    assert chart.signals == (29, 30)
+
+
+def test_the_failure_cusum_has_walds_boundaries():
+    """By hand for p0 = .2, p1 = .4, alpha = beta = .1: P = ln 2, Q = ln(4/3), a = b = ln 9."""
+    chart = failure_cusum([True, False, False], 0.2, 0.4)
+    assert chart.success_step == pytest.approx(0.2877 / (0.6931 + 0.2877), abs=1e-4)
+    assert (chart.upper, chart.lower) == (
+        pytest.approx(2.1972 / 0.9808, abs=1e-4),
+        pytest.approx(-2.1972 / 0.9808, abs=1e-4),
+    )
+    assert chart.sums == pytest.approx(np.cumsum([1 - 0.29330, -0.29330, -0.29330]), abs=1e-4)
+
+
+def test_the_failure_cusum_tells_good_from_bad():
+    assert failure_cusum([False] * 30, 0.2, 0.4).acceptable_at == 8
+    assert failure_cusum([True] * 30, 0.2, 0.4).unacceptable_at == 4
+    assert failure_cusum([False] * 3, 0.2, 0.4).acceptable_at is None
+
+
+@pytest.mark.parametrize("rates", [(0.4, 0.2), (0.0, 0.2), (0.2, 1.0), (float("nan"), 0.5)])
+def test_rates_that_are_none_are_refused(rates):
+    for chart in (lambda: failure_cusum([True], *rates), lambda: lc_cusum([True], *rates, 1.0)):
+        with pytest.raises(InputError, match="acceptable failure rate above 0"):
+            chart()
+
+
+def test_the_probability_of_a_signal_is_that_of_simulated_trainees():
+    rng = np.random.default_rng(0)
+    failures = rng.random((4000, 25)) < 0.4
+    signaled = [lc_cusum(row, 0.1, 0.4, 1.25).competent_at is not None for row in failures[:800]]
+    exact = signal_probability(0.4, 25, 0.1, 0.4, 1.25)
+    assert np.mean(signaled) == pytest.approx(exact, abs=0.05)
+
+
+def test_the_limit_keeps_the_risk_and_competent_trainees_pass():
+    limit = lc_cusum_limit(0.05, 0.4, 20)
+    assert signal_probability(0.4, 20, 0.05, 0.4, limit) <= 0.05
+    assert signal_probability(0.4, 20, 0.05, 0.4, limit - 1e-3) > 0.05
+    assert signal_probability(0.05, 20, 0.05, 0.4, limit) > 0.9
+    assert lc_cusum([True, True, *[False] * 12], 0.05, 0.4, limit).competent_at is not None
+    with pytest.raises(InputError, match="3 trials cannot show competence"):
+        lc_cusum_limit(0.05, 0.4, 3)
+
+
+def test_a_learning_curve_recovers_its_parameters():
+    n = np.arange(1, 31)
+    curve = fit_learning_curve(120 * n**-0.6 + 40)
+    assert (curve.gain, curve.rate, curve.plateau) == (
+        pytest.approx(120, rel=0.02),
+        pytest.approx(0.6, rel=0.02),
+        pytest.approx(40, rel=0.03),
+    )
+    assert curve.has_learned
+    assert curve.at(10) == pytest.approx(120 * 10**-0.6 + 40, rel=1e-3)
+    assert curve.trials_to_within(0.5) == pytest.approx(2 ** (1 / 0.6), rel=0.03)
+
+
+def test_a_learning_curve_is_scipys_least_squares():
+    rng = np.random.default_rng(5)
+    n = np.arange(1, 21)
+    y = 80 * n**-0.8 + 60 + rng.normal(0, 4, 20)
+    expected, _ = scipy.optimize.curve_fit(lambda x, a, b, c: a * x**-b + c, n, y, [50, 0.5, 50])
+    curve = fit_learning_curve(y)
+    np.testing.assert_allclose(curve.at(n), expected[0] * n ** -expected[1] + expected[2], atol=0.2)
+
+
+def test_noise_and_getting_worse_are_not_called_learning():
+    rng = np.random.default_rng(2)
+    found = [fit_learning_curve(100 + rng.normal(0, 10, 12)).has_learned for _ in range(200)]
+    assert np.mean(found) < 0.15
+    assert not fit_learning_curve(np.arange(1.0, 12.0)).has_learned
+    with pytest.raises(InputError, match="at least 5 trials"):
+        fit_learning_curve([1.0, 2.0])
+    with pytest.raises(InputError, match="not below 0"):
+        fit_learning_curve([1.0, 2.0, -1.0, 2.0, 3.0])
+
+
+def test_the_pass_mark_of_equal_spreads_is_in_the_middle():
+    rng = np.random.default_rng(0)
+    spread = rng.normal(0, 1, 40)
+    spread = (spread - spread.mean()) / spread.std(ddof=1)
+    mark = pass_mark(40 + 6 * spread, 70 + 6 * spread)
+    assert mark.score == pytest.approx(55.0, abs=1e-6)
+    assert mark.passing_novices == pytest.approx(0.0062, abs=1e-4)
+    assert mark.failing_experts == pytest.approx(mark.passing_novices)
+
+
+def test_the_pass_mark_leans_toward_the_narrower_group():
+    spread = np.linspace(-1, 1, 21)
+    mark = pass_mark(40 + 3 * spread, 70 + 15 * spread)
+    assert 40 < mark.score < 50
+    below, above = np.std(40 + 3 * spread, ddof=1), np.std(70 + 15 * spread, ddof=1)
+    densities = [
+        np.exp(-(((mark.score - mean) / sd) ** 2) / 2) / sd
+        for mean, sd in [(40, below), (70, above)]
+    ]
+    assert densities[0] == pytest.approx(densities[1], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("novices", "experts", "words"),
+    [
+        ([1, 2, 3], [5, 6, 7, 8, 9], "at least 5 novices"),
+        ([1] * 5, [5, 6, 7, 8, 9], "differ within each group"),
+        ([5, 6, 7, 8, 9], [1, 2, 3, 4, 5], "experts who score higher"),
+    ],
+)
+def test_a_pass_mark_without_two_contrasting_groups_is_refused(novices, experts, words):
+    with pytest.raises(InputError, match=words):
+        pass_mark(novices, experts)
