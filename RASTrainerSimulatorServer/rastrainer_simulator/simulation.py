@@ -123,7 +123,9 @@ class Simulation:
             return Reply(False, sentence)
         arguments = command.arguments
         if command.name == CommandName.LIST_TASKS:
-            return Reply(True, data={"tasks": self._tasks()})
+            scenario = self.setup.scenario
+            names = {"scenario": scenario.name, "title": scenario.title}
+            return Reply(True, data={**names, "tasks": self._tasks()})
         if command.name == CommandName.SET_CAMERA:
             self._view.camera = arguments["camera"]
             return Reply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
@@ -230,7 +232,7 @@ class Simulation:
 
 def _collision(setup: SimulationSetup, head: HeadMesh) -> Collision:
     surroundings = Surroundings(stand_radius=setup.scenario.furniture.stand_diameter / 2.0 / MM)
-    return Collision(setup.robot, head.vertices / MM, head.triangles, surroundings)
+    return Collision(setup.shape, head.vertices / MM, head.triangles, surroundings)
 
 
 def _ended(outcome: Outcome, sim_time: float) -> Event:

@@ -65,9 +65,13 @@ def what_changes(state: SimulationState) -> dict[str, Any]:
     }
 
 
-def sim_state(changing: Mapping[str, Any], sim_time: float, seq: int) -> Message:
-    """Return the text that says where the trial and the robot stand: ASCII JSON."""
-    text = json.dumps({"seq": seq, "simTime": round(sim_time, 6), **changing}, allow_nan=False)
+def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> Message:
+    """Return the text that says where the trial and the robot stand: ASCII JSON.
+
+    `changing` is what `what_changes` gives; the times go along and are no reason to send it.
+    """
+    times = {"simTime": round(state.sim_time, 6), "elapsedS": round(state.elapsed, 3)}
+    text = json.dumps({"seq": seq, **times, **changing}, allow_nan=False)
     return Message(Device.SIM_STATE, String(text))
 
 

@@ -46,7 +46,7 @@ class Publisher:
         state = self._latest()
         self._send([connection], devices.captured_points(state.training))
         changing = devices.what_changes(state)
-        self._send([connection], devices.sim_state(changing, state.sim_time, next(self._numbers)))
+        self._send([connection], devices.sim_state(changing, state, next(self._numbers)))
         self._next = -math.inf
 
     def unsubscribe(self, connection: Connection) -> None:
@@ -87,7 +87,7 @@ class Publisher:
         changing = devices.what_changes(state)
         if changing != self._told:
             self._told = changing
-            message = devices.sim_state(changing, state.sim_time, next(self._numbers))
+            message = devices.sim_state(changing, state, next(self._numbers))
             self._send(everyone, message)
 
     def _send(self, receivers: Iterable[Connection], *messages: Message) -> None:

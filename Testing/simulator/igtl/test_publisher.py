@@ -117,6 +117,7 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
     assert told.pop("seq") > 0
     assert told == {
         "simTime": 3.0,
+        "elapsedS": state.elapsed,
         "phase": "running",
         "trainee": "Zoë",
         "task": "task-1",
