@@ -1,0 +1,1 @@
+"""The panels over the picture, painted from what the simulator's screen says."""

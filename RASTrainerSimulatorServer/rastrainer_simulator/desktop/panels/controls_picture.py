@@ -1,0 +1,100 @@
+"""A drawing of the gamepad, shown beside the explanation of the controls."""
+
+from __future__ import annotations
+
+import math
+
+from rastrainer_simulator.desktop import theme
+from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.theme import Color, rgba
+
+# In a frame that is 100 wide and 66 high, y down.
+WIDTH, HEIGHT = 100.0, 66.0
+BODY_COLOR = rgba(0x33415A)
+PART = rgba(0x1A2436)
+RIM = rgba(0x8DA0BD)
+GRIPS = (((20, 30), (15, 52)), ((80, 30), (85, 52)))
+STICKS = (((37, 43), "L"), ((63, 43), "R"))
+FACES = (
+    ((80, 36), "A", rgba(0x3CCB7F)),
+    ((87, 28), "B", rgba(0xFF5252)),
+    ((73, 28), "X", rgba(0x5AA2FF)),
+    ((80, 20), "Y", rgba(0xFFB92E)),
+)
+SHOULDERS = (((12, 9), "LT"), ((74, 9), "RT"))
+
+
+def draw_gamepad(canvas: Canvas, place: Box, brush: Brush) -> None:
+    """Draw a gamepad as large as fits, at the top of `place`."""
+    size = min(place.width / WIDTH, place.height / HEIGHT)
+    left = place.left + (place.width - WIDTH * size) / 2
+    pen = _Pen(canvas, brush, left, place.top, size)
+    for (x, y), name in SHOULDERS:
+        pen.slab(x, y - 6, 14, 10, 4, PART)
+        pen.label(x + 7, y - 2, name, theme.TEXT_SOFT)
+    for start, end in GRIPS:
+        pen.line([start, end], 24, BODY_COLOR)
+    pen.slab(8, 10, 84, 36, 16, BODY_COLOR)
+    pen.cross(20, 28)
+    for (x, y), name in STICKS:
+        pen.disk(x, y, 9.5, PART, RIM)
+        pen.disk(x, y, 6.5, BODY_COLOR, RIM)
+        pen.label(x, y, name, theme.TEXT)
+    for (x, y), name, color in FACES:
+        pen.disk(x, y, 4.3, PART, color)
+        pen.label(x, y, name, color)
+    for x in (44, 56):
+        pen.slab(x - 3, 22, 6, 3.4, 1.7, PART)
+
+
+class _Pen:
+    """Draws in the drawing's own frame."""
+
+    def __init__(self, canvas: Canvas, brush: Brush, left: float, top: float, size: float):
+        self._canvas, self._brush = canvas, brush
+        self._left, self._top, self._size = left, top, size
+
+    def slab(
+        self, x: float, y: float, width: float, height: float, radius: float, color: Color
+    ) -> None:
+        self._canvas.box(self._box(x, y, width, height), color, radius * self._size)
+
+    def disk(self, x: float, y: float, radius: float, color: Color, rim: Color) -> None:
+        box = self._box(x - radius, y - radius, 2 * radius, 2 * radius)
+        self._canvas.box(box, color, radius * self._size)
+        self._canvas.frame(box, rim, radius * self._size, max(1, round(0.7 * self._size)))
+
+    def line(self, points: list[tuple[float, float]], thickness: float, color: Color) -> None:
+        placed = [(self._left + x * self._size, self._top + y * self._size) for x, y in points]
+        self._canvas.stroke(placed, thickness * self._size, color)
+
+    def cross(self, x: float, y: float) -> None:
+        for wide, high in ((16, 5.4), (5.4, 16)):
+            self.slab(x - wide / 2, y - high / 2, wide, high, 1.5, PART)
+        for quarter in range(4):
+            angle = quarter * math.pi / 2
+            ahead, aside = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
+            corners = [(6.6, 0.0), (4.6, 1.5), (4.6, -1.5)]
+            placed = [
+                (
+                    self._left + (x + far * ahead[0] + off * aside[0]) * self._size,
+                    self._top + (y + far * ahead[1] + off * aside[1]) * self._size,
+                )
+                for far, off in corners
+            ]
+            self._canvas.polygon(placed, RIM)
+
+    def label(self, x: float, y: float, text: str, color: Color) -> None:
+        style = theme.SMALL_STRONG
+        left = round(self._left + x * self._size - self._brush.width(text, style) / 2)
+        top = round(self._top + y * self._size - self._brush.line_height(style) / 2)
+        self._brush.write(self._canvas, text, style, color, left, top)
+
+    def _box(self, x: float, y: float, width: float, height: float) -> Box:
+        return Box(
+            round(self._left + x * self._size),
+            round(self._top + y * self._size),
+            round(width * self._size),
+            round(height * self._size),
+        )

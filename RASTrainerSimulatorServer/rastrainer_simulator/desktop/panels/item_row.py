@@ -1,0 +1,130 @@
+"""One line of a menu: what it looks like for each kind of item."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rastrainer_simulator.desktop import theme
+from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.theme import Color
+from rastrainer_simulator.flow.screen import Item, ItemKind
+
+_VALUE_SHARE = 0.52
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a row stands out: by the gamepad's focus, or by the mouse over it."""
+
+    has_focus: bool
+    is_hovered: bool
+
+
+def draw_item(canvas: Canvas, item: Item, look: Look, brush: Brush, row: Box) -> None:
+    """Draw an item into its row."""
+    radius = brush.px(theme.RADIUS)
+    canvas.box(row, _ground(item, look), radius)
+    if look.has_focus:
+        canvas.frame(row, theme.ACCENT_EDGE, radius, brush.px(3))
+    color = theme.TEXT if item.is_enabled else theme.TEXT_PALE
+    pad = brush.px(theme.PAD)
+    style = theme.STRONG if look.has_focus or item.kind is ItemKind.BUTTON else theme.BODY
+    top = row.top + (row.height - brush.line_height(style)) // 2
+    has_value = item.kind is not ItemKind.BUTTON or bool(item.value)
+    room = row.width - 2 * pad - (_value_width(row) if has_value else 0)
+    brush.write(canvas, brush.fit(item.label, style, room), style, color, row.left + pad, top)
+    if has_value:
+        width = _value_width(row)
+        place = Box(row.left + row.width - pad - width, row.top, width, row.height)
+        _DRAW_VALUE[item.kind](canvas, item, look, brush, place, color)
+
+
+def _ground(item: Item, look: Look) -> Color:
+    if look.has_focus:
+        return theme.ACCENT
+    return theme.ROW_HOVER if look.is_hovered and item.is_enabled else theme.ROW
+
+
+def _value_width(row: Box) -> int:
+    return round(_VALUE_SHARE * row.width)
+
+
+def _draw_plain(
+    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+) -> None:
+    text = brush.fit(item.value, theme.BODY, place.width)
+    left = place.left + place.width - brush.width(text, theme.BODY)
+    soft = color if look.has_focus or not item.is_enabled else theme.TEXT_SOFT
+    brush.write(canvas, text, theme.BODY, soft, left, _text_top(brush, place))
+
+
+def _draw_choice(
+    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+) -> None:
+    """Draw the chosen option between two arrow heads."""
+    reach = brush.px(theme.STEP)
+    middle = place.top + place.height / 2
+    right = place.left + place.width
+    arrows = color if look.has_focus else theme.TEXT_SOFT if item.is_enabled else color
+    for x, way in ((place.left + reach, 1), (right - reach, -1)):
+        points = [(x + way * reach / 2, middle - reach), (x - way * reach / 2, middle)]
+        canvas.stroke([*points, (x + way * reach / 2, middle + reach)], brush.px(3), arrows)
+    text = brush.fit(item.value, theme.STRONG, place.width - 6 * reach)
+    left = place.left + (place.width - brush.width(text, theme.STRONG)) // 2
+    brush.write(canvas, text, theme.STRONG, color, left, _text_top(brush, place))
+
+
+def _draw_text(
+    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+) -> None:
+    """Draw a sunk field with what was typed, its end in sight, and a caret after it."""
+    field = Box(place.left, place.top + brush.px(9), place.width, place.height - 2 * brush.px(9))
+    canvas.box(field, theme.FIELD, brush.px(theme.STEP))
+    canvas.frame(
+        field,
+        theme.ACCENT_EDGE if look.has_focus else theme.EDGE,
+        brush.px(theme.STEP),
+        brush.px(1.5),
+    )
+    pad = brush.px(theme.GAP)
+    text = item.value
+    while brush.width(text, theme.BODY) > field.width - 2 * pad - brush.px(4):
+        text = text[1:]
+    width = brush.write(canvas, text, theme.BODY, color, field.left + pad, _text_top(brush, place))
+    if look.has_focus:
+        x = field.left + pad + width + brush.px(4)
+        caret = Box(x, field.top + brush.px(9), brush.px(2.5), field.height - 2 * brush.px(9))
+        canvas.box(caret, theme.TEXT)
+
+
+def _draw_axis(
+    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+) -> None:
+    """Draw a position between −1 and 1 as a bar from the middle of a track."""
+    del look
+    height = brush.px(theme.STEP + 2)
+    top = place.top + (place.height - height) // 2
+    canvas.box(Box(place.left, top, place.width, height), theme.FIELD, height / 2)
+    middle = place.left + place.width // 2
+    try:
+        position = max(-1.0, min(1.0, float(item.value.replace("−", "-"))))
+    except ValueError:
+        position = 0.0
+    length = round(abs(position) * place.width / 2)
+    bar = Box(middle if position > 0 else middle - length, top, max(1, length), height)
+    canvas.box(bar, theme.TONES["good"], height / 2)
+    tick = brush.px(2)
+    canvas.box(Box(middle - tick // 2, top - height, tick, 3 * height), color)
+
+
+def _text_top(brush: Brush, place: Box) -> int:
+    return place.top + (place.height - brush.line_height(theme.BODY)) // 2
+
+
+_DRAW_VALUE = {
+    ItemKind.BUTTON: _draw_plain,
+    ItemKind.CHOICE: _draw_choice,
+    ItemKind.TEXT: _draw_text,
+    ItemKind.AXIS: _draw_axis,
+}

@@ -1,0 +1,192 @@
+"""A menu as a panel: headline, text, table and rows, as large as its content and the window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer_simulator.desktop import theme
+from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad
+from rastrainer_simulator.desktop.panels.item_row import Look, draw_item
+from rastrainer_simulator.flow.screen import Menu
+
+SHRINK = 0.94
+SMALLEST = 0.84
+_ROW_GAP = 1.25 * theme.STEP
+_FACT_HEIGHT = 5.5 * theme.STEP
+
+
+@dataclass(frozen=True)
+class MenuPicture:
+    """A painted menu.
+
+    Attributes:
+        pixels: (height, width, 4) uint8.
+        rows: where each item that can be seen is, in the picture.
+    """
+
+    pixels: np.ndarray
+    rows: dict[str, Box]
+
+    def item_at(self, x: float, y: float) -> str:
+        """Return the name of the item at a pixel, "" where there is none."""
+        return next((name for name, box in self.rows.items() if box.contains(x, y)), "")
+
+
+def menu_panel(menu: Menu, scale: float, room: tuple[int, int], hovered: str = "") -> MenuPicture:
+    """Paint a menu into at most `room` (width, height) pixels.
+
+    What is too high is set smaller, down to what is still readable; beyond that its rows scroll
+    with the focus.
+    """
+    factor = 1.0
+    layout = _Layout(menu, Brush(scale), room)
+    while layout.height > room[1] and factor > SMALLEST:
+        factor *= SHRINK
+        layout = _Layout(menu, Brush(scale * factor), room)
+    return layout.paint(hovered)
+
+
+class _Layout:
+    """Where everything of a menu comes, at one scale."""
+
+    def __init__(self, menu: Menu, brush: Brush, room: tuple[int, int]):
+        self._menu = menu
+        self._brush = brush
+        self._pad = brush.px(theme.PANEL_PAD)
+        has_picture = menu.picture == "controls"
+        width = theme.WIDE_PANEL_WIDTH if has_picture else theme.PANEL_WIDTH
+        self._width = min(brush.px(width), room[0])
+        inside = self._width - 2 * self._pad
+        self._picture_width = round(0.42 * inside) if has_picture else 0
+        self._left = self._pad + self._picture_width + (self._pad if has_picture else 0)
+        self._text_width = self._width - self._pad - self._left
+        self._title = brush.wrap(menu.title, theme.TITLE, inside)
+        self._lines = [brush.wrap(text, theme.BODY, self._text_width) for text in menu.paragraphs]
+        self._help = max(
+            (
+                len(brush.wrap(item.help, theme.SMALL, self._text_width))
+                for item in menu.items
+                if item.help
+            ),
+            default=0,
+        )
+        above, below = self._heights()
+        self.height = above + self._rows_height(len(menu.items)) + below
+        fitting = max(1, (room[1] - above - below) // (self._row + self._gap))
+        self._shown = self._rows_in_sight(min(len(menu.items), fitting))
+        self._height = min(self.height, above + self._rows_height(len(self._shown)) + below)
+
+    @property
+    def _row(self) -> int:
+        return self._brush.px(theme.ROW_HEIGHT)
+
+    @property
+    def _gap(self) -> int:
+        return self._brush.px(_ROW_GAP)
+
+    def _rows_height(self, count: int) -> int:
+        return count * (self._row + self._gap) - self._gap if count else 0
+
+    def _heights(self) -> tuple[int, int]:
+        """Return how much is above the rows, and how much is below them."""
+        brush = self._brush
+        above = self._pad + len(self._title) * brush.line_height(theme.TITLE) + brush.px(theme.PAD)
+        for lines in self._lines:
+            above += len(lines) * brush.line_height(theme.BODY) + brush.px(theme.GAP)
+        facts = len(self._menu.facts)
+        above += facts * brush.px(_FACT_HEIGHT) + (brush.px(theme.PAD) if facts else 0)
+        below = self._pad
+        if self._help:
+            below += self._help * brush.line_height(theme.SMALL) + brush.px(theme.GAP)
+        return above, below
+
+    def _rows_in_sight(self, count: int) -> range:
+        names = [item.name for item in self._menu.items]
+        focus = names.index(self._menu.focus) if self._menu.focus in names else 0
+        first = min(max(0, focus - count // 2), len(names) - count)
+        return range(first, first + count)
+
+    def paint(self, hovered: str) -> MenuPicture:
+        """Paint it; the item `hovered` is under the mouse."""
+        brush = self._brush
+        canvas = Canvas(self._width, self._height)
+        whole = Box(0, 0, self._width, self._height)
+        radius = brush.px(theme.PANEL_RADIUS)
+        canvas.box(whole, theme.NIGHT, radius)
+        canvas.frame(whole, theme.EDGE, radius, brush.px(1.5))
+        top = self._pad
+        for line in self._title:
+            brush.write(canvas, line, theme.TITLE, theme.TEXT, self._pad, top)
+            top += brush.line_height(theme.TITLE)
+        top += brush.px(theme.PAD)
+        if self._picture_width:
+            place = Box(self._pad, top, self._picture_width, self._height - top - self._pad)
+            draw_gamepad(canvas, place, brush)
+        top = self._paint_text(canvas, top)
+        rows = self._paint_rows(canvas, top, hovered)
+        self._paint_help(canvas)
+        return MenuPicture(canvas.pixels(), rows)
+
+    def _paint_text(self, canvas: Canvas, top: int) -> int:
+        brush = self._brush
+        for lines in self._lines:
+            for line in lines:
+                brush.write(canvas, line, theme.BODY, theme.TEXT_SOFT, self._left, top)
+                top += brush.line_height(theme.BODY)
+            top += brush.px(theme.GAP)
+        height = brush.px(_FACT_HEIGHT)
+        for fact in self._menu.facts:
+            row = top + (height - brush.line_height(theme.BODY)) // 2
+            value = brush.fit(fact.value, theme.STRONG, 0.7 * self._text_width)
+            width = brush.width(value, theme.STRONG)
+            room = self._text_width - width - brush.px(theme.PAD)
+            label = brush.fit(fact.label, theme.BODY, room)
+            brush.write(canvas, label, theme.BODY, theme.TEXT_SOFT, self._left, row)
+            tone = theme.TEXT if fact.tone == "plain" else theme.TONES[fact.tone]
+            right = self._left + self._text_width - width
+            brush.write(canvas, value, theme.STRONG, tone, right, row)
+            top += height
+            rule = Box(self._left, top - brush.px(1), self._text_width, brush.px(1))
+            canvas.box(rule, theme.EDGE)
+        return top + (brush.px(theme.PAD) if self._menu.facts else 0)
+
+    def _paint_rows(self, canvas: Canvas, top: int, hovered: str) -> dict[str, Box]:
+        rows: dict[str, Box] = {}
+        for index in self._shown:
+            item = self._menu.items[index]
+            row = Box(self._left, top, self._text_width, self._row)
+            look = Look(item.name == self._menu.focus, item.name == hovered)
+            draw_item(canvas, item, look, self._brush, row)
+            rows[item.name] = row
+            top += self._row + self._gap
+        self._paint_more(canvas, rows)
+        return rows
+
+    def _paint_more(self, canvas: Canvas, rows: dict[str, Box]) -> None:
+        """Mark that there are rows out of sight by a bar beside those in sight."""
+        count = len(self._menu.items)
+        if not rows or len(rows) == count:
+            return
+        boxes = list(rows.values())
+        high = boxes[-1].top + boxes[-1].height - boxes[0].top
+        x = self._left + self._text_width + self._pad // 2
+        track = Box(x, boxes[0].top, self._brush.px(theme.STEP), high)
+        canvas.box(track, theme.FIELD, track.width / 2)
+        start = boxes[0].top + round(high * self._shown.start / count)
+        thumb = Box(x, start, track.width, round(high * len(rows) / count))
+        canvas.box(thumb, theme.TEXT_PALE, track.width / 2)
+
+    def _paint_help(self, canvas: Canvas) -> None:
+        brush = self._brush
+        focused = [item for item in self._menu.items if item.name == self._menu.focus]
+        if not focused or not focused[0].help:
+            return
+        line_height = brush.line_height(theme.SMALL)
+        top = self._height - self._pad - self._help * line_height
+        for line in brush.wrap(focused[0].help, theme.SMALL, self._text_width):
+            brush.write(canvas, line, theme.SMALL, theme.TEXT_SOFT, self._left, top)
+            top += line_height

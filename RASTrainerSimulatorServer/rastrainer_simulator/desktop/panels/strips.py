@@ -1,0 +1,111 @@
+"""The small panels at the edges: instruction, warnings, status and hints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rastrainer_simulator.desktop import theme
+from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.theme import Color, Type
+from rastrainer_simulator.flow.screen import Hint, Message
+
+
+def instruction(message: Message, brush: Brush, room: int) -> np.ndarray:
+    """Return what to do now, at most `room` pixels wide; a bar in the tone's color leads it."""
+    return _sentence(message, theme.HEADING, theme.GLASS, theme.TONES[message.tone], brush, room)
+
+
+def warning(message: Message, brush: Brush, room: int) -> np.ndarray:
+    """Return what is wrong, on a ground that cannot be overlooked."""
+    return _sentence(message, theme.STRONG, theme.BANNERS[message.tone], theme.TEXT, brush, room)
+
+
+def status(facts: Sequence[str], brush: Brush) -> np.ndarray:
+    """Return short facts, one beside the other."""
+    widths = [brush.width(fact, theme.SMALL_STRONG) for fact in facts]
+    pad, gap = brush.px(theme.GAP), brush.px(theme.STEP)
+    height = brush.line_height(theme.SMALL_STRONG) + 2 * brush.px(theme.STEP)
+    canvas = Canvas(sum(widths) + 2 * pad * len(facts) + gap * (len(facts) - 1), height)
+    left = 0
+    for fact, width in zip(facts, widths, strict=True):
+        canvas.box(Box(left, 0, width + 2 * pad, height), theme.GLASS, height / 2)
+        brush.write(canvas, fact, theme.SMALL_STRONG, theme.TEXT, left + pad, brush.px(theme.STEP))
+        left += width + 2 * pad + gap
+    return canvas.pixels()
+
+
+def hints(shown: Sequence[Hint], brush: Brush, room: int) -> np.ndarray:
+    """Return controls as key caps with what they do, in as many rows as they need."""
+    rows: list[list[Hint]] = [[]]
+    for hint in shown:
+        if rows[-1] and _hints_width([*rows[-1], hint], brush) > room:
+            rows.append([])
+        rows[-1].append(hint)
+    pad = brush.px(theme.STEP)
+    cap = _cap_height(brush)
+    width = max(_hints_width(row, brush) for row in rows)
+    canvas = Canvas(width, len(rows) * (cap + pad) + pad)
+    ground = Box(0, 0, canvas.width, canvas.height)
+    canvas.box(ground, theme.GLASS, min(canvas.height / 2, brush.px(theme.PANEL_RADIUS)))
+    for index, row in enumerate(rows):
+        left = (width - _hints_width(row, brush)) // 2 + brush.px(theme.PAD)
+        for hint in row:
+            left += _write_hint(canvas, hint, brush, left, pad + index * (cap + pad))
+    return canvas.pixels()
+
+
+def _sentence(
+    message: Message, style: Type, ground: Color, mark: Color, brush: Brush, room: int
+) -> np.ndarray:
+    pad_x, pad_y = brush.px(theme.MARGIN), brush.px(theme.GAP)
+    bar = brush.px(theme.STEP)
+    lines = brush.wrap(message.text, style, room - 2 * pad_x - bar)
+    text_width = max(brush.width(line, style) for line in lines)
+    line_height = brush.line_height(style)
+    canvas = Canvas(text_width + 2 * pad_x + bar, len(lines) * line_height + 2 * pad_y)
+    radius = brush.px(theme.PAD)
+    canvas.box(Box(0, 0, canvas.width, canvas.height), ground, radius)
+    inside = Box(brush.px(theme.GAP), pad_y, bar, canvas.height - 2 * pad_y)
+    canvas.box(inside, mark, bar / 2)
+    for index, line in enumerate(lines):
+        left = bar + (canvas.width - bar - brush.width(line, style)) // 2
+        brush.write(canvas, line, style, theme.TEXT, left, pad_y + index * line_height)
+    return canvas.pixels()
+
+
+def _cap_height(brush: Brush) -> int:
+    return brush.line_height(theme.SMALL) + brush.px(theme.STEP)
+
+
+def _cap_width(control: str, brush: Brush) -> int:
+    text = brush.width(control, theme.SMALL_STRONG)
+    return max(_cap_height(brush), text + 2 * brush.px(1.5 * theme.STEP))
+
+
+def _hint_width(hint: Hint, brush: Brush) -> int:
+    action = brush.width(hint.action, theme.SMALL)
+    return _cap_width(hint.control, brush) + brush.px(1.5 * theme.STEP) + action
+
+
+def _hints_width(row: Sequence[Hint], brush: Brush) -> int:
+    between = brush.px(theme.PAD + theme.STEP) * (len(row) - 1)
+    return sum(_hint_width(hint, brush) for hint in row) + between + 2 * brush.px(theme.PAD)
+
+
+def _write_hint(canvas: Canvas, hint: Hint, brush: Brush, left: int, top: int) -> int:
+    """Draw a key cap and its action; return how far the next begins to the right."""
+    height, width = _cap_height(brush), _cap_width(hint.control, brush)
+    cap = Box(left, top, width, height)
+    canvas.box(cap, theme.CAP, height / 4)
+    canvas.frame(cap, theme.CAP_EDGE, height / 4, brush.px(1.5))
+    text = brush.width(hint.control, theme.SMALL_STRONG)
+    row = top + (height - brush.line_height(theme.SMALL)) // 2
+    brush.write(
+        canvas, hint.control, theme.SMALL_STRONG, theme.TEXT, left + (width - text) // 2, row
+    )
+    beside = left + width + brush.px(1.5 * theme.STEP)
+    brush.write(canvas, hint.action, theme.SMALL, theme.TEXT_SOFT, beside, row)
+    return _hint_width(hint, brush) + brush.px(theme.PAD + theme.STEP)
