@@ -9,7 +9,11 @@ from typing import Any
 
 from rastrainer.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.robot.model import RobotModel, load_robot
+from rastrainer_simulator.collision.robot_shape import RobotShape, robot_shape
+from rastrainer_simulator.collision.shape_json import shape_from_json
+from rastrainer_simulator.robot.model import DEFAULT_URDF, RobotModel, load_robot
+from rastrainer_simulator.robot.model_json import model_from_json
+from rastrainer_simulator.robot.prepared import read_prepared
 from rastrainer_simulator.settings import SimulationSettings, settings_to_json
 
 DEFAULT_SCENARIO = ("scenarios", "colin27")
@@ -22,12 +26,14 @@ class SimulationSetup:
     Attributes:
         scenario: head, tasks and cameras.
         robot: the arm and its tool.
+        shape: the arm and its tool as collisions see them.
         settings: how it behaves.
         scenario_sha256: of what a trial depends on, so that a journal tells which it was.
     """
 
     scenario: Scenario
     robot: RobotModel
+    shape: RobotShape
     settings: SimulationSettings = field(default_factory=SimulationSettings)
     scenario_sha256: str = ""
 
@@ -53,12 +59,25 @@ def load_setup(
     """
     folder = scenario_folder or asset_path(*DEFAULT_SCENARIO)
     scenario = load_scenario(folder)
+    robot, shape = _robot_and_shape(urdf_path, robot_meshes)
     return SimulationSetup(
         scenario=scenario,
-        robot=load_robot(urdf_path, robot_meshes),
+        robot=robot,
+        shape=shape,
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
     )
+
+
+def _robot_and_shape(
+    urdf_path: Path | None, robot_meshes: Path | None
+) -> tuple[RobotModel, RobotShape]:
+    path = urdf_path or asset_path(*DEFAULT_URDF)
+    prepared = read_prepared(path) if robot_meshes is None else None
+    if prepared is None:
+        robot = load_robot(path, robot_meshes)
+        return robot, robot_shape(robot)
+    return model_from_json(prepared["model"], path.parent), shape_from_json(prepared["shape"])
 
 
 def scenario_sha256(scenario: Scenario) -> str:

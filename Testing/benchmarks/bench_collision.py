@@ -45,7 +45,7 @@ class Bench:
         self.kinematics, self.fabrik = make_kinematics(self.robot), Fabrik(self.robot)
 
     def collision(self, vertices: np.ndarray, triangles: np.ndarray) -> Collision:
-        found = Collision(self.robot, vertices, triangles)
+        found = Collision(robot_shape(self.robot), vertices, triangles)
         found.set_head_pose(self.to_world)
         return found
 

@@ -16,6 +16,7 @@ from rastrainer.surface_queries import nearest_on_mesh, outward_normal
 from rastrainer.target_error import tre_covariances
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.planning.task_proposal import target_spread
 from rastrainer_simulator.planning.touch_planner import TouchPlanner
 from rastrainer_simulator.planning.touchable import touchable
@@ -137,7 +138,7 @@ def test_the_fiducials_locate_the_center_of_the_head_well(name):
 
 def test_the_robot_can_touch_every_fiducial_in_twenty_other_poses_of_the_head():
     robot = load_robot()
-    collision = Collision(robot, MESH.vertices / 1000, MESH.triangles)
+    collision = Collision(robot_shape(robot), MESH.vertices / 1000, MESH.triangles)
     fiducials = np.concatenate([task.fiducials for task in SCENARIO.tasks])
     normals = np.array([outward_normal(MESH, point) for point in fiducials])
     seeds = range(90_000, 90_020)

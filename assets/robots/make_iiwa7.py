@@ -16,6 +16,12 @@ from iiwa7_shells import plain_shells, shells
 from iiwa7_urdf import LinkBody, urdf_text
 from pointer_tool import plain_tool, tip, tool
 
+from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.shape_json import shape_to_json
+from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.robot.model_json import model_to_json
+from rastrainer_simulator.robot.prepared import write_prepared
+
 RINGS = 25
 SEGMENTS = 40
 ROUND_SEGMENTS = 44
@@ -48,7 +54,10 @@ def write_robot(folder: Path) -> None:
         bodies[link] = _body(files, collision, MASSES[link], solids[link])
     tip_file = _write(visuals[TOOL_TIP_LINK]["blue"], folder, "visual/tool_tip_blue.stl")
     text = urdf_text(bodies, (tip_file, "blue"))
-    (folder / "iiwa7.urdf").write_text(text, encoding="utf-8", newline="\n")
+    urdf = folder / "iiwa7.urdf"
+    urdf.write_text(text, encoding="utf-8", newline="\n")
+    model = load_robot(urdf)
+    write_prepared(urdf, model_to_json(model, folder), shape_to_json(robot_shape(model)))
 
 
 def visual_parts() -> dict[str, dict[str, trimesh.Trimesh]]:

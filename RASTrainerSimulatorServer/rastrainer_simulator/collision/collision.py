@@ -10,10 +10,9 @@ from rastrainer_simulator.collision.clearance import FAR, Clearance, Nearest
 from rastrainer_simulator.collision.head_clearance import HeadClearance
 from rastrainer_simulator.collision.head_surface import HeadSurface
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
-from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.robot_shape import RobotShape
 from rastrainer_simulator.collision.self_clearance import SelfClearance
 from rastrainer_simulator.collision.table_clearance import Surroundings, TableClearance
-from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.vectors import Vector
 
 _SPACE_DIAGONAL = 1.7320509
@@ -28,7 +27,7 @@ class Collision:
 
     def __init__(
         self,
-        model: RobotModel,
+        shape: RobotShape,
         head_vertices: np.ndarray,
         head_triangles: np.ndarray,
         surroundings: Surroundings | None = None,
@@ -36,15 +35,15 @@ class Collision:
         """Build the shapes; takes about half a second for a head of 60,000 triangles.
 
         Args:
-            model: the robot; its collision meshes are opened.
+            shape: the robot's capsules.
             head_vertices: (n, 3) float, m, head frame, whose z points to the head's top.
             head_triangles: (m, 3) int, a closed surface.
             surroundings: the table and the head's stand.
 
         Raises:
-            InputError: a mesh cannot be read, or the head's surface is not closed.
+            InputError: the head's surface is not closed.
         """
-        self._arm = ArmCapsules(robot_shape(model))
+        self._arm = ArmCapsules(shape)
         self._head = HeadClearance(HeadSurface(head_vertices, head_triangles), self._arm)
         self._self = SelfClearance(self._arm)
         surroundings = surroundings or Surroundings()

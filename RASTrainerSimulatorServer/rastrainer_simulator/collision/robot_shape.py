@@ -20,6 +20,7 @@ Mesh = tuple[np.ndarray, np.ndarray]
 _ROD_RADIUS = 0.003
 _LINK_SPACING = 0.01
 _TOOL_SPACING = 0.0005
+_DECIMALS = 9
 
 
 @dataclass(frozen=True)
@@ -59,11 +60,26 @@ def robot_shape(model: RobotModel) -> RobotShape:
     tool_capsules = _tool_capsules(model, tool, meshes.pop(tool.name, []))
     shapes = tuple(
         LinkShape(
-            name, links[name].joint, covering_capsules(_points(parts, _LINK_SPACING), _LINK_SPACING)
+            name,
+            links[name].joint,
+            _rounded(covering_capsules(_points(parts, _LINK_SPACING), _LINK_SPACING)),
         )
         for name, parts in meshes.items()
     )
-    return RobotShape(shapes, LinkShape(tool.name, tool.joint, tool_capsules), model.tip.name)
+    tool_shape = LinkShape(tool.name, tool.joint, _rounded(tool_capsules))
+    return RobotShape(shapes, tool_shape, model.tip.name)
+
+
+def _rounded(capsules: tuple[Capsule, ...]) -> tuple[Capsule, ...]:
+    """Return the capsules in whole nanometers: the same ones on every machine."""
+    return tuple(
+        Capsule(
+            capsule.start.round(_DECIMALS),
+            capsule.end.round(_DECIMALS),
+            round(capsule.radius, _DECIMALS),
+        )
+        for capsule in capsules
+    )
 
 
 def _points(parts: list[Mesh], spacing: float) -> np.ndarray:

@@ -17,6 +17,8 @@ from rastrainer_simulator.robot.srs_geometry import SrsGeometry, srs_geometry
 if TYPE_CHECKING:
     import yourdfpy
 
+DEFAULT_URDF = ("robots", "iiwa7", "iiwa7.urdf")
+
 # A joint without end: more turns than any session makes, but a number that can be sent and saved.
 _ENDLESS = 1000.0 * 2.0 * math.pi
 
@@ -91,16 +93,27 @@ def load_robot(
     default it is the outermost link behind the last joint. No mesh is opened here.
     Raises InputError for an unusable file and for a robot that is not a 7R S-R-S arm.
     """
-    # The import takes most of a second (trimesh, scipy): only who loads a robot waits for it.
+    # The import takes most of a second (trimesh, scipy): only who reads a URDF waits for it.
     from rastrainer_simulator.robot.urdf import read_urdf
 
-    path = Path(urdf_path) if urdf_path else asset_path("robots", "iiwa7", "iiwa7.urdf")
+    path = Path(urdf_path) if urdf_path else asset_path(*DEFAULT_URDF)
     robot = read_urdf(path)
     joints, links = _walk(robot)
+    meshes = mesh_parts(robot, path.parent, Path(mesh_folder) if mesh_folder else None)
+    return make_model(robot.name, joints, links, tip_link, meshes)
+
+
+def make_model(
+    name: str,
+    joints: tuple[Joint, ...],
+    links: tuple[Link, ...],
+    tip_link: str | None,
+    meshes: tuple[MeshPart, ...],
+) -> RobotModel:
+    """Return the model of seven joints in a row; raises InputError as `load_robot`."""
     tip = _find_tip(links, tip_link)
     geometry = srs_geometry(joints, tip.offset)
-    meshes = mesh_parts(robot, path.parent, Path(mesh_folder) if mesh_folder else None)
-    return RobotModel(robot.name, joints, links, tip, geometry.home(), geometry, meshes)
+    return RobotModel(name, joints, links, tip, geometry.home(), geometry, meshes)
 
 
 def _walk(robot: yourdfpy.Robot) -> tuple[tuple[Joint, ...], tuple[Link, ...]]:

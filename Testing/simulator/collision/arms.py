@@ -6,12 +6,14 @@ import numpy as np
 
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.contact import Contact, Moved
+from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel, load_robot
 
 TICK = 0.004
 ROBOT = load_robot()
+SHAPE = robot_shape(ROBOT)
 KINEMATICS = make_kinematics(ROBOT)
 FABRIK = Fabrik(ROBOT)
 

@@ -131,7 +131,7 @@ def test_a_robot_without_meshes_is_a_rod_from_the_tip_to_the_wrist(tmp_path):
     np.testing.assert_allclose(rod.start, [0.0, 0.0, -SHAFT_START], atol=1e-9)
     np.testing.assert_allclose(rod.end, [0.0, 0.0, -robot.geometry.tool], atol=1e-9)
     vertices, triangles = ball(0.05, 3)
-    found = Collision(robot, vertices, triangles).check(KINEMATICS.links(robot.home))
+    found = Collision(shape, vertices, triangles).check(KINEMATICS.links(robot.home))
     assert (found.links_m, found.self_m) == (FAR, FAR)
     assert found.shaft_m == pytest.approx(found.tip_m, abs=0.02)
 

@@ -5,16 +5,15 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.collision.clearance import FAR
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.posed_arm import ArmCapsules
-from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.collision.table_clearance import Surroundings
-from Testing.simulator.collision.arms import KINEMATICS, ROBOT, at, posture
+from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, at, posture
 from Testing.simulator.collision.brute_force import segment_to_segments, segment_to_triangles
 from Testing.simulator.collision.heads import bumpy_head
 from Testing.simulator.collision.vtk_distance import vtk_distance
 
 FIVE_HUNDREDTHS_MM = 5e-5
 CENTER = (0.5, 0.0, 0.25)
-ARM = ArmCapsules(robot_shape(ROBOT))
+ARM = ArmCapsules(SHAPE)
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +35,7 @@ def collision(head, head_to_world):
 
 
 def placed(head, head_to_world, **surroundings):
-    found = Collision(ROBOT, *head, Surroundings(**surroundings))
+    found = Collision(SHAPE, *head, Surroundings(**surroundings))
     found.set_head_pose(head_to_world)
     return found
 

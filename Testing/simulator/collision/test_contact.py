@@ -11,7 +11,7 @@ from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.collision.table_clearance import Surroundings
 from rastrainer_simulator.planning.touch_planner import TouchPlanner
-from Testing.simulator.collision.arms import KINEMATICS, ROBOT, TICK, Driver, at, posture
+from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, TICK, Driver, at, posture
 from Testing.simulator.collision.heads import ball, box, groove, together
 from Testing.simulator.collision.vtk_distance import vtk_distance
 
@@ -21,7 +21,7 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def collision_with(surface, center):
-    found = Collision(ROBOT, *surface, Surroundings(stand_radius=0.0))
+    found = Collision(SHAPE, *surface, Surroundings(stand_radius=0.0))
     found.set_head_pose(at(surface[0], center))
     return found
 
@@ -43,7 +43,7 @@ class DefaultHead:
         self.vertices = transforms.apply(self.to_world, mesh.vertices / 1000.0)
         self.triangles = mesh.triangles
         self.normals = mesh.vertex_normals @ self.to_world[:3, :3].T
-        self.collision = Collision(ROBOT, mesh.vertices / 1000.0, mesh.triangles)
+        self.collision = Collision(SHAPE, mesh.vertices / 1000.0, mesh.triangles)
         self.collision.set_head_pose(self.to_world)
         self.distance = vtk_distance(self.vertices, mesh.triangles)
 

@@ -3,6 +3,7 @@ import pytest
 import trimesh
 
 from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.planning.touch_planner import TouchPlanner, tool_directions
 from rastrainer_simulator.planning.touchable import touchable
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -25,7 +26,7 @@ def robot():
 @pytest.fixture(scope="module")
 def collision(robot):
     sphere = trimesh.creation.icosphere(4, RADIUS)
-    collision = Collision(robot, np.array(sphere.vertices), np.array(sphere.faces))
+    collision = Collision(robot_shape(robot), np.array(sphere.vertices), np.array(sphere.faces))
     pose = np.eye(4)
     pose[:3, 3] = CENTER
     collision.set_head_pose(pose)
