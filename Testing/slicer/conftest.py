@@ -8,6 +8,7 @@ from rastrainer.head_mesh import HeadMesh, write_head_mesh
 from rastrainer.scenario import Perturbation, Scenario
 from rastrainer.slicer.headless_scene import HeadlessScene
 from rastrainer.tasks import LABELS, Task
+from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 from Testing.slicer.simulator_double import SimulatorDouble
 
 

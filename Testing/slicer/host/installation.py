@@ -1,0 +1,65 @@
+"""Puts the host's modules where a module of Slicer's looks for them, and takes them out again."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import slicer
+
+from Testing.slicer.host import parameter_node, scripted_module
+from Testing.slicer.host.offered import OFFERED
+from Testing.slicer.host.qt_module import class_named, ctk, qt
+
+_MISSING = object()
+
+
+class Installation:
+    """What was there before stands here, until `remove`."""
+
+    def __init__(self) -> None:
+        self._modules: dict[str, Any] = {}
+        self._attributes: dict[str, Any] = {}
+
+    def add_modules(self) -> None:
+        """Make `qt`, `ctk` and the parts of `slicer` that slicer-core lacks importable."""
+        translation = ModuleType("slicer.i18n")
+        translation.tr = lambda text: text
+        translation.translate = lambda _context, text: text
+        modules = {
+            "qt": qt,
+            "ctk": ctk,
+            "slicer.i18n": translation,
+            "slicer.ScriptedLoadableModule": scripted_module.make_module(),
+            "slicer.parameterNodeWrapper": parameter_node.make_module(),
+        }
+        for name, module in modules.items():
+            self._modules[name] = sys.modules.get(name, _MISSING)
+            sys.modules[name] = module
+            if name.startswith("slicer."):
+                self.set(name.removeprefix("slicer."), module)
+        self.set("modules", SimpleNamespace())
+        for name in OFFERED["qMRML"]:
+            try:
+                self.set(name, class_named(name))
+            except AttributeError:
+                continue  # Listed, but not offered yet: the module finds it missing.
+
+    def set(self, name: str, value: Any) -> None:
+        """Set an attribute of the package `slicer`."""
+        self._attributes.setdefault(name, getattr(slicer, name, _MISSING))
+        setattr(slicer, name, value)
+
+    def remove(self) -> None:
+        """Restore what was there."""
+        for name, value in self._modules.items():
+            if value is _MISSING:
+                sys.modules.pop(name, None)
+            else:
+                sys.modules[name] = value
+        for name, value in self._attributes.items():
+            if value is _MISSING:
+                delattr(slicer, name)
+            else:
+                setattr(slicer, name, value)

@@ -1,0 +1,140 @@
+"""`slicer.parameterNodeWrapper`: typed parameters over a node of the scene.
+
+Only what is documented and used: str, int, float, bool, Path, Enum and nodes, `Annotated` with a
+default or a check, and widgets bound by their property `SlicerParameterName`.
+"""
+
+from __future__ import annotations
+
+import enum
+import typing
+from types import ModuleType
+from typing import Any
+
+from Testing.slicer.host.parameter_checks import Choice, Default, WithinRange
+from Testing.slicer.host.parameter_gui import Binding
+
+
+def parameterNodeWrapper(kind: type) -> type:
+    """Make of a class with annotations one that keeps its values in a node."""
+    hints = typing.get_type_hints(kind, include_extras=True)
+    namespace: dict[str, Any] = {"__doc__": kind.__doc__, "allParameters": {}}
+    for name, hint in hints.items():
+        parameter = Parameter(name, hint, vars(kind).get(name))
+        namespace["allParameters"][name] = parameter
+        namespace[name] = parameter
+    return type(kind.__name__, (ParameterNode,), namespace)
+
+
+class Parameter:
+    """One typed parameter: a descriptor."""
+
+    def __init__(self, name: str, hint: Any, default: Any) -> None:
+        self.name = name
+        self.kind = hint
+        self.checks: list[Any] = []
+        if typing.get_origin(hint) is typing.Annotated:
+            self.kind, *extras = typing.get_args(hint)
+            self.checks = [extra for extra in extras if not isinstance(extra, Default)]
+            default = next((item.value for item in extras if isinstance(item, Default)), default)
+        arguments = [item for item in typing.get_args(self.kind) if item is not type(None)]
+        self.isOptional = bool(arguments)
+        if arguments:
+            (self.kind,) = arguments
+        self.isNode = isinstance(self.kind, type) and self.kind.__name__.startswith("vtkMRML")
+        self.default = self._first_value() if default is None else default
+
+    def __get__(self, owner: ParameterNode | None, _kind: type) -> Any:
+        if owner is None:
+            return self
+        node = owner.parameterNode
+        if self.isNode:
+            return node.GetNodeReference(self.name)
+        return self._parse(node.GetParameter(self.name))
+
+    def __set__(self, owner: ParameterNode, value: Any) -> None:
+        node = owner.parameterNode
+        if self.isNode:
+            if value is not None and not isinstance(value, self.kind):
+                raise ValueError(f"{self.name} is no {self.kind.__name__}: {value!r}")
+            node.SetNodeReferenceID(self.name, value.GetID() if value is not None else None)
+            return
+        if self.kind is float and type(value) is int:
+            value = float(value)
+        if not isinstance(value, self.kind) or (self.kind is int and isinstance(value, bool)):
+            raise ValueError(f"{self.name} is no {self.kind.__name__}: {value!r}")
+        for check in self.checks:
+            check.check(value)
+        node.SetParameter(self.name, value.name if isinstance(value, enum.Enum) else str(value))
+
+    def write_default(self, node: Any) -> None:
+        """Write the default, where the node has no value yet."""
+        if not self.isNode and not node.GetParameter(self.name):
+            value = self.default
+            node.SetParameter(self.name, value.name if isinstance(value, enum.Enum) else str(value))
+
+    def _first_value(self) -> Any:
+        if self.isNode:
+            return None
+        if issubclass(self.kind, enum.Enum):
+            return next(iter(self.kind))
+        return self.kind()
+
+    def _parse(self, text: str) -> Any:
+        if self.kind is bool:
+            return text == "True"
+        if issubclass(self.kind, enum.Enum):
+            return self.kind[text]
+        return self.kind(text)
+
+
+class ParameterNode:
+    """Base of what `parameterNodeWrapper` makes."""
+
+    allParameters: dict[str, Parameter]
+
+    def __init__(self, node: Any) -> None:
+        object.__setattr__(self, "parameterNode", node)
+        object.__setattr__(self, "_bindings", {})
+        for parameter in self.allParameters.values():
+            parameter.write_default(node)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in self.allParameters:
+            raise AttributeError(f"{type(self).__name__} has no parameter {name}.")
+        super().__setattr__(name, value)
+
+    def connectGui(self, ui: Any) -> int:
+        """Bind the widgets that name a parameter; return a number for `disconnectGui`."""
+        tag = len(self._bindings) + 1
+        self._bindings[tag] = Binding(self, ui)
+        return tag
+
+    def disconnectGui(self, tag: int) -> None:
+        """Undo `connectGui`."""
+        if tag in self._bindings:
+            self._bindings.pop(tag).close()
+
+    def AddObserver(self, event: Any, callback: Any, priority: float = 0.0) -> int:
+        return self.parameterNode.AddObserver(event, callback, priority)
+
+    def RemoveObserver(self, tag: int) -> None:
+        self.parameterNode.RemoveObserver(tag)
+
+    def HasObserver(self, event: Any, callback: Any) -> bool:
+        return self.parameterNode.HasObserver(event, callback)
+
+    def StartModify(self) -> int:
+        return self.parameterNode.StartModify()
+
+    def EndModify(self, was: int) -> None:
+        self.parameterNode.EndModify(was)
+
+
+def make_module() -> ModuleType:
+    """Return the module `slicer.parameterNodeWrapper`."""
+    module = ModuleType("slicer.parameterNodeWrapper")
+    module.parameterNodeWrapper = parameterNodeWrapper
+    for kind in (WithinRange, Default, Choice):
+        setattr(module, kind.__name__, kind)
+    return module

@@ -1,0 +1,167 @@
+"""PythonQt's manners over an object of PySide6.
+
+A property is an attribute, a signal is connected by its signature, enumerations are ints, and what
+real Slicer's class does not have raises AttributeError, on reading and on assigning.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable
+from typing import Any
+
+import shiboken6
+
+from Testing.slicer.host import slots
+from Testing.slicer.host.members import Members
+from Testing.slicer.host.values import PROXY, call, construct, from_qt, to_qt
+
+# PythonQt spells Python's keywords of old with an underscore.
+ALIASES = {"exec_": "exec", "raise_": "raise"}
+# Static functions that are hidden by a property of the same name on an object, not on the class.
+STATIC_FUNCTIONS = {("QTimer", "singleShot")}
+
+_class_of: dict[type, ProxyType] = {}
+
+
+class ProxyType(type):
+    """Gives constants and static functions on the class: `qt.Qt.AlignLeft`."""
+
+    def __getattr__(cls, name: str) -> Any:
+        if name.startswith("_") or name == "members":
+            raise AttributeError(name)
+        known = ALIASES.get(name, name) in cls.members.methods
+        if not known and (cls._qtClass.__name__, name) not in STATIC_FUNCTIONS:
+            raise _missing(cls, name)
+        return _shown(cls._qtClass, name, _qt_attribute(cls._qtClass, name))
+
+
+class Proxy(metaclass=ProxyType):
+    """One object of Qt, as PythonQt shows it."""
+
+    members: Members
+    _qtClass: type
+
+    def __init__(self, *arguments: Any) -> None:
+        if "_qt" in self.__dict__:
+            return
+        made = _with_overrides(type(self))
+        _adopt(self, construct(self._qtClass, made, arguments))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or "_qt" not in self.__dict__:
+            raise AttributeError(name)
+        members = self.members
+        if name in members.properties:
+            return from_qt(self._qt.property(name))
+        if name == "name" and "objectName" in members.properties:
+            return self._qt.objectName()
+        if signatures := members.signatures(name):
+            return slots.BoundSignal(self, signatures[0])
+        if ALIASES.get(name, name) not in members.methods:
+            raise _missing(type(self), name)
+        if name in ("connect", "disconnect"):
+            function = getattr(slots, name)
+            return lambda *arguments: function(self, *arguments)
+        if name == "className":
+            return lambda: type(self._qt).__name__
+        return _shown(type(self._qt), name, _qt_attribute(self._qt, name))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self.members.properties:
+            if value is None or not self._qt.setProperty(name, to_qt(value)):
+                raise ValueError(f"The property {name} does not take {value!r}.")
+        elif type(self) is _class_of.get(self._qtClass):
+            raise _missing(type(self), name)
+        else:
+            super().__setattr__(name, value)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Proxy) and self._qt == other._qt
+
+    def __hash__(self) -> int:
+        return hash(self._qt)
+
+    def __bool__(self) -> bool:
+        return shiboken6.isValid(self._qt)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self._qt!r}>"
+
+
+class Method:
+    """A function of Qt; PythonQt takes no keyword arguments."""
+
+    def __init__(self, owner: type, name: str, function: Callable[..., Any]) -> None:
+        self.__name__ = name
+        self._owner = owner
+        self._function = function
+
+    def __call__(self, *arguments: Any, **keywords: Any) -> Any:
+        if keywords:
+            raise TypeError(f"PythonQt takes no keyword arguments: {self.__name__}.")
+        return call(self._owner, self._function, self.__name__, arguments)
+
+
+def make_class(name: str, qt_class: type, base: type, members: Members) -> ProxyType:
+    """Return the class that stands for a class of Qt."""
+    made = ProxyType(name, (base,), {"members": members, "_qtClass": qt_class})
+    _class_of[qt_class] = made
+    return made
+
+
+def wrap(value: Any) -> Any:
+    """Return the proxy of an object, always the same one for an object that lives on."""
+    proxy = getattr(value, PROXY, None)
+    if proxy is not None:
+        return proxy
+    from Testing.slicer.host.qt_module import class_for
+
+    made = class_for(type(value))
+    proxy = made.__new__(made)
+    _adopt(proxy, value)
+    return proxy
+
+
+def _adopt(proxy: Proxy, value: Any) -> None:
+    object.__setattr__(proxy, "_qt", value)
+    setattr(value, PROXY, proxy)
+
+
+def _with_overrides(made: ProxyType) -> type:
+    """Return the class of Qt, with the virtual functions that a Python subclass overrides."""
+    own = {}
+    for kind in made.__mro__:
+        if kind is _class_of.get(getattr(kind, "_qtClass", None)):
+            break
+        for name, value in vars(kind).items():
+            if callable(value) and not name.startswith("__") and hasattr(made._qtClass, name):
+                own.setdefault(name, _forwarding(name))
+    return type(made._qtClass.__name__, (made._qtClass,), own) if own else made._qtClass
+
+
+def _forwarding(name: str) -> Callable[..., Any]:
+    def forward(qt_object: Any, *arguments: Any) -> Any:
+        proxy = getattr(qt_object, PROXY, None)
+        if proxy is None:  # Still being constructed.
+            return getattr(super(type(qt_object), qt_object), name)(*arguments)
+        return to_qt(getattr(proxy, name)(*map(from_qt, arguments)))
+
+    return forward
+
+
+def _qt_attribute(owner: Any, name: str) -> Any:
+    for spelling in (ALIASES.get(name, name), name, name + "_"):
+        if hasattr(owner, spelling):
+            return getattr(owner, spelling)
+    raise NotImplementedError(f"Slicer has {name}, but the host does not offer it yet.")
+
+
+def _shown(owner: type, name: str, value: Any) -> Any:
+    if isinstance(value, enum.Enum):
+        return value.value
+    return Method(owner, name, value) if callable(value) else value
+
+
+def _missing(made: type, name: str) -> AttributeError:
+    return AttributeError(f"Slicer's {made.__name__} has no {name}.")

@@ -1,0 +1,111 @@
+"""The base classes of a scripted module: `slicer.ScriptedLoadableModule`."""
+
+from __future__ import annotations
+
+import unittest
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import slicer
+
+from Testing.slicer.host.qt_module import class_named
+
+_PROPERTIES = """
+    title categories dependencies contributors helpText acknowledgementText icon hidden path index
+    associatedNodeTypes widgetRepresentationCreationEnabled name
+"""
+
+
+class ModuleDescription:
+    """What Slicer hands to a module as its parent; an unknown attribute raises, as there."""
+
+    __slots__ = tuple(_PROPERTIES.split())
+
+    def __init__(self, name: str, path: Path) -> None:
+        self.name = name
+        self.path = str(path)
+
+
+class ScriptedLoadableModule:
+    """Base of the module."""
+
+    def __init__(self, parent: ModuleDescription) -> None:
+        self.parent = parent
+        self.moduleName = type(self).__name__
+        parent.title = ""
+        parent.categories = []
+        parent.dependencies = []
+        parent.contributors = []
+        parent.helpText = ""
+        parent.acknowledgementText = ""
+
+
+class ScriptedLoadableModuleWidget:
+    """Base of the module's widget."""
+
+    def __init__(self, parent: Any = None) -> None:
+        self.moduleName = type(self).__name__.removesuffix("Widget")
+        if parent is None:
+            parent = class_named("qSlicerScriptedLoadableModuleWidget")()
+            parent.setMRMLScene(slicer.mrmlScene)
+        self.parent = parent
+        self.layout = parent.layout()
+        self.developerMode = False
+
+    def resourcePath(self, filename: str) -> str:
+        folder = Path(getattr(slicer.modules, self.moduleName.lower()).path).parent
+        return str(folder / "Resources" / filename)
+
+    def setup(self) -> None:
+        """The section for developers stays away."""
+
+    def cleanup(self) -> None:
+        """Called when the module is closed."""
+
+
+class ScriptedLoadableModuleLogic:
+    """Base of the module's logic."""
+
+    def __init__(self, parent: Any = None) -> None:
+        self.parent = parent
+        self.moduleName = type(self).__name__.removesuffix("Logic")
+        self.isSingletonParameterNode = True
+
+    def getParameterNode(self) -> Any:
+        node = slicer.mrmlScene.GetSingletonNode(self.moduleName, "vtkMRMLScriptedModuleNode")
+        return node or self.createParameterNode()
+
+    def createParameterNode(self) -> Any:
+        node = slicer.vtkMRMLScriptedModuleNode()
+        node.SetSingletonTag(self.moduleName)
+        node.SetModuleName(self.moduleName)
+        node.SetName(slicer.mrmlScene.GenerateUniqueName(self.moduleName))
+        return slicer.mrmlScene.AddNode(node)
+
+
+class ScriptedLoadableModuleTest(unittest.TestCase):
+    """Base of the module's self tests; they run by `runTest`, which is not to be overridden."""
+
+    def runTest(self) -> None:
+        """Run all functions whose name begins with `test_`."""
+        for name in unittest.TestLoader().getTestCaseNames(type(self)):
+            self.setUp()
+            getattr(self, name)()
+            self.tearDown()
+
+    def delayDisplay(self, message: str, requestedDelay: Any = None, msec: int = 100) -> None:
+        """Slicer shows the message for a moment."""
+
+
+def make_module() -> ModuleType:
+    """Return the module `slicer.ScriptedLoadableModule`."""
+    module = ModuleType("slicer.ScriptedLoadableModule")
+    for kind in (
+        ScriptedLoadableModule,
+        ScriptedLoadableModuleWidget,
+        ScriptedLoadableModuleLogic,
+        ScriptedLoadableModuleTest,
+    ):
+        setattr(module, kind.__name__, kind)
+    return module

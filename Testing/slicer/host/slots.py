@@ -1,0 +1,108 @@
+"""Connects signals with Python functions as PythonQt does."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from PySide6 import QtCore
+
+from Testing.slicer.host.failures import FAILURES
+from Testing.slicer.host.values import from_qt, to_qt
+
+CONNECTIONS = "_connectionsOfHost"
+
+
+class Slot:
+    """Calls a function with as many arguments as it takes; what it raises is caught."""
+
+    def __init__(self, function: Callable[..., Any], argument_count: int | None = None) -> None:
+        self.function = function
+        taken = _positional_count(function)
+        self._count = taken if argument_count is None else min(taken, argument_count)
+
+    def __call__(self, *arguments: Any) -> None:
+        try:
+            self.function(*(from_qt(item) for item in arguments[: self._count]))
+        except Exception as exception:  # PythonQt prints it, and goes on.
+            FAILURES.catch(exception)
+
+
+class BoundSignal:
+    """A signal as an attribute of its object: `button.clicked`."""
+
+    def __init__(self, proxy: Any, signature: str) -> None:
+        self._proxy = proxy
+        self._signature = signature
+
+    def connect(self, function: Callable[..., Any]) -> bool:
+        return connect(self._proxy, self._signature, function)
+
+    def disconnect(self, function: Callable[..., Any]) -> bool:
+        return disconnect(self._proxy, self._signature, function)
+
+    def emit(self, *arguments: Any) -> None:
+        name = self._signature.partition("(")[0]
+        getattr(self._proxy._qt, name).emit(*map(to_qt, arguments))
+
+
+def connect(proxy: Any, signature: str, function: Callable[..., Any]) -> bool:
+    """Connect, or return False where Slicer's class has no such signal, as PythonQt does."""
+    signature = signature.replace(" ", "")
+    if signature not in proxy.members.signals:
+        return False
+    if not callable(function):
+        raise TypeError("A slot must be callable.")
+    arguments = signature.partition("(")[2].rstrip(")")
+    slot = Slot(function, len(arguments.split(",")) if arguments else 0)
+    source = proxy._qt
+    if source.metaObject().indexOfSignal(signature) >= 0:
+        QtCore.QObject.connect(source, QtCore.SIGNAL(signature), slot)
+        undo = (QtCore.SIGNAL(signature), slot)
+    else:
+        signal = getattr(source, signature.partition("(")[0], None)
+        if signal is None or not _is_of_host(source, signature):
+            raise NotImplementedError(f"The host does not offer the signal {signature} of Qt 5.")
+        signal.connect(slot)
+        undo = (signal, slot)
+    connections = source.__dict__.setdefault(CONNECTIONS, [])
+    connections.append((signature, function, undo))
+    return True
+
+
+def disconnect(proxy: Any, signature: str, function: Callable[..., Any] | None = None) -> bool:
+    """Undo `connect`; return whether there was such a connection."""
+    signature = signature.replace(" ", "")
+    source = proxy._qt
+    connections = source.__dict__.get(CONNECTIONS, [])
+    found = [item for item in connections if item[0] == signature and function in (None, item[1])]
+    for item in found:
+        signal, slot = item[2]
+        if isinstance(signal, (str, bytes)):
+            QtCore.QObject.disconnect(source, signal, slot)
+        else:
+            signal.disconnect(slot)
+        connections.remove(item)
+    return bool(found)
+
+
+def _is_of_host(source: QtCore.QObject, signature: str) -> bool:
+    """Tell whether a Python class of ours declares the signal: its types are Python's then."""
+    name = signature.partition("(")[0]
+    return any(
+        name in vars(kind)
+        for kind in type(source).__mro__
+        if not kind.__module__.startswith("PySide6")
+    )
+
+
+def _positional_count(function: Callable[..., Any]) -> int:
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except ValueError:  # A function of C++ does not say.
+        return 9
+    if any(item.kind is item.VAR_POSITIONAL for item in parameters):
+        return 9
+    kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(item.kind in kinds for item in parameters)

@@ -1,0 +1,112 @@
+"""Dialogs that would wait for a user: the test has answered them beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6 import QtCore, QtGui, QtWidgets
+
+from Testing.slicer.host.answers import ANSWERS
+from Testing.slicer.host.failures import FAILURES
+
+Buttons = QtWidgets.QMessageBox.StandardButton
+
+
+class QMessageBox(QtWidgets.QMessageBox):
+    """Is shown, and closed by the answer at once."""
+
+    def exec(self) -> int:
+        details = QtWidgets.QMessageBox.ButtonRole.ActionRole  # The button Show Details.
+        buttons = {
+            self._name(button): button
+            for button in self.buttons()
+            if self.buttonRole(button) != details
+        }
+        names = list(buttons) or ["Ok"]
+        answer = ANSWERS.show(self.windowTitle(), self.text(), self.detailedText(), names)
+        if answer not in buttons:
+            return Buttons.Ok.value
+        buttons[answer].click()
+        return self.standardButton(buttons[answer]).value
+
+    def _name(self, button: QtWidgets.QAbstractButton) -> str:
+        standard = self.standardButton(button)
+        return button.text().replace("&", "") if standard == Buttons.NoButton else standard.name
+
+    @staticmethod
+    def _ask(_parent: object, title: str, text: str, buttons: object, *_default: object) -> int:
+        names = [one.name for one in Buttons if one.value and one in Buttons(buttons)]
+        names = [name for name in names if name in Buttons.__members__]
+        return Buttons[ANSWERS.show(title, text, "", names)].value
+
+    @staticmethod
+    def question(
+        parent: object, title: str, text: str, buttons: object = Buttons.Yes | Buttons.No, *_d: int
+    ) -> int:
+        return QMessageBox._ask(parent, title, text, buttons)
+
+    @staticmethod
+    def information(
+        parent: object, title: str, text: str, buttons: object = Buttons.Ok, *_d: int
+    ) -> int:
+        return QMessageBox._ask(parent, title, text, buttons)
+
+    warning = critical = information
+
+
+class ctkMessageBox(QMessageBox):
+    """A message box that may be told not to come again."""
+
+
+class QDialog(QtWidgets.QDialog):
+    """A dialog of the module's own: the answer is a function that presses its buttons."""
+
+    def exec(self) -> int:
+        play: Callable[[QtWidgets.QDialog], None] | None = ANSWERS.take(self.windowTitle())
+        if play is None:
+            FAILURES.add(f"Nobody has answered the dialog “{self.windowTitle()}”.")
+            return 0
+        self.show()
+        play(self)
+        self.hide()
+        return self.result()
+
+
+class QFileDialog(QtWidgets.QFileDialog):
+    """Returns the path that the test has chosen, without the filter: so does PythonQt."""
+
+    @staticmethod
+    def getOpenFileName(_parent: object = None, caption: str = "", *_more: object) -> str:
+        return ANSWERS.path(caption)
+
+    @staticmethod
+    def getSaveFileName(_parent: object = None, caption: str = "", *_more: object) -> str:
+        return ANSWERS.path(caption)
+
+    @staticmethod
+    def getExistingDirectory(_parent: object = None, caption: str = "", *_more: object) -> str:
+        return ANSWERS.path(caption)
+
+
+class QInputDialog(QtWidgets.QInputDialog):
+    """Returns the text that the test has given; an empty one where it is canceled."""
+
+    @staticmethod
+    def getText(_parent: object, title: str, label: str, *_more: object) -> str:
+        answer = ANSWERS.take(title, label)
+        if answer is None:
+            FAILURES.add(f"Nobody has answered “{label}”.")
+        return answer or ""
+
+    @staticmethod
+    def getItem(parent: object, title: str, label: str, *_more: object) -> str:
+        return QInputDialog.getText(parent, title, label)
+
+
+class QDesktopServices(QtGui.QDesktopServices):
+    """Opens nothing, but remembers what would have been opened, as a message."""
+
+    @staticmethod
+    def openUrl(url: QtCore.QUrl) -> bool:
+        ANSWERS.show("QDesktopServices", url.toString(), "", ["Ok"])
+        return True

@@ -1,0 +1,227 @@
+"""The host has PythonQt's manners, as they were measured in Slicer 5.13."""
+
+import logging
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+
+pytestmark = pytest.mark.usefixtures("host")
+
+
+@pytest.fixture
+def qt():
+    import qt
+
+    return qt
+
+
+def test_a_property_is_an_attribute(qt):
+    button = qt.QPushButton("a")
+    assert button.text == "a"
+    with pytest.raises(TypeError):
+        button.text()
+    button.text = "b"
+    assert button.text == "b"
+    button.setText("c")
+    assert (button.text, button.enabled, button.isEnabled()) == ("c", True, True)
+
+
+def test_what_is_no_property_is_a_method(qt):
+    item = qt.QTableWidgetItem("a")
+    assert item.text() == "a"
+    layout = qt.QVBoxLayout()
+    assert layout.count() == 0
+    widget = qt.QWidget()
+    widget.setLayout(layout)
+    assert widget.layout() is layout
+
+
+def test_an_unknown_member_raises_on_reading_and_on_assigning(qt):
+    button = qt.QPushButton()
+    with pytest.raises(AttributeError, match="QPushButton has no nosuch"):
+        button.nosuch  # noqa: B018
+    with pytest.raises(AttributeError, match="QPushButton has no nosuch"):
+        button.nosuch = 1
+    with pytest.raises(AttributeError):
+        qt.QNoSuchWidget  # noqa: B018
+    with pytest.raises(AttributeError):  # Qt 6 has it, Slicer's Qt 5.15 has not.
+        qt.QCheckBox().checkStateChanged  # noqa: B018
+
+
+def test_a_python_subclass_may_have_attributes_of_its_own(qt):
+    class Plain(qt.QWidget):
+        def __init__(self, parent=None):
+            qt.QWidget.__init__(self, parent)
+            self.mine = 1
+
+    class Modern(qt.QWidget):
+        def __init__(self):
+            super().__init__()
+            self.mine = 2
+
+    assert (Plain().mine, Modern().mine) == (1, 2)
+    assert isinstance(qt.QLabel(), qt.QWidget)
+
+
+def test_an_unknown_signal_returns_false_and_raises_nothing(qt):
+    button = qt.QPushButton()
+    assert button.connect("clicked()", print) is True
+    assert button.connect("nosuch()", print) is False
+
+
+def test_a_signal_hands_over_as_much_as_the_slot_takes(qt):
+    heard = []
+    button = qt.QPushButton()
+    button.checkable = True
+    button.connect("clicked()", lambda: heard.append("none"))
+    button.connect("clicked(bool)", lambda checked: heard.append(checked))
+    button.clicked.connect(lambda: heard.append("attribute"))
+    button.clicked.connect(lambda checked: heard.append(("attribute", checked)))
+    button.click()
+    assert heard == ["none", True, "attribute", ("attribute", True)]
+
+
+def test_a_slot_is_disconnected(qt):
+    heard = []
+
+    def slot():
+        heard.append(1)
+
+    button = qt.QPushButton()
+    button.connect("clicked()", slot)
+    assert button.disconnect("clicked()", slot) is True
+    assert button.disconnect("clicked()", slot) is False
+    button.click()
+    assert heard == []
+
+
+def test_an_exception_in_a_slot_is_noted_and_the_click_goes_on(qt, host):
+    heard = []
+    button = qt.QPushButton()
+    button.connect("clicked()", lambda: 1 / 0)
+    button.connect("clicked()", lambda: heard.append(1))
+    button.click()
+    assert heard == [1]
+    assert "ZeroDivisionError" in host.errors.pop()
+
+
+def test_a_sentence_that_was_shown_is_no_failure_but_a_shown_bug_is(qt, host, caplog):
+    import slicer
+
+    def fail(exception):
+        with slicer.util.tryWithErrorDisplay("It failed."):
+            raise exception
+
+    button = qt.QPushButton()
+    with caplog.at_level(logging.CRITICAL):
+        button.connect("clicked()", lambda: fail(InputError("Enter a number.")))
+        button.click()
+        assert host.errors == []
+        button.connect("clicked()", lambda: fail(KeyError("x")))
+        button.click()
+    assert "KeyError" in host.errors.pop()
+    assert host.messages[0].text == "It failed.\n\nEnter a number."
+
+
+def test_enumerations_are_ints(qt):
+    assert qt.Qt.AlignLeft | qt.Qt.AlignTop == 33
+    label = qt.QLabel()
+    label.setAlignment(qt.Qt.AlignLeft | qt.Qt.AlignTop)
+    assert label.alignment == 33
+    assert qt.QMessageBox.Yes == 16384
+
+
+def test_a_combo_box_gives_back_any_python_object(qt):
+    value = {"a": object()}
+    combo = qt.QComboBox()
+    combo.addItem("text", value)
+    assert combo.itemData(0)["a"] is value["a"]
+    assert combo.count == 1
+
+
+def test_keywords_and_numbers_of_numpy_are_refused(qt):
+    with pytest.raises(TypeError, match="keyword"):
+        qt.QPushButton().setText(text="a")
+    with pytest.raises(TypeError, match="int64"):
+        qt.QSpinBox().setValue(np.int64(3))
+
+
+def test_a_program_that_cannot_start_is_told(qt, host):
+    errors = []
+    process = qt.QProcess()
+    process.connect("errorOccurred(QProcess::ProcessError)", errors.append)
+    process.start("/nosuch/program", [])
+    host.wait_until(lambda: errors, "the error")
+    assert errors == [0]
+
+
+def test_output_of_a_process_is_bytes(qt, host):
+    codes = []
+    process = qt.QProcess()
+    process.connect("finished(int,QProcess::ExitStatus)", lambda code, _status: codes.append(code))
+    process.start("echo", ["hello"])
+    host.wait_until(lambda: codes, "the end")
+    assert process.readAllStandardOutput().data() == b"hello\n"
+    assert codes == [0]
+
+
+def test_settings_keep_types_and_a_missing_key_is_none():
+    import slicer
+
+    settings = slicer.app.settings()
+    settings.setValue("RASTrainer/port", 3)
+    assert settings.value("RASTrainer/port") == 3
+    assert settings.value("RASTrainer/nosuch") is None
+    assert settings.value("RASTrainer/nosuch", "a") == "a"
+
+
+def test_a_missing_ui_file_or_child_raises():
+    import slicer
+
+    with pytest.raises(RuntimeError):
+        slicer.util.loadUI("/nosuch.ui")
+    with pytest.raises(RuntimeError):
+        slicer.util.findChild(slicer.util.mainWindow(), "nosuch")
+
+
+def test_a_ui_file_with_a_widget_or_property_that_slicer_lacks_is_refused(tmp_path):
+    import slicer
+
+    path = tmp_path / "a.ui"
+    path.write_text('<ui version="4.0"><widget class="QLabel" name="a"/></ui>')
+    assert slicer.util.loadUI(str(path)).className() == "QLabel"
+    path.write_text('<ui version="4.0"><widget class="QNoSuch" name="a"/></ui>')
+    with pytest.raises(AttributeError, match="QNoSuch"):
+        slicer.util.loadUI(str(path))
+    prop = '<property name="nosuch"><bool>true</bool></property>'
+    path.write_text(f'<ui version="4.0"><widget class="QLabel" name="a">{prop}</widget></ui>')
+    with pytest.raises(AttributeError, match="nosuch"):
+        slicer.util.loadUI(str(path))
+
+
+def test_an_unanswered_question_fails_the_test(host):
+    import slicer
+
+    assert slicer.util.confirmYesNoDisplay("Delete all?") is False
+    assert "Delete all?" in host.errors.pop()
+    host.answer("Delete", "Yes")
+    assert slicer.util.confirmYesNoDisplay("Delete all?") is True
+
+
+def test_a_node_combo_box_follows_the_scene():
+    import slicer
+
+    chosen = []
+    combo = slicer.qMRMLNodeComboBox()
+    combo.nodeTypes = ["vtkMRMLModelNode"]
+    combo.connect("currentNodeChanged(vtkMRMLNode*)", chosen.append)
+    combo.setMRMLScene(slicer.mrmlScene)
+    assert combo.nodeTypes == ("vtkMRMLModelNode",)
+    node = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLModelNode", "Head")
+    assert combo.currentNode() is node
+    assert combo.currentNodeID == node.GetID()
+    slicer.mrmlScene.RemoveNode(node)
+    assert combo.currentNode() is None
+    assert chosen == [node, None]

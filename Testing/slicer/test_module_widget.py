@@ -1,0 +1,52 @@
+"""The unmodified module in the host: what its panels do when a user works with them."""
+
+import pytest
+
+from rastrainer.igtl.content import Status, String
+from rastrainer.protocol import PROTOCOL_VERSION, Device
+
+pytestmark = pytest.mark.usefixtures("module_widget")
+
+
+@pytest.fixture
+def connected(host, simulator):
+    host.open()
+    host.type("portSpinBox", str(simulator.port))
+    host.press("connectButton")
+    host.wait_until(lambda: simulator.commands, "the module says hello")
+    simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+    host.wait_until(
+        lambda: host.text("stateText").startswith("Connected"), "the heartbeat is heard"
+    )
+
+
+@pytest.mark.usefixtures("connected")
+def test_one_button_connects_and_disconnects(host, simulator):
+    simulator.send(Device.SIM_STATE, String('{"instruction": "Touch point 3."}'))
+    host.wait_until(lambda: host.text("trainingText") == "Touch point 3.", "the instruction")
+    assert host.text("connectButton") == "Disconnect"
+    with pytest.raises(AssertionError, match="Disconnect first"):
+        host.press("probeButton")
+    host.press("connectButton")
+    assert (host.text("connectButton"), host.text("trainingText")) == ("Connect", "")
+
+
+def test_an_empty_host_is_told_in_one_sentence(host):
+    host.type("hostLineEdit", " ")
+    host.press("connectButton")
+    assert "Enter the host of the simulator" in host.messages[-1].text
+
+
+def test_host_and_port_are_saved_with_the_scene(host):
+    host.type("hostLineEdit", "10.0.0.7")
+    host.leave()
+    host.enter()
+    assert host.text("hostLineEdit") == "10.0.0.7"
+    host.clear_scene()
+    assert host.text("hostLineEdit") == "127.0.0.1"
+
+
+@pytest.mark.usefixtures("connected")
+def test_the_connection_outlives_a_cleared_scene(host, simulator):
+    host.clear_scene()
+    host.wait_until(lambda: len(simulator.commands) > 1, "the module says hello again")
