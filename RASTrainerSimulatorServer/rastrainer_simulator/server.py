@@ -8,12 +8,12 @@ import gc
 import itertools
 import logging
 import signal
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Iterator, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from ipaddress import ip_address
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
@@ -25,6 +25,9 @@ from rastrainer_simulator.scenario_loader import ScenarioLoader
 from rastrainer_simulator.setup import load_setup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.view_server.view_server import ViewServer
 
 _log = logging.getLogger(__name__)
 
@@ -45,6 +48,8 @@ class ServerOptions:
         scenario: folder; None is the one that comes with RASTrainer.
         robot_meshes: folder of the robot's official meshes; None is our own.
         limits: what one client may cost.
+        view_port: of the views; 0 is any free one, None the usual one or else any free one.
+        has_views: whether views are served at all.
     """
 
     records: Path
@@ -56,6 +61,8 @@ class ServerOptions:
     scenario: Path | None = None
     robot_meshes: Path | None = None
     limits: Limits = field(default_factory=Limits)
+    view_port: int | None = None
+    has_views: bool = True
 
 
 class SimulatorServer:
@@ -77,7 +84,7 @@ class SimulatorServer:
         )
 
     async def run(self, on_ready: Callable[[str], None]) -> None:
-        """Serve until SIGTERM or Ctrl-C; `on_ready` is told once where.
+        """Serve until SIGTERM or Ctrl-C; `on_ready` is told where, and each new pairing code.
 
         Raises:
             InputError: the address cannot be listened on.
@@ -96,6 +103,7 @@ class SimulatorServer:
         feed = StateFeed(link.publisher.is_due, link.tell, loop)
         unsubscribe = self._control_loop.subscribe(feed)
         tasks = [loop.create_task(link.beat())]
+        serve_views, views = self._views_to_serve(), None
         # What was loaded stays: no garbage collection needs to look at it between two ticks.
         gc.collect()
         gc.freeze()
@@ -103,14 +111,34 @@ class SimulatorServer:
             self._control_loop.start()
             try:
                 on_ready(await self._open(link, tasks))
+                if serve_views is not None:
+                    views = await serve_views(on_ready)
                 await self._until(stop)
             finally:
                 for task in tasks:
                     task.cancel()
                 unsubscribe()
+                if views is not None:
+                    await views.close()
                 # What was commanded is still answered, and then the connections are closed.
                 await loop.run_in_executor(None, self._stop)
                 await link.server.close()
+
+    def _views_to_serve(self) -> Callable[[Callable[[str], None]], Awaitable[ViewServer]] | None:
+        """Return what opens the view server; None where no views are wanted."""
+        if not self._options.has_views:
+            return None
+        # Here, before the control loop ticks: the import of aiohttp would make ticks late.
+        from rastrainer_simulator.view_server.idle_desk import IdleDesk
+        from rastrainer_simulator.view_server.open_views import open_views
+
+        return lambda tell: open_views(
+            self._control_loop,
+            IdleDesk(),
+            tell,
+            self._options.view_port,
+            self._options.robot_meshes,
+        )
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:
         setup = load_setup(scenario, robot_meshes=self._options.robot_meshes)

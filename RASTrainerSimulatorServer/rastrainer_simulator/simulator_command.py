@@ -11,6 +11,7 @@ from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 
 FASTEST = 1000.0
 LARGEST_SEED = 2**63 - 1
+DEFAULT_VIEW_PORT = 18945
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -18,7 +19,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "simulator",
         help="run the simulator, which Slicer and the views connect to",
-        description="Serves OpenIGTLink until Ctrl-C. Not for clinical use.",
+        description="Serves OpenIGTLink and the views until Ctrl-C. Not for clinical use.",
     )
     parser.add_argument(
         "--host", default=DEFAULT_HOST, help=f"address to listen on (default: {DEFAULT_HOST})"
@@ -31,6 +32,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
+    )
+    parser.add_argument(
+        "--view-port",
+        type=int,
+        help="port for the desktop window and the browser, 0 for any free one (default: "
+        f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
+    )
+    parser.add_argument(
+        "--no-views", action="store_true", help="serve OpenIGTLink only, no window and no browser"
     )
     parser.add_argument(
         "--speed", type=float, default=1.0, help="simulated seconds a second (default: 1)"
@@ -73,6 +83,8 @@ def run(arguments: argparse.Namespace) -> int:
         records=arguments.records,
         host=arguments.host,
         port=arguments.port,
+        view_port=arguments.view_port,
+        has_views=not arguments.no_views,
         connect_to=connect_to,
         speed=arguments.speed,
         scenario=arguments.scenario,
@@ -85,8 +97,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    if not 0 <= arguments.port < 65536:
-        raise InputError("--port must be a number from 0 to 65535.")
+    for name, port in (("--port", arguments.port), ("--view-port", arguments.view_port)):
+        if port is not None and not 0 <= port < 65536:
+            raise InputError(f"{name} must be a number from 0 to 65535.")
+    if arguments.no_views and arguments.view_port is not None:
+        raise InputError("--view-port and --no-views exclude each other.")
     if not 0.0 < arguments.speed <= FASTEST:
         raise InputError(f"--speed must be above 0 and at most {FASTEST:g}.")
     if arguments.seed is not None and not 0 <= arguments.seed <= LARGEST_SEED:

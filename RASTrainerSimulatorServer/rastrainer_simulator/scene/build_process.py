@@ -1,7 +1,7 @@
 """The short-lived process that builds a scene: VTK would stop the control loop's process.
 
 It reads one JSON object from standard input: `scenario` and `robotMeshes` (folders, null for the
-meshes that come with RASTrainer), `task` (a name, or "" for none) and `path` (of the file to write).
+meshes that come with RASTrainer), `task` (a name, or "" for none) and `path` (the file to write).
 """
 
 from __future__ import annotations

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import hashlib
 import json
 import logging
@@ -52,7 +51,6 @@ class SceneFiles:
         self._by_hash: dict[str, SceneFile] = {}
         self._paths: tuple[SimulationSetup, Mapping[str, Path]] | None = None
         self._one_at_a_time = asyncio.Lock()
-        self._process: asyncio.subprocess.Process | None = None
 
     def find(self, sha256: str) -> SceneFile | None:
         """Return the scene of that content, if it has been given before."""
@@ -60,6 +58,8 @@ class SceneFiles:
 
     async def scene(self, setup: SimulationSetup, task: str) -> SceneFile:
         """Return the scene of a task, or the one without a task; building it takes seconds.
+
+        Who cancels the wait ends the building, too.
 
         Raises:
             InputError: it cannot be built; the sentence says why.
@@ -79,13 +79,6 @@ class SceneFiles:
         """
         for task in await self._paths_of(setup):
             await self.scene(setup, task)
-
-    async def close(self) -> None:
-        """End what is being built."""
-        if self._process is not None:
-            with contextlib.suppress(ProcessLookupError):
-                self._process.kill()
-            await self._process.wait()
 
     async def _paths_of(self, setup: SimulationSetup) -> Mapping[str, Path]:
         if self._paths is None or self._paths[0] is not setup:
@@ -120,7 +113,7 @@ class SceneFiles:
             "task": task,
             "path": str(path),
         }
-        self._process = await asyncio.create_subprocess_exec(
+        process = await asyncio.create_subprocess_exec(
             sys.executable,
             "-m",
             "rastrainer_simulator.scene.build_process",
@@ -130,11 +123,16 @@ class SceneFiles:
             env={name: value for name, value in os.environ.items() if name not in SECRETS},
             creationflags=_BELOW_NORMAL,
         )
-        _, errors = await self._process.communicate(json.dumps(wanted).encode())
-        status, self._process = self._process.returncode, None
-        if status:
-            sentence = errors.decode(errors="replace").strip()
-            raise InputError(f"The scene could not be built: {sentence or f'status {status}'}")
+        try:
+            _, errors = await process.communicate(json.dumps(wanted).encode())
+        finally:
+            # Whoever waits for it may have been told not to wait any more.
+            if process.returncode is None:
+                process.kill()
+                await process.wait()
+        if process.returncode:
+            sentence = errors.decode(errors="replace").strip() or f"status {process.returncode}"
+            raise InputError(f"The scene could not be built: {sentence}")
 
 
 def read_scene(file: SceneFile) -> bytes | None:

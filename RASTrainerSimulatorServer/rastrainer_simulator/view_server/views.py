@@ -1,0 +1,147 @@
+"""All views that have joined, and what they are told."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+import time
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.flow.screen import Screen
+from rastrainer_simulator.igtl.pacer import Pacer
+from rastrainer_simulator.scene.scene_files import SceneFiles
+from rastrainer_simulator.setup import SimulationSetup
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.view_server import outgoing
+from rastrainer_simulator.view_server.limits import ViewLimits
+from rastrainer_simulator.view_server.operator_desk import (
+    Control,
+    Feedback,
+    Hello,
+    News,
+    OperatorDesk,
+)
+from rastrainer_simulator.view_server.view import View
+
+_log = logging.getLogger(__name__)
+
+_WATCH_PERIOD_S = 0.05
+ENDING = "The simulator has been stopped."
+
+
+class Views:
+    """The joined views; `is_due` may be called in any thread, all else in the event loop's."""
+
+    def __init__(
+        self, control_loop: ControlLoop, desk: OperatorDesk, scenes: SceneFiles, limits: ViewLimits
+    ) -> None:
+        self._control_loop = control_loop
+        self._desk = desk
+        self._scenes = scenes
+        self._limits = limits
+        self._views: dict[int, View] = {}
+        self._numbers = itertools.count(1)
+        self._pacer = Pacer(limits.state_hz)
+        self._setup: SimulationSetup | None = None
+        self._task = ""
+        self._scene = ""
+        self._loading: asyncio.Task[None] | None = None
+        self._watching: asyncio.Task[None] | None = None
+        self._unsubscribe = desk.subscribe(self._hear)
+
+    def next_number(self) -> int:
+        """Return a number for a view that no other has had."""
+        return next(self._numbers)
+
+    async def serve(self, view: View, hello: Hello) -> None:
+        """Have a view take part until it leaves."""
+        self._views[view.number] = view
+        self._desk.view_joined(view.number, hello)
+        try:
+            self._tell_all(view)
+            self._watch()
+            await view.serve()
+        finally:
+            view.held.release()
+            del self._views[view.number]
+            self._desk.view_left(view.number)
+
+    async def close(self) -> None:
+        """Send everyone away and stop."""
+        self._unsubscribe()
+        tasks = [task for task in (self._loading, self._watching) if task is not None]
+        for task in tasks:
+            task.cancel()
+        farewells = [view.close(ENDING) for view in self._views.values()]
+        await asyncio.gather(*tasks, *farewells, return_exceptions=True)
+
+    def is_due(self, _state: SimulationState) -> bool:
+        """Return whether the views are to be told what moves; by the clock on the wall."""
+        return bool(self._views) and self._pacer.is_due(time.monotonic())
+
+    def tell(self, now: SimulationState) -> None:
+        """Tell what moves, and look whether it needs another scene."""
+        self._look_for_scene(now)
+        text = self._state_text(now)
+        for view in self._views.values():
+            view.outbox.put_latest(outgoing.STATE, text)
+
+    def _tell_all(self, view: View) -> None:
+        """Tell a view that has just joined how things stand."""
+        now = self._control_loop.latest
+        self._look_for_scene(now)
+        put = view.outbox.put_latest
+        put(outgoing.WELCOME, outgoing.welcome(view.number))
+        if self._scene:
+            put(outgoing.SCENE, self._scene)
+        put(outgoing.CONTROL, outgoing.control(self._desk.control, view.number))
+        put(outgoing.SCREEN, outgoing.screen(self._desk.screen))
+        put(outgoing.STATE, self._state_text(now))
+
+    def _state_text(self, now: SimulationState) -> str:
+        statistics = self._control_loop.statistics
+        return outgoing.state(now, statistics.late + statistics.skipped)
+
+    def _hear(self, news: News) -> None:
+        if isinstance(news, Screen):
+            text = outgoing.screen(news)
+            for view in self._views.values():
+                view.outbox.put_latest(outgoing.SCREEN, text)
+        elif isinstance(news, Feedback):
+            text = outgoing.event(news)
+            for view in self._views.values():
+                view.outbox.put_event(text)
+        elif isinstance(news, Control):
+            for view in self._views.values():
+                view.outbox.put_latest(outgoing.CONTROL, outgoing.control(news, view.number))
+
+    def _look_for_scene(self, now: SimulationState) -> None:
+        setup, task = self._control_loop.setup, now.training.task
+        if setup is self._setup and task == self._task:
+            return
+        self._setup, self._task = setup, task
+        if self._loading is not None:
+            self._loading.cancel()
+        self._loading = asyncio.create_task(self._load_scene(setup, task))
+
+    async def _load_scene(self, setup: SimulationSetup, task: str) -> None:
+        try:
+            file = await self._scenes.scene(setup, task)
+            self._scene = outgoing.scene(file.sha256, setup.scenario, task)
+            for view in self._views.values():
+                view.outbox.put_latest(outgoing.SCENE, self._scene)
+            await self._scenes.build_all(setup)
+        except InputError as error:
+            _log.error("%s", error)
+
+    def _watch(self) -> None:
+        if self._watching is None:
+            self._watching = asyncio.create_task(self._release_silent())
+
+    async def _release_silent(self) -> None:
+        while True:
+            await asyncio.sleep(_WATCH_PERIOD_S)
+            for view in tuple(self._views.values()):
+                view.release_if_silent(self._limits.silent_s)
