@@ -138,6 +138,7 @@ def test_the_residual_table_has_a_row_a_fiducial_and_units_in_its_columns(scene,
         "residual R (mm)",
         "residual A (mm)",
         "residual S (mm)",
+        "without it (mm)",
     ]
     assert table.GetNumberOfRows() == 15
     assert table.GetCellText(4, 0) == "5"

@@ -43,13 +43,18 @@ def showRegistration(scene: Any, registration: Registration, moving: Any, fixed:
     node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
     isFirst = movingNode(node) is None
     node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(registration.matrix))
-    node.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
-    node.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
+    rememberLists(node, moving, fixed)
     node.SetAttribute(KIND_ATTRIBUTE, registration.kind)
     node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
     if isFirst:
         setApplied(node, True)
     return node
+
+
+def rememberLists(transformNode: Any, moving: Any, fixed: Any) -> None:
+    """Let the transform remember the lists of points that it is made from."""
+    transformNode.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
+    transformNode.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
 
 
 def movingNode(transformNode: Any) -> Any | None:

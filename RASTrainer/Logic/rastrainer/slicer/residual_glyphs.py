@@ -9,7 +9,7 @@ import numpy as np
 import vtk
 
 from rastrainer.registration import Registration
-from rastrainer.slicer.scene import Role, findOrAddNode
+from rastrainer.slicer.scene import Role, findNode, findOrAddNode
 
 LONGEST_ARROW_MM = 40.0
 SCALARS = "residual (mm)"
@@ -63,6 +63,13 @@ def showResidualArrows(scene: Any, registration: Registration) -> Any:
     display.SetScalarRange(*residualRange(registration))
     display.SetScalarVisibility(True)
     return node
+
+
+def clearResidualArrows(scene: Any) -> None:
+    """Leave the arrows' model empty: there is no registration that they could show."""
+    node = findNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS)
+    if node is not None and node.GetPolyData() and node.GetPolyData().GetNumberOfPoints():
+        node.SetAndObservePolyData(vtk.vtkPolyData())
 
 
 def residualRange(registration: Registration) -> tuple[float, float]:

@@ -1,83 +1,64 @@
-"""The numbers of a registration as table nodes, with the unit in each column's name."""
+"""The numbers of a registration as table nodes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
-import vtk
-
+from rastrainer.errors import InputError
 from rastrainer.registration import Registration
-from rastrainer.slicer.scene import Role, findOrAddNode
+from rastrainer.slicer.scene import Role
+from rastrainer.slicer.tables import Column, showTable
 from rastrainer.target_error import TargetError
 
 
-@dataclass(frozen=True)
-class Column:
-    """One column of a table: texts or numbers."""
-
-    name: str
-    values: Sequence[str] | Sequence[float]
-
-
 def showResiduals(scene: Any, registration: Registration) -> Any:
-    """Show the residual of each fiducial in a `vtkMRMLTableNode` and return it."""
+    """Show the residual of each fiducial in a `vtkMRMLTableNode` and return it.
+
+    The column without the fiducial is its distance from where the other fiducials put it; it is
+    left empty where they are too few to tell.
+    """
     vectors = registration.residual_vectors_mm
-    return _show(
+    try:
+        leftOut = registration.leave_one_out_mm()
+    except InputError:
+        leftOut = [None] * len(registration.labels)
+    return showTable(
         scene,
         Role.RESIDUALS,
         "Residuals",
         [
-            Column("fiducial", registration.labels),
+            Column("fiducial", registration.labels, isText=True),
             Column("residual (mm)", registration.residuals_mm),
             Column("residual R (mm)", vectors[:, 0]),
             Column("residual A (mm)", vectors[:, 1]),
             Column("residual S (mm)", vectors[:, 2]),
+            Column("without it (mm)", leftOut),
         ],
     )
 
 
-def showFits(scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError]) -> Any:
+def showFits(
+    scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError | None]
+) -> Any:
     """Compare fits of the same points in a `vtkMRMLTableNode` and return it.
 
     Args:
         scene: the scene.
         fits: one a row.
-        targetErrors: of each fit, what to expect at the target.
+        targetErrors: of each fit, what to expect at the target; None where it tells nothing.
     """
-    ends = [error.interval_mm for error in targetErrors]
-    return _show(
+    known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
+    return showTable(
         scene,
         Role.FITS,
         "Fits",
         [
-            Column("fit", [fit.kind for fit in fits]),
+            Column("fit", [fit.kind for fit in fits], isText=True),
             Column("FRE (mm)", [fit.fre_mm for fit in fits]),
             Column("largest residual (mm)", [fit.residuals_mm.max() for fit in fits]),
-            Column("expected TRE (mm)", [error.expected_mm for error in targetErrors]),
-            Column("TRE from, 95 % (mm)", [low for low, _high in ends]),
-            Column("TRE to, 95 % (mm)", [high for _low, high in ends]),
+            Column("expected TRE (mm)", [expected for expected, _low, _high in known]),
+            Column("TRE from, 95 % (mm)", [low for _expected, low, _high in known]),
+            Column("TRE to, 95 % (mm)", [high for _expected, _low, high in known]),
         ],
     )
-
-
-def _show(scene: Any, role: str, name: str, columns: Sequence[Column]) -> Any:
-    node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
-    wasModifying = node.StartModify()
-    node.RemoveAllColumns()
-    node.SetUseColumnTitleAsColumnHeader(True)
-    for column in columns:
-        node.AddColumn(_array(column))
-    node.SetLocked(True)
-    node.EndModify(wasModifying)
-    return node
-
-
-def _array(column: Column) -> vtk.vtkAbstractArray:
-    isText = isinstance(column.values[0], str)
-    array = vtk.vtkStringArray() if isText else vtk.vtkDoubleArray()
-    array.SetName(column.name)
-    for value in column.values:
-        array.InsertNextValue(value if isText else float(value))
-    return array

@@ -19,6 +19,14 @@ class Role:
     RESIDUALS = "residuals"
     RESIDUAL_ARROWS = "residual arrows"
     FITS = "fits"
+    HISTORY = "history"
+    LEARNING_CURVE = "learning curve"
+    SCORE = "score"
+    COMPARISON = "comparison"
+    MOTION = "motion metrics"
+    PLAN_TARGET = "plan target"
+    PLAN_TRAJECTORY = "plan trajectory"
+    ROBOT = "robot"
 
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:

@@ -1,0 +1,75 @@
+"""A trainee's history as a table, and its learning curves as a plot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from rastrainer.registration import RIGID
+from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
+from rastrainer.slicer.tables import Column, showTable
+from rastrainer.study import StoredTrial
+
+TRIAL_COLUMN = "trial"
+SCORE_COLUMN = "score"
+_SERIES = {
+    # Column, its title in the plot, color.
+    SCORE_COLUMN: ("Score (0 to 100)", (0.15, 0.4, 0.75)),
+    "completion time (s)": ("Completion time (s)", (0.85, 0.45, 0.1)),
+}
+
+
+def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
+    """Show the trials of a trainee in a `vtkMRMLTableNode`, one a row, and return it."""
+    records = [trial.record for trial in trials]
+    rigid = [trial.registrations.get(RIGID) for trial in trials]
+    return showTable(
+        scene,
+        Role.HISTORY,
+        f"History of {pseudonym}",
+        [
+            Column(TRIAL_COLUMN, range(1, len(trials) + 1)),
+            Column("started (UTC)", [record.started_utc[:19] for record in records], isText=True),
+            Column("task", [record.task for record in records], isText=True),
+            Column("mode", [record.mode for record in records], isText=True),
+            Column("completion time (s)", [record.completion_time_s for record in records]),
+            Column("FRE (mm)", [fit and fit.fre_mm for fit in rigid]),
+            Column("expected TRE (mm)", [fit and fit.expected_tre_mm for fit in rigid]),
+            Column("true TRE (mm)", [trial.true_tre_mm for trial in trials]),
+            Column(SCORE_COLUMN, [trial.score and trial.score.score for trial in trials]),
+        ],
+    )
+
+
+def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
+    """Plot score and time over the trials in a `vtkMRMLPlotChartNode` and return it."""
+    table = showHistory(scene, pseudonym, trials)
+    chart = findOrAddNode(
+        scene, "vtkMRMLPlotChartNode", Role.LEARNING_CURVE, f"Learning curve of {pseudonym}"
+    )
+    chart.SetName(f"Learning curve of {pseudonym}")
+    chart.RemoveAllPlotSeriesNodeIDs()
+    for column, (title, color) in _SERIES.items():
+        chart.AddAndObservePlotSeriesNodeID(_series(scene, table, column, title, color).GetID())
+    chart.SetTitle(f"Learning curve of {pseudonym}")
+    chart.SetXAxisTitle("Trial")
+    chart.SetYAxisTitle("Score, and completion time in s")
+    return chart
+
+
+def _series(
+    scene: Any, table: Any, column: str, title: str, color: tuple[float, float, float]
+) -> Any:
+    role = f"{Role.LEARNING_CURVE} {column}"
+    node = findNode(scene, "vtkMRMLPlotSeriesNode", role)
+    if node is None:
+        node = scene.AddNewNodeByClass("vtkMRMLPlotSeriesNode", title)
+        node.SetAttribute(ROLE_ATTRIBUTE, role)
+    node.SetAndObserveTableNodeID(table.GetID())
+    node.SetPlotType(node.PlotTypeScatter)
+    node.SetXColumnName(TRIAL_COLUMN)
+    node.SetYColumnName(column)
+    node.SetColor(color)
+    node.SetLineStyle(node.LineStyleSolid)
+    node.SetMarkerStyle(node.MarkerStyleCircle)
+    return node

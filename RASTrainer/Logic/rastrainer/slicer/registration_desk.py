@@ -1,0 +1,222 @@
+"""The registration that the user looks at: followed, corrected, undone, and shown in the scene."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.registration import KINDS, RIGID, Registration, register
+from rastrainer.slicer.head_colors import colorHead, uncolorHead
+from rastrainer.slicer.registration_input import Choices, Pairs, readPairs, snapshot
+from rastrainer.slicer.registration_nodes import fixedNode, movingNode, showRegistration
+from rastrainer.slicer.registration_remedies import Remedy, remedies
+from rastrainer.slicer.residual_glyphs import clearResidualArrows, showResidualArrows
+from rastrainer.slicer.result_tables import showFits, showResiduals
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.slicer.signal import Signal
+from rastrainer.target_error import TargetError, target_error
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The fits of the same pairs side by side.
+
+    Attributes:
+        pairs: what was registered.
+        fits: by kind; those that the pairs allow, rigid always.
+        errors: by kind, what to expect at the target; those that can be told.
+        remedies: the warnings, each with what one click can do.
+    """
+
+    pairs: Pairs
+    fits: Mapping[str, Registration]
+    errors: Mapping[str, TargetError]
+    remedies: tuple[Remedy, ...]
+
+
+class RegistrationDesk:
+    """Registers two lists of the scene whenever one of them changes.
+
+    Nodes are looked for anew at every turn: any of them may be deleted at any time.
+
+    Attributes:
+        changed: emits nothing, whenever `comparison` or `problem` has changed.
+        comparison: the present fits; None where there are none.
+        problem: why there are none, a sentence; empty otherwise.
+        kind: of the fit that the transform and the arrows show.
+        isHeadColored: the head shows the target error to expect.
+    """
+
+    def __init__(self, scene: Any) -> None:
+        self.changed = Signal()
+        self.comparison: Comparison | None = None
+        self.problem = ""
+        self.kind = RIGID
+        self.isHeadColored = False
+        self._scene = scene
+        self._movingId = ""
+        self._fixedId = ""
+        self._targetId = ""
+        self._history: list[Choices] = [Choices()]
+        self._seen: tuple = ()
+
+    @property
+    def choices(self) -> Choices:
+        """What the user has changed about the pairs."""
+        return self._history[-1]
+
+    @property
+    def canUndo(self) -> bool:
+        """Whether there is a change to take back."""
+        return len(self._history) > 1
+
+    @property
+    def shown(self) -> Registration | None:
+        """The fit of the chosen kind; the rigid one where the pairs do not allow that kind."""
+        if self.comparison is None:
+            return None
+        return self.comparison.fits.get(self.kind, self.comparison.fits[RIGID])
+
+    def moving(self) -> Any | None:
+        """Return the chosen list of moving points; the touches where none is chosen."""
+        return self._chosen(self._movingId) or findNode(
+            self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS
+        )
+
+    def fixed(self) -> Any | None:
+        """Return the chosen list of fixed points; the task's fiducials where none is chosen."""
+        return self._chosen(self._fixedId) or findNode(
+            self._scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS
+        )
+
+    def target(self) -> Any | None:
+        """Return the list whose first point is the target; the scenario's where none is chosen."""
+        return self._chosen(self._targetId) or findNode(
+            self._scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET
+        )
+
+    def transform(self) -> Any | None:
+        """Return the transform node of the result, if there is one."""
+        return findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+
+    def chooseLists(self, moving: Any | None, fixed: Any | None) -> None:
+        """Choose what is registered; None means the touches and the task's fiducials."""
+        ids = (moving.GetID() if moving else "", fixed.GetID() if fixed else "")
+        if ids != (self._movingId, self._fixedId):
+            self._movingId, self._fixedId = ids
+            self._forgetChoices()
+
+    def chooseTarget(self, target: Any | None) -> None:
+        """Choose where the error is told: the first point of a list, None for the scenario's."""
+        self._targetId = target.GetID() if target else ""
+
+    def chooseKind(self, kind: str) -> None:
+        """Choose which fit the transform and the arrows show."""
+        self.kind = kind
+        self._compute()
+
+    def setHeadColored(self, colored: bool) -> None:
+        """Color the head by the target error to expect, or not."""
+        self.isHeadColored = colored
+        self._colorHead()
+
+    def change(self, choices: Choices) -> None:
+        """Register the pairs with these changes; `undo` takes them back."""
+        if choices != self.choices:
+            self._history.append(choices)
+            self._compute()
+
+    def exclude(self, *labels: str) -> None:
+        """Leave pairs out."""
+        self.change(self.choices.without(labels))
+
+    def undo(self) -> None:
+        """Take the last change back."""
+        if self.canUndo:
+            self._history.pop()
+            self._compute()
+
+    def reset(self) -> None:
+        """Forget the changes: what comes next is another trial."""
+        self._forgetChoices()
+
+    def process(self) -> None:
+        """Register again if a list or the target has changed."""
+        moving, fixed, target = self.moving(), self.fixed(), self.target()
+        seen = snapshot(moving), snapshot(fixed), snapshot(target)
+        if seen == self._seen:
+            return
+        self._seen = seen
+        if moving is None or moving.GetNumberOfControlPoints() == 0:
+            self._forgetChoices()
+        self._compute()
+
+    def _compute(self) -> None:
+        self.comparison, self.problem = None, ""
+        try:
+            pairs = readPairs(self.moving(), self.fixed(), self.choices)
+            self.comparison = self._compare(pairs)
+        except InputError as error:
+            self.problem = str(error)
+            clearResidualArrows(self._scene)
+            self._colorHead()
+        else:
+            self._show()
+        self.changed.emit()
+
+    def _compare(self, pairs: Pairs) -> Comparison:
+        fits = {RIGID: register(pairs.moving, pairs.fixed, RIGID, pairs.labels)}
+        for kind in KINDS:
+            # Points in one plane allow no affine fit; it is only looked at anyway.
+            with contextlib.suppress(InputError):
+                fits.setdefault(kind, register(pairs.moving, pairs.fixed, kind, pairs.labels))
+        errors = {}
+        position = self.targetPosition()
+        for kind, fit in fits.items():
+            with contextlib.suppress(InputError):
+                if position is not None:
+                    errors[kind] = target_error(fit, position)
+        return Comparison(pairs, fits, errors, remedies(fits[RIGID], self.choices))
+
+    def targetPosition(self) -> np.ndarray | None:
+        """Return the target, (3,) float, RAS mm; None where there is none."""
+        target = self.target()
+        if target is None or target.GetNumberOfControlPoints() == 0:
+            return None
+        return np.array(target.GetNthControlPointPositionWorld(0))
+
+    def _show(self) -> None:
+        comparison, shown = self.comparison, self.shown
+        showRegistration(self._scene, shown, self.moving(), self.fixed())
+        showResiduals(self._scene, shown)
+        fits = comparison.fits
+        showFits(self._scene, list(fits.values()), [comparison.errors.get(k) for k in fits])
+        showResidualArrows(self._scene, shown)
+        self._colorHead()
+
+    def _colorHead(self) -> None:
+        head = findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+        if head is None or head.GetPolyData() is None:
+            return
+        if self.isHeadColored and self.shown is not None:
+            with contextlib.suppress(InputError):
+                colorHead(head, self.shown)
+                return
+        uncolorHead(head)
+
+    def _forgetChoices(self) -> None:
+        self._history = [Choices()]
+        self._seen = ()
+
+    def _chosen(self, nodeId: str) -> Any | None:
+        return self._scene.GetNodeByID(nodeId) if nodeId else None
+
+
+def rememberedLists(transform: Any | None) -> tuple[Any | None, Any | None]:
+    """Return the moving and fixed lists that a result remembers, such as one of a saved scene."""
+    return (None, None) if transform is None else (movingNode(transform), fixedNode(transform))

@@ -1,0 +1,89 @@
+"""Start and stop the simulator from Slicer, and connect to it when it is ready."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import DEFAULT_HOST
+from rastrainer.slicer.child_process import environmentWith
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.simulator_program import ProgramState, SimulatorProgram
+from rastrainer.slicer.simulator_setup import SetupSource, SimulatorSetup
+from rastrainer.slicer.translation import _
+
+
+class SimulatorDesk:
+    """Sets up, starts and stops; `process` is to be called about ten times a second.
+
+    Attributes:
+        program: the simulator's process.
+        setup: the private folder and its pip.
+    """
+
+    def __init__(self, link: Link, setup: SimulatorSetup) -> None:
+        self.program = SimulatorProgram()
+        self.setup = setup
+        self._link = link
+        self.program.changed.connect(self._followProgram)
+
+    @property
+    def needsSetup(self) -> bool:
+        """Whether the simulator has to be set up before it can be started."""
+        return not self.setup.isCurrent
+
+    def start(self, port: int, ownProgram: str = "", options: Sequence[str] = ()) -> None:
+        """Start the simulator on this computer.
+
+        Args:
+            port: to listen on; 0 takes any free one.
+            ownProgram: a `rastrainer` installed elsewhere; the private folder's where empty.
+            options: further ones of `rastrainer simulator`.
+
+        Raises:
+            InputError: it is not set up, or cannot be started.
+        """
+        arguments = ["simulator", "--port", str(port), *options]
+        if ownProgram:
+            if not Path(ownProgram).is_file():
+                raise InputError(_("There is no program {path}.").format(path=ownProgram))
+            self.program.start([ownProgram, *arguments])
+            return
+        if self.needsSetup:
+            raise InputError(_("The simulator is not set up yet: press Set up first."))
+        self.program.start(self.setup.command(arguments), environmentWith(self.setup.folder))
+
+    def stop(self) -> None:
+        """Disconnect and end the simulator that was started from here."""
+        if self.program.isRunning:
+            self._link.disconnect()
+            self.program.stop()
+
+    def beginSetup(self, package: str, wheels: str = "") -> None:
+        """Begin to set the simulator up.
+
+        Args:
+            package: what pip installs.
+            wheels: a folder of wheels to install from without network; empty asks the network.
+
+        Raises:
+            InputError: it cannot begin.
+        """
+        if self.program.isRunning:
+            raise InputError(_("Stop the simulator before it is set up anew."))
+        self.setup.begin(SetupSource(package, Path(wheels) if wheels else None))
+
+    def process(self) -> None:
+        """Hand on what pip and the simulator say."""
+        self.setup.process()
+        self.program.process()
+
+    def close(self) -> None:
+        """End what was started from here."""
+        self.setup.cancel()
+        self.program.stop()
+
+    def _followProgram(self) -> None:
+        if self.program.state is ProgramState.READY:
+            self._link.connectTo(DEFAULT_HOST, self.program.port)

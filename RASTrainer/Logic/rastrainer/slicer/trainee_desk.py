@@ -1,0 +1,110 @@
+"""The trainees of a study: who they are, what they have done, and their farewell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.signal import Signal
+from rastrainer.study import StoredTrial, Study, Trainee
+from rastrainer.study_export import export_history, export_trainee
+
+
+class TraineeDesk:
+    """What the Trainees panel does, on a study that is opened when it is first needed.
+
+    Attributes:
+        changed: emits nothing, whenever trainees or their trials may have changed.
+        chosen: pseudonym of the chosen trainee, empty where none is.
+    """
+
+    def __init__(self, openStudy: Callable[[], Study]) -> None:
+        self.changed = Signal()
+        self.chosen = ""
+        self._openStudy = openStudy
+        self._study: Study | None = None
+
+    @property
+    def study(self) -> Study:
+        """The study.
+
+        Raises:
+            InputError: it cannot be opened.
+        """
+        if self._study is None:
+            self._study = self._openStudy()
+        return self._study
+
+    def reopen(self) -> None:
+        """Go on with the study that is to be opened now, such as another file."""
+        self.close()
+        self.chosen = ""
+        self.changed.emit()
+
+    def close(self) -> None:
+        """Close the study; it is opened again when it is needed."""
+        if self._study is not None:
+            self._study.close()
+            self._study = None
+
+    def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
+        """Return those who train, and the archived ones too where asked for, by pseudonym."""
+        listed = self.study.trainees()
+        return (*listed, *self.study.trainees(archived=True)) if archived else listed
+
+    def choose(self, pseudonym: str) -> None:
+        """Choose a trainee, or nobody by an empty pseudonym."""
+        if pseudonym != self.chosen:
+            self.chosen = pseudonym
+            self.changed.emit()
+
+    def chosenTrainee(self) -> Trainee | None:
+        """Return who is chosen; None where nobody is, or no longer there."""
+        if not self.chosen:
+            return None
+        try:
+            return self.study.trainee(self.chosen)
+        except InputError:
+            return None
+
+    def create(self, pseudonym: str, consent: bool) -> Trainee:
+        """Add a trainee, under the next free pseudonym where none is given, and choose them.
+
+        Raises:
+            InputError: the pseudonym is taken or cannot be one.
+        """
+        trainee = self.study.create_trainee(pseudonym.strip() or None, consent)
+        self.chosen = trainee.pseudonym
+        self.changed.emit()
+        return trainee
+
+    def setConsent(self, consent: bool) -> None:
+        """Note whether the chosen trainee agrees to research."""
+        self.study.set_consent(self.chosen, consent)
+        self.changed.emit()
+
+    def setArchived(self, archived: bool) -> None:
+        """Archive the chosen trainee, or bring them back."""
+        self.study.set_archived(self.chosen, archived)
+        self.changed.emit()
+
+    def delete(self) -> int:
+        """Delete the chosen trainee with all trials, for good; return the number of trials."""
+        trials = self.study.delete_trainee(self.chosen)
+        self.chosen = ""
+        self.changed.emit()
+        return trials
+
+    def export(self, path: Path) -> int:
+        """Write everything about the chosen trainee into a JSON file; return the trials' number."""
+        return export_trainee(self.study, self.chosen, path)
+
+    def exportHistory(self, path: Path, everybody: bool = False) -> int:
+        """Write trials as a CSV file, of the chosen trainee or of all; return their number."""
+        everyone = [trainee.pseudonym for trainee in self.trainees(archived=True)]
+        return export_history(self.study, everyone if everybody else [self.chosen], path)
+
+    def history(self) -> tuple[StoredTrial, ...]:
+        """Return the trials of the chosen trainee in the order they were started."""
+        return self.study.history(self.chosen) if self.chosenTrainee() else ()
