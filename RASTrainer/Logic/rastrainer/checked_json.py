@@ -22,6 +22,10 @@ class Fields:
         self._file = file
         self._path = path
 
+    def names(self) -> tuple[str, ...]:
+        """Return the names of all fields, in their order."""
+        return tuple(self._values)
+
     def text(self, name: str, longest: int = 200) -> str:
         """Return printable text of 1 to `longest` characters."""
         value = self._values.get(name)
@@ -35,6 +39,34 @@ class Fields:
         if not _is_number(value) or not lowest <= value <= highest:
             raise self.error(name, f"a number from {lowest:g} to {highest:g}")
         return float(value)
+
+    def whole_number(self, name: str, lowest: int, highest: int) -> int:
+        """Return a whole number from `lowest` to `highest`."""
+        value = self._values.get(name)
+        if not _is_number(value) or value != int(value) or not lowest <= value <= highest:
+            raise self.error(name, f"a whole number from {lowest} to {highest}")
+        return int(value)
+
+    def one_of(self, name: str, choices: tuple[str, ...]) -> str:
+        """Return one of the given words."""
+        value = self._values.get(name)
+        if not isinstance(value, str) or value not in choices:
+            raise self.error(name, f"one of {', '.join(choices)}")
+        return value
+
+    def texts(
+        self, name: str, fewest: int, most: int, choices: tuple[str, ...] = ()
+    ) -> tuple[str, ...]:
+        """Return a list of different texts, each printable and, if given, one of the choices."""
+        values = self._values.get(name)
+        is_list = isinstance(values, list) and fewest <= len(values) <= most
+        if not is_list or not all(_is_short_text(value) for value in values):
+            raise self.error(name, f"a list of {fewest} to {most} texts")
+        if len(set(values)) != len(values):
+            raise self.error(name, "a list in which nothing stands twice")
+        if choices and not set(values) <= set(choices):
+            raise self.error(name, f"a list of some of {', '.join(choices)}")
+        return tuple(values)
 
     def numbers(self, name: str, count: int, limit: float) -> list[float]:
         """Return a list of `count` finite numbers, each within ±`limit`."""
@@ -88,6 +120,10 @@ def read_fields(path: Path) -> Fields:
     if not isinstance(values, dict):
         raise InputError(f"{path} must hold one JSON object.")
     return Fields(values, path)
+
+
+def _is_short_text(value: Any) -> bool:
+    return isinstance(value, str) and 1 <= len(value) <= 64 and value.isprintable()
 
 
 def _is_number(value: Any) -> bool:

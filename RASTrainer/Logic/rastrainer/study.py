@@ -52,6 +52,11 @@ class Study:
         """Close the file."""
         self._database.close()
 
+    @property
+    def database(self) -> StudyDatabase:
+        """The file underneath, for `rastrainer.experiment`, which keeps its tables there too."""
+        return self._database
+
     def create_trainee(self, pseudonym: str | None = None, consent: bool = False) -> Trainee:
         """Add a trainee, by default under the next free pseudonym (`T001`, `T002`, …).
 

@@ -77,4 +77,32 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         )
         """,
     ),
+    (
+        # What the protocol asks of each trainee, and what became of it.
+        """
+        CREATE TABLE study_protocol (
+            id INTEGER PRIMARY KEY CHECK (id = 1),
+            protocol_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        """
+        CREATE TABLE enrollments (
+            trainee_id INTEGER PRIMARY KEY REFERENCES trainees (id) ON DELETE CASCADE,
+            place INTEGER NOT NULL UNIQUE CHECK (place >= 0),
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        """
+        CREATE TABLE steps (
+            id INTEGER PRIMARY KEY,
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            step TEXT NOT NULL,
+            outcome TEXT NOT NULL CHECK (outcome IN ('done', 'skipped')),
+            details_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL,
+            UNIQUE (trainee_id, step)
+        )
+        """,
+    ),
 )

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.point_list import PointList, pair
 from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration, register
 from rastrainer.scenario import Scenario
-from rastrainer.scoring import TrialScore, score_trial, task_reference
+from rastrainer.scoring import ScoreReference, TrialScore, score_trial, task_reference
 from rastrainer.target_error import TargetError, target_error
 from rastrainer.trial_record import TrialRecord
 
@@ -63,7 +63,10 @@ class TrialAnalysis:
 
 
 def analyze_trial(
-    record: TrialRecord, scenario: Scenario, cohort: Sequence[ctps.Trial] = ()
+    record: TrialRecord,
+    scenario: Scenario,
+    cohort: Sequence[ctps.Trial] = (),
+    references: Mapping[str, ScoreReference] | None = None,
 ) -> TrialAnalysis:
     """Register a trial's touches to its task's fiducials, paired by label, and score it.
 
@@ -71,6 +74,8 @@ def analyze_trial(
         record: the trial.
         scenario: in which it was played.
         cohort: trials that CTPS compares with; those of the trial's own mode count.
+        references: of the score, by task, as a study's protocol sets them; the shipped ones for
+            tasks that it leaves out.
 
     Raises:
         InputError: the scenario has no such task or labels, or the points cannot be registered.
@@ -85,7 +90,7 @@ def analyze_trial(
         with contextlib.suppress(InputError):
             fits[kind] = register(moving, fixed, kind, labels)
     errors = {kind: target_error(fit, scenario.target_position) for kind, fit in fits.items()}
-    reference = task_reference(record.task)
+    reference = (references or {}).get(record.task) or task_reference(record.task)
     return TrialAnalysis(
         record=record,
         target_name=scenario.target_name,

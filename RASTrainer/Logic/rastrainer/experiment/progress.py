@@ -1,0 +1,137 @@
+"""Where a trainee stands on the way through a study, and what may come next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.experiment.steps import Step, StepKind
+from rastrainer.questionnaires.catalog import find_questionnaire
+
+DONE, SKIPPED = "done", "skipped"
+SHORTEST_REASON, LONGEST_REASON = 10, 500
+
+
+@dataclass(frozen=True)
+class StepEntry:
+    """What became of a step: it was done, or skipped for a reason.
+
+    Attributes:
+        step: Its name.
+        outcome: `done` or `skipped`.
+        details: `trialId` of a trial, `answers` of a questionnaire, `reason` of a skipped step.
+        stored_utc: ISO 8601.
+    """
+
+    step: str
+    outcome: str
+    details: Mapping[str, Any]
+    stored_utc: str
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A trainee's steps and what became of them; nothing is counted as done that is not said.
+
+    Attributes:
+        steps: The whole way.
+        entries: Of the first steps, in their order.
+    """
+
+    steps: tuple[Step, ...]
+    entries: tuple[StepEntry, ...]
+
+    @classmethod
+    def of(cls, steps: Sequence[Step], entries: Sequence[StepEntry]) -> Progress:
+        """Return the progress that a log tells of.
+
+        Raises:
+            InputError: the log is not that of these steps.
+        """
+        if [step.name for step in steps[: len(entries)]] != [entry.step for entry in entries]:
+            raise InputError(
+                "What was done so far is not what this protocol asks for; use the protocol that "
+                "the study was begun with."
+            )
+        return cls(tuple(steps), tuple(entries))
+
+    @property
+    def next_step(self) -> Step | None:
+        """What comes next; None when all is done."""
+        return self.steps[len(self.entries)] if len(self.entries) < len(self.steps) else None
+
+    @property
+    def skipped(self) -> tuple[StepEntry, ...]:
+        """The steps that were left out, with their reasons."""
+        return tuple(entry for entry in self.entries if entry.outcome == SKIPPED)
+
+    @property
+    def sentence(self) -> str:
+        """What the trainee is told."""
+        step = self.next_step
+        if step is None:
+            return "All steps of the study are done. Thank you!"
+        return f"Step {len(self.entries) + 1} of {len(self.steps)}: {step.sentence}"
+
+    def check_start(self, mode: str, task: str) -> Step:
+        """Return the step that a trial to be started belongs to.
+
+        Raises:
+            InputError: something else comes next; the sentence says what.
+        """
+        step = self._next()
+        if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
+            mode,
+            task,
+        ):
+            raise InputError(f"Not yet: the study asks for something else first. {self.sentence}")
+        return step
+
+    def check_done(self, step_name: str, details: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what is to be stored when a step is done.
+
+        Raises:
+            InputError: it is not the next step, or what belongs to it is missing.
+        """
+        step = self._expected(step_name)
+        if step.kind is StepKind.QUESTIONNAIRE:
+            if "answers" not in details:
+                raise InputError("A questionnaire is done only with its answers.")
+            questionnaire = find_questionnaire(step.questionnaire)
+            return {"answers": list(questionnaire.checked(details["answers"]))}
+        if step.kind is StepKind.TRIAL:
+            if not isinstance(details.get("trialId"), str):
+                raise InputError("A trial is done only with the trial that was stored.")
+            return {"trialId": details["trialId"]}
+        return {}
+
+    def check_skipped(self, step_name: str, reason: str) -> dict[str, Any]:
+        """Return what is to be stored when a step is skipped.
+
+        Raises:
+            InputError: it is not the next step, or no reason is given: nothing is skipped silently.
+        """
+        self._expected(step_name)
+        is_text = isinstance(reason, str) and reason.strip().isprintable()
+        if not is_text or not SHORTEST_REASON <= len(reason.strip()) <= LONGEST_REASON:
+            raise InputError(
+                f"A step is skipped only with a reason of {SHORTEST_REASON} to {LONGEST_REASON} "
+                "characters; it goes into the report."
+            )
+        return {"reason": reason.strip()}
+
+    def _next(self) -> Step:
+        if self.next_step is None:
+            raise InputError("All steps of the study are done; nothing comes after them.")
+        return self.next_step
+
+    def _expected(self, step_name: str) -> Step:
+        step = self._next()
+        if step.name != step_name:
+            raise InputError(
+                f"The next step is {step.name}, not {step_name[:80]}. Steps are done in their "
+                "order; one that must be left out is skipped with a reason."
+            )
+        return step

@@ -1,0 +1,212 @@
+"""A study's protocol and every trainee's progress, kept in the study's file.
+
+The module in Slicer and the simulator's flow ask `progress` what comes next and report what was
+done. All of it survives an interruption, since it is stored before anyone is told.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer import study_trainees, study_trials
+from rastrainer.errors import InputError
+from rastrainer.experiment.progress import DONE, SKIPPED, Progress, StepEntry
+from rastrainer.experiment.steps import Step, StepKind, steps_for
+from rastrainer.experiment.study_protocol import StudyProtocol, study_protocol_from_json
+from rastrainer.questionnaires.catalog import find_questionnaire
+from rastrainer.study import Study
+from rastrainer.study_clock import utc_now
+from rastrainer.study_trainees import TRAINEE_ID
+from rastrainer.study_trials import decoded, json_text
+
+
+@dataclass(frozen=True)
+class QuestionnaireAnswers:
+    """What a trainee answered, and its scores."""
+
+    trainee: str
+    step: Step
+    answers: tuple[int, ...]
+    scores: Mapping[str, float]
+    stored_utc: str
+
+
+class StudyProgress:
+    """The protocol of one study, and who stands where. One thread may use it."""
+
+    def __init__(self, study: Study) -> None:
+        self._database = study.database
+
+    def begin(self, protocol: StudyProtocol) -> None:
+        """Make this the study's protocol; the same one again changes nothing.
+
+        Raises:
+            InputError: the study has another one; a study is not changed while it runs.
+        """
+        with self._database.writing() as connection:
+            stored = _protocol(connection)
+            if stored is None:
+                text = json_text(protocol.to_json())
+                connection.execute("INSERT INTO study_protocol VALUES (1, ?, ?)", (text, utc_now()))
+            elif stored != protocol:
+                raise InputError(
+                    f"This study was begun with another protocol, {stored.title!r}. Changing it "
+                    "half-way would spoil the study: begin a new one for the new protocol."
+                )
+
+    def protocol(self) -> StudyProtocol | None:
+        """Return the study's protocol; None where it has none and trainees practice freely."""
+        with self._database.reading() as connection:
+            return _protocol(connection)
+
+    def enroll(self, pseudonym: str) -> int:
+        """Give a trainee the first free place in the order, and return it; twice is once.
+
+        The place decides the order of modes and tasks. That of a deleted trainee is given again,
+        so that the orders stay balanced.
+
+        Raises:
+            InputError: there is no such trainee, or the study has no protocol.
+        """
+        with self._database.writing() as connection:
+            _require_protocol(connection)
+            study_trainees.find(connection, pseudonym)
+            place = _place(connection, pseudonym)
+            if place is None:
+                taken = {row[0] for row in connection.execute("SELECT place FROM enrollments")}
+                place = next(number for number in range(len(taken) + 1) if number not in taken)
+                connection.execute(
+                    f"INSERT INTO enrollments VALUES (({TRAINEE_ID}), ?, ?)",
+                    (pseudonym, place, utc_now()),
+                )
+            return place
+
+    def progress(self, pseudonym: str) -> Progress:
+        """Return where a trainee stands.
+
+        Raises:
+            InputError: the trainee is not enrolled, or the study has no protocol.
+        """
+        with self._database.reading() as connection:
+            return _progress(connection, pseudonym)
+
+    def finish(
+        self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
+    ) -> Progress:
+        """Note that the next step was done and return the new progress.
+
+        Args:
+            pseudonym: Of an enrolled trainee.
+            step: Name of the step, which must be the next one.
+            details: `trialId` of a stored trial, or `answers` of a questionnaire.
+
+        Raises:
+            InputError: it is not the next step, or what belongs to it is missing or wrong.
+        """
+        with self._database.writing() as connection:
+            progress = _progress(connection, pseudonym)
+            checked = progress.check_done(step, details or {})
+            if progress.next_step.kind is StepKind.TRIAL:
+                _check_trial(connection, pseudonym, progress, checked["trialId"])
+            _store(connection, pseudonym, step, DONE, checked)
+            return _progress(connection, pseudonym)
+
+    def skip(self, pseudonym: str, step: str, reason: str) -> Progress:
+        """Leave out the next step for a reason and return the new progress.
+
+        Raises:
+            InputError: it is not the next step, or there is no reason of at least ten characters.
+        """
+        with self._database.writing() as connection:
+            checked = _progress(connection, pseudonym).check_skipped(step, reason)
+            _store(connection, pseudonym, step, SKIPPED, checked)
+            return _progress(connection, pseudonym)
+
+    def enrolled(self) -> dict[str, int]:
+        """Return the place of each enrolled trainee, in the order of places."""
+        with self._database.reading() as connection:
+            return dict(
+                connection.execute(
+                    "SELECT pseudonym, place FROM enrollments "
+                    "JOIN trainees ON trainees.id = trainee_id ORDER BY place"
+                ).fetchall()
+            )
+
+    def answers(self) -> tuple[QuestionnaireAnswers, ...]:
+        """Return all answered questionnaires, by place and step."""
+        return tuple(
+            answered
+            for pseudonym in self.enrolled()
+            for answered in _answers(pseudonym, self.progress(pseudonym))
+        )
+
+
+def _answers(pseudonym: str, progress: Progress) -> list[QuestionnaireAnswers]:
+    found = []
+    for step, entry in zip(progress.steps, progress.entries, strict=False):
+        if step.kind is StepKind.QUESTIONNAIRE and entry.outcome == DONE:
+            answers = tuple(entry.details["answers"])
+            scores = find_questionnaire(step.questionnaire).score(answers)
+            found.append(QuestionnaireAnswers(pseudonym, step, answers, scores, entry.stored_utc))
+    return found
+
+
+def _progress(connection: sqlite3.Connection, pseudonym: str) -> Progress:
+    protocol = _require_protocol(connection)
+    place = _place(connection, pseudonym)
+    if place is None:
+        raise InputError(f"{json.dumps(str(pseudonym)[:64])} is not enrolled in the study yet.")
+    rows = connection.execute(
+        "SELECT step, outcome, details_json, stored_utc FROM steps "
+        f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
+        (pseudonym,),
+    ).fetchall()
+    entries = [
+        StepEntry(step, outcome, decoded(details, dict), utc)
+        for step, outcome, details, utc in rows
+    ]
+    return Progress.of(steps_for(protocol, place), entries)
+
+
+def _protocol(connection: sqlite3.Connection) -> StudyProtocol | None:
+    row = connection.execute("SELECT protocol_json FROM study_protocol").fetchone()
+    return None if row is None else decoded(row[0], study_protocol_from_json)
+
+
+def _require_protocol(connection: sqlite3.Connection) -> StudyProtocol:
+    protocol = _protocol(connection)
+    if protocol is None:
+        raise InputError("The study has no protocol yet; begin it with a protocol's file.")
+    return protocol
+
+
+def _place(connection: sqlite3.Connection, pseudonym: str) -> int | None:
+    row = connection.execute(
+        f"SELECT place FROM enrollments WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+    ).fetchone()
+    return None if row is None else row[0]
+
+
+def _check_trial(connection: sqlite3.Connection, pseudonym: str, step: Step, trial_id: str) -> None:
+    record = study_trials.find_record(connection, trial_id)
+    if (record.trainee, record.mode, record.task) != (pseudonym, step.mode, step.task):
+        raise InputError(
+            f"The trial {trial_id} is not the one that the step {step.name} asks for: it was "
+            f"{record.task} in the mode {record.mode}."
+        )
+    if any(entry.details.get("trialId") == trial_id for entry in progress.entries):
+        raise InputError(f"The trial {trial_id} already counts for an earlier step.")
+
+
+def _store(
+    connection: sqlite3.Connection, pseudonym: str, step: str, outcome: str, details: dict[str, Any]
+) -> None:
+    connection.execute(
+        "INSERT INTO steps (trainee_id, step, outcome, details_json, stored_utc) "
+        f"VALUES (({TRAINEE_ID}), ?, ?, ?, ?)",
+        (pseudonym, step, outcome, json_text(details), utc_now()),
+    )
