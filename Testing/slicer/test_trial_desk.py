@@ -204,3 +204,36 @@ def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
     lab.run_until(lambda: lab.scored)
     assert findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD) is None
     assert lab.stored().true_tre_mm is not None
+
+
+def test_a_trial_deleted_with_its_trainee_is_acknowledged_and_not_stored_again(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    with Study.open(lab.path) as study:
+        study.delete_trainee("T-001")
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) == 2)
+    with Study.open(lab.path) as study:
+        assert study.trainees() == ()
+    assert lab.problems == []
+    assert len(lab.scored) == 1
+
+
+def test_trials_of_a_break_in_the_connection_all_arrive(lab, make_record):
+    trials = [str(uuid.UUID(int=number)) for number in range(1, 5)]
+    lab.link.disconnect()
+    lab.connect()
+    for number, trial in enumerate(trials):
+        lab.simulator.send_command("TrialCompleted", make_record(trial, seed=number))
+    lab.run_until(lambda: len(lab.scored) == 4)
+    assert lab.desk.received == trials
+
+
+def test_after_the_study_is_changed_trials_go_into_the_new_one(lab, make_record, tmp_path):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    lab.path = tmp_path / "another.db"
+    lab.desk.closeStudy()
+    lab.simulator.send_command("TrialCompleted", make_record(OTHER))
+    lab.run_until(lambda: len(lab.scored) == 2)
+    assert lab.stored(OTHER).record.trial_id == OTHER

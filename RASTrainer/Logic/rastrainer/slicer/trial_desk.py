@@ -21,7 +21,7 @@ from rastrainer.slicer.link import Link
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.trial_scene import showTrial
-from rastrainer.study import Study
+from rastrainer.study import DeletedTrialError, Study
 from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
 from rastrainer.trial_record import TrialRecord
 from rastrainer.trial_results import RevealedTruth
@@ -43,6 +43,7 @@ class TrialDesk:
     Attributes:
         trialScored: emits each `ScoredTrial`, once its truth is in the study.
         problemFound: emits a sentence about a trial that could not be kept or scored.
+        received: UUIDs of the trials that came in and are safe, in their order.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class TrialDesk:
         """The study is opened when it is first needed; `cohort` is what CTPS compares with."""
         self.trialScored = Signal()
         self.problemFound = Signal()
+        self.received: list[str] = []
         self._scene = scene
         self._link = link
         self._findScenario = findScenario
@@ -74,6 +76,10 @@ class TrialDesk:
         self._link.trialCompleted.disconnect(self._receive)
         self._link.stateChanged.disconnect(self._followTraining)
         self._link.opened.disconnect(self._resume)
+        self.closeStudy()
+
+    def closeStudy(self) -> None:
+        """Close the study; the next trial goes into the one that is to be opened then."""
         if self._study is not None:
             self._study.close()
             self._study = None
@@ -87,13 +93,22 @@ class TrialDesk:
             record = TrialRecord.from_json(value)
             analysis = self._analyze(record)
             isRevealed = self._keep(value, record, analysis)
+        except DeletedTrialError:
+            # Its trainee is gone for good: it must not be offered for ever.
+            self._acknowledge(record)
+            return
         except InputError as error:
             self._complain(_("A trial could not be kept: {error}").format(error=error))
             return
-        self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": record.trial_id})
+        self._acknowledge(record)
+        if record.trial_id not in self.received:
+            self.received.append(record.trial_id)
         if analysis is not None and not isRevealed and record.trial_id not in self._told:
             self._show(analysis)
             self._tellScore(analysis, self._complain)
+
+    def _acknowledge(self, record: TrialRecord) -> None:
+        self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": record.trial_id})
 
     def _analyze(self, record: TrialRecord) -> TrialAnalysis | None:
         try:

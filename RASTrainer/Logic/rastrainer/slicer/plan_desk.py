@@ -1,0 +1,179 @@
+"""A target or trajectory placed on the MRI, mapped through the registration to the robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import CommandName
+from rastrainer.registration import Registration
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.registration_desk import RegistrationDesk
+from rastrainer.slicer.scene import Role, findOrAddNode
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+from rastrainer.slicer.trial_desk import ScoredTrial
+from rastrainer.target_error import TargetError, target_error
+
+TARGET_COLOR = (0.85, 0.2, 0.55)
+LONGEST_NAME = 64
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is planned, on the MRI and in the robot's World, mm.
+
+    Attributes:
+        name: of the plan.
+        target: (3,) float, RAS.
+        entry: (3,) float, RAS, where a trajectory begins; None where only a point is planned.
+        targetWorld: (3,) float, where the registration puts the target.
+        entryWorld: (3,) float, or None.
+        expected: the error to expect there; None where the registration cannot tell.
+    """
+
+    name: str
+    target: np.ndarray
+    entry: np.ndarray | None
+    targetWorld: np.ndarray
+    entryWorld: np.ndarray | None
+    expected: TargetError | None
+
+
+class PlanDesk:
+    """What the Plan panel does.
+
+    Attributes:
+        changed: emits nothing, whenever the answers below have changed.
+        isReachable: whether the robot can carry the plan out; None before it is answered.
+        sentence: what was last said about the plan.
+        trueErrorMm: how far the registration puts the target from where it is; None as long as
+            the simulator has not revealed it.
+    """
+
+    def __init__(self, scene: Any, link: Link, registration: RegistrationDesk) -> None:
+        self.changed = Signal()
+        self.isReachable: bool | None = None
+        self.sentence = ""
+        self.trueErrorMm: float | None = None
+        self._scene = scene
+        self._link = link
+        self._registration = registration
+        self._headToWorld: np.ndarray | None = None
+        self._sent: Plan | None = None
+
+    def newTarget(self) -> Any:
+        """Return the list for a planned point, empty, ready to be placed."""
+        return self._fresh("vtkMRMLMarkupsFiducialNode", Role.PLAN_TARGET, _("Planned target"))
+
+    def newTrajectory(self) -> Any:
+        """Return the line for a planned trajectory, from entry to target, ready to be placed."""
+        return self._fresh("vtkMRMLMarkupsLineNode", Role.PLAN_TRAJECTORY, _("Planned trajectory"))
+
+    def read(self, node: Any | None) -> Plan:
+        """Return the plan that a list of points or a line holds.
+
+        The last point is the target; of a line, the first is the entry.
+
+        Raises:
+            InputError: nothing is placed, or there is no registration to map it with.
+        """
+        points = _placedPoints(node)
+        shown = self._registration.shown
+        if shown is None:
+            raise InputError(
+                _("There is no registration to map the plan with: {problem}").format(
+                    problem=self._registration.problem or _("register the touches first.")
+                )
+            )
+        toWorld = transforms.inverse(shown.matrix)
+        target = points[-1]
+        isLine = node.IsA("vtkMRMLMarkupsLineNode") and len(points) > 1
+        entry = points[0] if isLine else None
+        return Plan(
+            name=(node.GetName() or _("target"))[:LONGEST_NAME],
+            target=target,
+            entry=entry,
+            targetWorld=transforms.apply(toWorld, target[None])[0],
+            entryWorld=None if entry is None else transforms.apply(toWorld, entry[None])[0],
+            expected=_expected(shown, target),
+        )
+
+    def send(self, node: Any | None) -> None:
+        """Show the plan in the simulator and ask whether the robot can carry it out.
+
+        Raises:
+            InputError: as `read`.
+        """
+        plan = self.read(node)
+        arguments: dict[str, Any] = {"positionMm": plan.targetWorld.tolist(), "name": plan.name}
+        if plan.entryWorld is not None:
+            arguments["entryMm"] = plan.entryWorld.tolist()
+        self.isReachable, self.sentence = None, _("The simulator is asked.")
+        self.trueErrorMm = None
+        self._link.send(CommandName.PLAN_TARGET, arguments, lambda reply: self._take(reply, plan))
+        self.changed.emit()
+
+    def takeTruth(self, trial: ScoredTrial) -> None:
+        """Know where the head of the trial really was: from now on, true errors can be told."""
+        self._headToWorld = np.reshape(trial.truth.head_to_world, (4, 4))
+        self._tellTrueError()
+
+    def forgetTruth(self) -> None:
+        """Know nothing of the head of the trial that has just begun, nor of its plan."""
+        self._headToWorld = self._sent = self.isReachable = self.trueErrorMm = None
+        self.sentence = ""
+        self.changed.emit()
+
+    def _take(self, reply: Reply, plan: Plan) -> None:
+        if not reply.ok:
+            self.isReachable, self.sentence = None, reply.error
+            self.changed.emit()
+            return
+        isReachable = reply.data.get("reachable")
+        self.isReachable = isReachable if isinstance(isReachable, bool) else None
+        reason = str(reply.data.get("reason", ""))
+        told = _("The robot can carry it out.") if self.isReachable else reason
+        self.sentence = _("The simulator shows the plan. {told}").format(told=told).strip()
+        self._sent = plan
+        self._tellTrueError()
+
+    def _tellTrueError(self) -> None:
+        if self._sent is not None and self._headToWorld is not None:
+            there = transforms.apply(self._headToWorld, self._sent.target[None])[0]
+            self.trueErrorMm = float(np.linalg.norm(self._sent.targetWorld - there))
+        self.changed.emit()
+
+    def _fresh(self, className: str, role: str, name: str) -> Any:
+        node = findOrAddNode(self._scene, className, role, name)
+        node.RemoveAllControlPoints()
+        display = node.GetDisplayNode()
+        display.SetSelectedColor(TARGET_COLOR)
+        display.SetOccludedVisibility(True)
+        return node
+
+
+def _placedPoints(node: Any | None) -> np.ndarray:
+    """Return the points that are placed, (n, 3) float, RAS mm."""
+    if node is None:
+        raise InputError(_("Place a target or a trajectory, or choose one."))
+    defined = [
+        node.GetNthControlPointPositionWorld(index)
+        for index in range(node.GetNumberOfControlPoints())
+        if node.GetNthControlPointPositionStatus(index) == node.PositionDefined
+    ]
+    if not defined:
+        raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
+    return np.array(defined, dtype=float)
+
+
+def _expected(registration: Registration, target: np.ndarray) -> TargetError | None:
+    try:
+        return target_error(registration, target)
+    except InputError:
+        return None

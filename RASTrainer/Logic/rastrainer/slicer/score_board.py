@@ -1,0 +1,247 @@
+"""What is told about one trial: scores, parts, motion, and how it stands beside others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer.ctps import CTPS_WARNING, CohortReference, Trial, equation_3_ctps, published_ctps
+from rastrainer.errors import InputError
+from rastrainer.motion.definitions import DEFINITIONS
+from rastrainer.registration import RIGID
+from rastrainer.slicer.scene import Role
+from rastrainer.slicer.tables import Column, showTable
+from rastrainer.slicer.translation import _
+from rastrainer.study import StoredTrial, Study
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the score: what, how much, in which unit, and what there is to say about it."""
+
+    title: str
+    value: float | None
+    unit: str = ""
+    note: str = ""
+
+    @property
+    def text(self) -> str:
+        """The value with its unit, as people read it."""
+        if self.value is None:
+            return "–"
+        digits = 0 if self.unit == "" and float(self.value).is_integer() else 2
+        return f"{self.value:.{digits}f} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A value beside those of a group.
+
+    Attributes:
+        title: what is compared.
+        unit: of the value.
+        value: of the trial.
+        group: of whom the others are.
+        count: how many others there are.
+        median: of the others; None without any.
+        betterThan: share of the others that the trial is better than, 0 to 1; None without any.
+    """
+
+    title: str
+    unit: str
+    value: float
+    group: str
+    count: int
+    median: float | None
+    betterThan: float | None
+
+
+def scoreRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
+    """Return the scores of a trial and their parts.
+
+    Args:
+        trial: with its results.
+        cohort: trials that CTPS compares with; those of the trial's own mode count.
+    """
+    score, rigid = trial.score, trial.registrations.get(RIGID)
+    rows = []
+    if score is not None:
+        limit = score.reference.limit_mm
+        verdict = _("within") if score.acceptable else _("beyond")
+        rows += [
+            Row(_("Score"), score.score, "/ 100", _("Version {v}").format(v=score.version)),
+            Row(_("… its part for time"), 100 * score.time_desirability, "%"),
+            Row(
+                _("… its part for accuracy"),
+                100 * score.accuracy_desirability,
+                "%",
+                _("{verdict} the limit of {limit:g} mm").format(verdict=verdict, limit=limit),
+            ),
+        ]
+    rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s"))
+    if rigid is not None:
+        fre = _("does not predict the TRE of a single case")
+        rows += [
+            Row(_("FRE (RMSE)"), rigid.fre_mm, "mm", fre),
+            Row(_("Expected TRE"), rigid.expected_tre_mm, "mm", _interval(rigid.tre_interval_mm)),
+        ]
+    rows.append(Row(_("True TRE"), trial.true_tre_mm, "mm", _("only a simulator can tell it")))
+    return [*rows, *_ctpsRows(trial, cohort)]
+
+
+def motionRows(trial: StoredTrial) -> list[Row]:
+    """Return the motion metrics of a trial, each with its definition."""
+    return [
+        Row(definition.title, trial.motion[name], definition.unit, definition.definition)
+        for name, definition in DEFINITIONS.items()
+        if name in trial.motion
+    ]
+
+
+def standings(study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()) -> list[Standing]:
+    """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
+
+    Compared are trials of the same task and mode.
+
+    Args:
+        study: of the trial.
+        trial: with its results.
+        cohort: of another study, such as the published one; its times and FRE are known.
+
+    Raises:
+        InputError: the study cannot be read.
+    """
+    record = trial.record
+    own, others = [], []
+    for trainee in (*study.trainees(), *study.trainees(archived=True)):
+        isOwn = trainee.pseudonym == record.trainee
+        for other in study.history(trainee.pseudonym):
+            isSame = (other.record.task, other.record.mode) == (record.task, record.mode)
+            if isSame and other.record.trial_id != record.trial_id:
+                (own if isOwn else others).append(other)
+    found = []
+    for group, trials in ((_("own trials"), own), (_("other trainees"), others)):
+        for title, unit, better, read in _COMPARED:
+            value = read(trial)
+            values = [v for v in map(read, trials) if v is not None]
+            if value is not None:
+                found.append(_standing(title, unit, value, group, values, better))
+    return found + _besideCohort(trial, cohort)
+
+
+def showScore(scene: Any, rows: Sequence[Row]) -> Any:
+    """Show scores and their parts in a `vtkMRMLTableNode` and return it."""
+    return _showRows(scene, Role.SCORE, "Score", rows)
+
+
+def showMotion(scene: Any, rows: Sequence[Row]) -> Any:
+    """Show motion metrics in a `vtkMRMLTableNode` and return it."""
+    return _showRows(scene, Role.MOTION, "Motion metrics", rows)
+
+
+def showStandings(scene: Any, found: Sequence[Standing]) -> Any:
+    """Show comparisons in a `vtkMRMLTableNode` and return it."""
+    return showTable(
+        scene,
+        Role.COMPARISON,
+        "Comparison",
+        [
+            Column("measure", [s.title for s in found], isText=True),
+            Column("unit", [s.unit for s in found], isText=True),
+            Column("value", [s.value for s in found]),
+            Column("compared with", [s.group for s in found], isText=True),
+            Column("trials", [s.count for s in found]),
+            Column("median", [s.median for s in found]),
+            Column("better than (share)", [s.betterThan for s in found]),
+        ],
+    )
+
+
+def _showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
+    return showTable(
+        scene,
+        role,
+        name,
+        [
+            Column("measure", [row.title for row in rows], isText=True),
+            Column("value", [row.value for row in rows]),
+            Column("unit", [row.unit for row in rows], isText=True),
+            Column("note", [row.note for row in rows], isText=True),
+        ],
+    )
+
+
+def _ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
+    rigid = trial.registrations.get(RIGID)
+    peers = [peer for peer in cohort if peer.mode == trial.record.mode]
+    if rigid is None or not peers:
+        return []
+    try:
+        reference = CohortReference.of(peers)
+    except InputError:
+        return []
+    time, rmse = trial.record.completion_time_s, rigid.fre_mm
+    return [
+        Row(_("CTPS as published"), published_ctps(time, rmse, reference), "", CTPS_WARNING),
+        Row(
+            _("CTPS by equation 3"),
+            equation_3_ctps(time, rmse, reference),
+            "",
+            _("The paper's equation 3 as printed: half of it."),
+        ),
+    ]
+
+
+def _interval(ends: tuple[float, float] | None) -> str:
+    return "" if ends is None else _("95 %: {:.2f} to {:.2f} mm").format(*ends)
+
+
+def _standing(
+    title: str, unit: str, value: float, group: str, values: Sequence[float], better: int
+) -> Standing:
+    if not values:
+        return Standing(title, unit, value, group, 0, None, None)
+    share = float(np.mean([better * value > better * other for other in values]))
+    return Standing(title, unit, value, group, len(values), float(np.median(values)), share)
+
+
+def _besideCohort(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Standing]:
+    record, rigid = trial.record, trial.registrations.get(RIGID)
+    # The published tables call the tasks 1 to 5.
+    peers = [
+        peer
+        for peer in cohort
+        if peer.mode == record.mode and record.task in (peer.task, f"task-{peer.task}")
+    ]
+    if not peers:
+        return []
+    group = _("reference group")
+    times = [peer.completion_time_s for peer in peers]
+    found = [_standing(_("Completion time"), "s", record.completion_time_s, group, times, -1)]
+    if rigid is not None:
+        errors = [peer.rmse_mm for peer in peers]
+        found.append(_standing(_("FRE (RMSE)"), "mm", rigid.fre_mm, group, errors, -1))
+    return found
+
+
+def _score(trial: StoredTrial) -> float | None:
+    return None if trial.score is None else trial.score.score
+
+
+def _time(trial: StoredTrial) -> float | None:
+    return trial.record.completion_time_s
+
+
+def _trueTre(trial: StoredTrial) -> float | None:
+    return trial.true_tre_mm
+
+
+_COMPARED = (
+    (_("Score"), "/ 100", 1, _score),
+    (_("Completion time"), "s", -1, _time),
+    (_("True TRE"), "mm", -1, _trueTre),
+)
+"""What is compared: title, unit, 1 where more is better and −1 where less is, and its reading."""
