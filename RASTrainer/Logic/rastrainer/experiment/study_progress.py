@@ -191,7 +191,10 @@ def _place(connection: sqlite3.Connection, pseudonym: str) -> int | None:
     return None if row is None else row[0]
 
 
-def _check_trial(connection: sqlite3.Connection, pseudonym: str, step: Step, trial_id: str) -> None:
+def _check_trial(
+    connection: sqlite3.Connection, pseudonym: str, progress: Progress, trial_id: str
+) -> None:
+    step = progress.next_step
     record = study_trials.find_record(connection, trial_id)
     if (record.trainee, record.mode, record.task) != (pseudonym, step.mode, step.task):
         raise InputError(
