@@ -4,14 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
-STARTS = 20
+STARTS = 10
 MOST_ROUNDS = 100
 
 
 def k_means(points: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Return the cluster of each of (n, m) points, (n,) int; the best of several starts (Lloyd)."""
-    results = [_one_run(points, count, random) for _ in range(STARTS)]
-    return min(results, key=lambda result: result[1])[0]
+    """Return the cluster of each of (n, m) points, (n,) int (Lloyd 1982).
+
+    The best of several starts, which run side by side; a cluster that loses its last point keeps
+    its center.
+    """
+    centers = _spread_out(points, count, random)
+    labels = np.full((STARTS, len(points)), -1)
+    for _ in range(MOST_ROUNDS):
+        squared = ((points[None, :, None] - centers[:, None]) ** 2).sum(axis=3)
+        new = squared.argmin(axis=2)
+        if np.array_equal(new, labels):
+            break
+        labels = new
+        belongs = (labels[:, :, None] == np.arange(count)).astype(float)
+        sizes = belongs.sum(axis=1)[:, :, None]
+        sums = np.einsum("snk,nm->skm", belongs, points)
+        centers = np.where(sizes > 0, sums / np.maximum(sizes, 1), centers)
+    return labels[squared.min(axis=2).sum(axis=1).argmin()]
 
 
 def silhouettes(points: np.ndarray, labels: np.ndarray) -> np.ndarray:
@@ -53,29 +68,17 @@ def stability(
     return found.mean(axis=0)
 
 
-def _one_run(
-    points: np.ndarray, count: int, random: np.random.Generator
-) -> tuple[np.ndarray, float]:
-    centers = _spread_out(points, count, random)
-    labels = np.full(len(points), -1)
-    for _ in range(MOST_ROUNDS):
-        squared = ((points[:, None] - centers[None]) ** 2).sum(axis=2)
-        new = squared.argmin(axis=1)
-        if np.array_equal(new, labels):
-            break
-        labels = new
-        for cluster in range(count):
-            if np.any(labels == cluster):
-                centers[cluster] = points[labels == cluster].mean(axis=0)
-    return labels, float(squared[np.arange(len(points)), labels].sum())
-
-
 def _spread_out(points: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Return starting centers far from each other (k-means++, Arthur and Vassilvitskii 2007)."""
-    centers = [points[random.integers(len(points))]]
-    while len(centers) < count:
-        squared = ((points[:, None] - np.array(centers)[None]) ** 2).sum(axis=2).min(axis=1)
-        total = squared.sum()
-        chances = squared / total if total > 0 else None
-        centers.append(points[random.choice(len(points), p=chances)])
-    return np.array(centers)
+    """Return starting centers far from each other (k-means++, Arthur and Vassilvitskii 2007).
+
+    Shape (starts, count, m).
+    """
+    centers = points[random.integers(0, len(points), (STARTS, 1))]
+    while centers.shape[1] < count:
+        squared = ((points[None, :, None] - centers[:, None]) ** 2).sum(axis=3).min(axis=2)
+        # Points that lie on a center already have no chance, unless all do.
+        chances = np.cumsum(squared + 1e-300, axis=1)
+        drawn = random.random(STARTS)[:, None] * chances[:, -1:]
+        chosen = (chances < drawn).sum(axis=1)
+        centers = np.concatenate([centers, points[chosen][:, None]], axis=1)
+    return centers
