@@ -9,26 +9,12 @@ from typing import Any
 
 from PySide6 import QtCore, QtGui, QtWidgets
 
+from Testing.slicer.host.checked import Checked
 from Testing.slicer.host.members import FACTS
 from Testing.slicer.host.proxy import wrap
 from Testing.slicer.host.values import from_qt
 
 NAME = "3D Slicer of the tests"
-
-
-class Checked:
-    """Refuses what the measured object of Slicer does not have.
-
-    What Slicer has and the host does not offer is another error: it can be added here.
-    """
-
-    measured: frozenset[str]
-    title: str
-
-    def __getattr__(self, name: str) -> Any:
-        if name not in self.measured:
-            raise AttributeError(f"Slicer's {self.title} has no {name}.")
-        raise NotImplementedError(f"{self.title} has {name}, but the host does not offer it yet.")
 
 
 class Application(Checked):

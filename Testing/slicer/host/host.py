@@ -10,15 +10,16 @@ from pathlib import Path
 from typing import Any
 
 import slicer
-from PySide6 import QtCore, QtTest, QtWidgets
+from PySide6 import QtCore, QtGui, QtTest, QtWidgets
 
 from rastrainer.slicer.headless_command import HeadlessCommand
 from rastrainer.slicer.headless_connector import HeadlessConnector
-from Testing.slicer.host import appearance
+from Testing.slicer.host import appearance, pictures
 from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application
 from Testing.slicer.host.failures import FAILURES
 from Testing.slicer.host.installation import Installation
+from Testing.slicer.host.layout import LayoutManager
 from Testing.slicer.host.proxy import wrap
 from Testing.slicer.host.qt_module import class_named
 from Testing.slicer.host.scene import ApplicationScene
@@ -51,7 +52,8 @@ class Host:
         self._installation.add_modules()
         self._installation.set("mrmlScene", self.scene)
         logic = self._application_scene.applicationLogic
-        self._installation.set("app", Application(folder, logic, None))
+        self._layout = LayoutManager(self.scene, logic)
+        self._installation.set("app", Application(folder, logic, self._layout))
         if connector:
             self._installation.set("vtkMRMLIGTLConnectorNode", HeadlessConnector)
             self._installation.set("vtkSlicerOpenIGTLinkCommand", HeadlessCommand)
@@ -121,6 +123,7 @@ class Host:
                 self.process_events()
         finally:
             self._timer.stop()
+            self._layout.close()
             self._main_window._qt.deleteLater()
             self.process_events()
             sys.excepthook = self._excepthook
@@ -213,12 +216,21 @@ class Host:
 
     def screenshot(self, path: Path, name: str | None = None, width: int = 430) -> None:
         """Save a picture of the whole panel, or of one widget in it."""
-        self._frame._qt.resize(width, max(self._frame._qt.sizeHint().height(), 100))
-        self.process_events()
+        self._fit(width)
         widget = self._frame._qt if name is None else self.find(name)._qt
-        path.parent.mkdir(parents=True, exist_ok=True)
-        if not widget.grab().save(str(path)):
-            raise AssertionError(f"The picture {path} cannot be written.")
+        _save(widget.grab(), path)
+
+    def window_screenshot(self, path: Path, width: int = 430, views: tuple = (420, 330)) -> None:
+        """Save a picture of Slicer's window: the panel, the 3D view and the slices."""
+        self._fit(width)
+        _save(pictures.window(self._frame._qt, self._layout, views), path)
+
+    def _fit(self, width: int) -> None:
+        frame = self._frame._qt
+        frame.resize(width, max(frame.layout().totalHeightForWidth(width), 100))
+        self.process_events()
+        frame.resize(width, max(frame.layout().totalHeightForWidth(width), 100))
+        self.process_events()
 
     def _usable(self, name: str) -> Any:
         widget = self.find(name)._qt
@@ -246,6 +258,12 @@ class Host:
     def _note(self, _kind: type, exception: BaseException, trace: Any) -> None:
         """VTK and Qt hand what Python raised in their callbacks to this hook."""
         FAILURES.catch(exception.with_traceback(trace))
+
+
+def _save(picture: QtGui.QPixmap, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not picture.save(str(path)):
+        raise AssertionError(f"The picture {path} cannot be written.")
 
 
 def _where_to_press(button: QtWidgets.QWidget) -> QtCore.QPoint:

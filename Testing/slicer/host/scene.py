@@ -6,18 +6,16 @@ from typing import Any
 
 import slicer
 
-LOGICS = (
-    "vtkSlicerMarkupsLogic",
-    "vtkSlicerModelsLogic",
-    "vtkSlicerVolumesLogic",
-    "vtkSlicerTransformLogic",
-    "vtkSlicerTablesLogic",
-    "vtkSlicerPlotsLogic",
-    "vtkSlicerTextsLogic",
-    "vtkMRMLColorLogic",
-    "vtkSlicerSubjectHierarchyModuleLogic",
-    "vtkSlicerSequencesLogic",
-)
+MODULE_LOGICS = {
+    "Markups": "vtkSlicerMarkupsLogic",
+    "Models": "vtkSlicerModelsLogic",
+    "Volumes": "vtkSlicerVolumesLogic",
+    "Transforms": "vtkSlicerTransformLogic",
+    "Tables": "vtkSlicerTablesLogic",
+    "Plots": "vtkSlicerPlotsLogic",
+    "Texts": "vtkSlicerTextsLogic",
+    "SubjectHierarchy": "vtkSlicerSubjectHierarchyModuleLogic",
+}
 
 
 class ApplicationScene:
@@ -32,11 +30,14 @@ class ApplicationScene:
         self.scene = slicer.vtkMRMLScene()
         self.applicationLogic = slicer.vtkSlicerApplicationLogic()
         self.applicationLogic.SetMRMLScene(self.scene)
-        self._logics: list[Any] = []
-        for name in LOGICS:
-            if not hasattr(slicer, name):
-                continue
-            logic = getattr(slicer, name)()
-            logic.SetMRMLApplicationLogic(self.applicationLogic)
-            logic.SetMRMLScene(self.scene)
-            self._logics.append(logic)
+        # Without its colors a scene has no tables of them; Slicer's own module reads files, too.
+        self._colorLogic = slicer.vtkMRMLColorLogic()
+        self._colorLogic.SetMRMLScene(self.scene)
+        self._logics: list[Any] = [self._prepared(*item) for item in MODULE_LOGICS.items()]
+
+    def _prepared(self, module: str, class_name: str) -> Any:
+        logic = getattr(slicer, class_name)()
+        logic.SetMRMLApplicationLogic(self.applicationLogic)
+        self.applicationLogic.SetModuleLogic(module, logic)
+        logic.SetMRMLScene(self.scene)
+        return logic

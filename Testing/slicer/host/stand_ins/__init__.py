@@ -29,6 +29,7 @@ from Testing.slicer.host.stand_ins.mrml_widgets import (
     qSlicerScriptedLoadableModuleWidget,
 )
 from Testing.slicer.host.stand_ins.node_combo_box import qMRMLNodeComboBox
+from Testing.slicer.host.stand_ins.plot_view import qMRMLPlotView, qMRMLPlotWidget
 from Testing.slicer.host.stand_ins.ui_loader import QUiLoader
 
 __all__ = [
@@ -47,6 +48,8 @@ __all__ = [
     "ctkPushButton",
     "ctkSliderWidget",
     "qMRMLNodeComboBox",
+    "qMRMLPlotView",
+    "qMRMLPlotWidget",
     "qMRMLTableView",
     "qMRMLWidget",
     "qSlicerMainWindow",

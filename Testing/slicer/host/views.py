@@ -1,0 +1,125 @@
+"""The 3D view and the slice views of Slicer's layout, drawn without a screen.
+
+They are drawn by Slicer's own displayable managers, so that a picture shows what Slicer shows.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import slicer
+import vtk
+from PySide6 import QtGui
+from vtk.util.numpy_support import vtk_to_numpy
+
+THREE_D_MANAGERS = (
+    "vtkMRMLCameraDisplayableManager",
+    "vtkMRMLViewDisplayableManager",
+    "vtkMRMLModelDisplayableManager",
+    "vtkMRMLMarkupsDisplayableManager",
+)
+SLICE_MANAGERS = ("vtkMRMLModelSliceDisplayableManager", "vtkMRMLMarkupsDisplayableManager")
+SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
+SLICE_COLORS = {
+    "Red": (0.95, 0.29, 0.20),
+    "Green": (0.43, 0.72, 0.29),
+    "Yellow": (0.93, 0.84, 0.30),
+}
+
+
+class View:
+    """A render window without a screen, and the managers that fill it."""
+
+    def __init__(self, factory: Any, managers: tuple[str, ...], logic: Any, node: Any) -> None:
+        self.node = node
+        self.renderer = vtk.vtkRenderer()
+        self.window = vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(1)
+        self.window.AddRenderer(self.renderer)
+        self._interactor = vtk.vtkGenericRenderWindowInteractor()
+        self._interactor.SetRenderWindow(self.window)
+        factory.SetMRMLApplicationLogic(logic)
+        for name in managers:
+            if not factory.IsDisplayableManagerRegistered(name):
+                factory.RegisterDisplayableManager(name)
+        self._group = factory.InstantiateDisplayableManagers(self.renderer)
+        self._group.SetMRMLDisplayableNode(node)
+
+    def picture(self, width: int, height: int) -> QtGui.QImage:
+        """Return what the view shows."""
+        self.window.SetSize(width, height)
+        # The labels of markups find their places in the second one.
+        self.window.Render()
+        self.window.Render()
+        reader = vtk.vtkWindowToImageFilter()
+        reader.SetInput(self.window)
+        reader.ReadFrontBufferOff()
+        reader.Update()
+        colors = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+        rows = np.ascontiguousarray(colors.reshape(height, width, -1)[::-1, :, :3])
+        image = QtGui.QImage(rows.data, width, height, 3 * width, QtGui.QImage.Format.Format_RGB888)
+        return image.copy()
+
+    def close(self) -> None:
+        """Let go of the scene."""
+        self._group.SetMRMLDisplayableNode(None)
+        self.window.Finalize()
+
+
+class ThreeDView(View):
+    """The 3D view."""
+
+    def __init__(self, scene: Any, logic: Any) -> None:
+        node = scene.GetSingletonNode("1", "vtkMRMLViewNode")
+        if node is None:
+            node = slicer.vtkMRMLViewNode()
+            node.SetSingletonTag("1")
+            node.SetLayoutName("1")
+            node.SetName("View1")
+            node = scene.AddNode(node)
+        factory = slicer.vtkMRMLThreeDViewDisplayableManagerFactory.GetInstance()
+        super().__init__(factory, THREE_D_MANAGERS, logic, node)
+
+    def camera_node(self) -> Any:
+        """Return the camera of the view."""
+        manager = self._group.GetDisplayableManagerByClassName("vtkMRMLCameraDisplayableManager")
+        return manager.GetCameraNode()
+
+    def look_at_everything(self) -> None:
+        """Move the camera so that all visible models are in the picture."""
+        self.renderer.ResetCamera()
+        self.renderer.ResetCameraClippingRange()
+
+
+class SliceView(View):
+    """One of the slice views."""
+
+    def __init__(self, scene: Any, logic: Any, name: str) -> None:
+        self.logic = slicer.vtkMRMLSliceLogic()
+        self.logic.SetMRMLApplicationLogic(logic)
+        self.logic.SetMRMLScene(scene)
+        node = self.logic.AddSliceNode(name)
+        node.SetOrientation(SLICES[name])
+        node.SetLayoutColor(*SLICE_COLORS[name])
+        factory = slicer.vtkMRMLSliceViewDisplayableManagerFactory.GetInstance()
+        super().__init__(factory, SLICE_MANAGERS, logic, node)
+        self._mapper = vtk.vtkImageMapper()
+        self._mapper.SetColorWindow(255)
+        self._mapper.SetColorLevel(127.5)
+        self._actor = vtk.vtkActor2D()
+        self._actor.SetMapper(self._mapper)
+        self._actor.GetProperty().SetDisplayLocationToBackground()
+
+    def picture(self, width: int, height: int) -> QtGui.QImage:
+        """Return what the view shows: the slice, and what lies in it."""
+        self.logic.ResizeSliceNode(width, height)
+        self.logic.FitSliceToAll(width, height)
+        self.logic.UpdatePipeline()
+        connection = self.logic.GetImageDataConnection()
+        if connection is None:
+            self.renderer.RemoveViewProp(self._actor)
+        else:
+            self._mapper.SetInputConnection(connection)
+            self.renderer.AddViewProp(self._actor)
+        return super().picture(width, height)
