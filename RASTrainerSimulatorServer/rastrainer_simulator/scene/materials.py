@@ -43,6 +43,7 @@ NEXT = Material("next", (1.0, 0.80, 0.05), glowing=True)
 TOUCHED = Material("touched", (0.10, 0.62, 0.25), glowing=True)
 MARK_RIM = Material("rim", (0.97, 0.97, 0.97), glowing=True)
 NUMBER = Material("number", (0.07, 0.09, 0.16), glowing=True)
+ARROW = Material("arrow", (0.16, 0.22, 0.38), glowing=True)
 
 
 def painted(color: Sequence[float]) -> Material:

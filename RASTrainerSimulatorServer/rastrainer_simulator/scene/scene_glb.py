@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_mesh import HeadMesh, read_head_mesh
 from rastrainer.scenario import Scenario
 from rastrainer.tasks import Task
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.scene.glb import to_glb
 from rastrainer_simulator.scene.head_nodes import head_node
+from rastrainer_simulator.scene.nodes import Node
 from rastrainer_simulator.scene.robot_nodes import robot_nodes
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node
 
@@ -18,11 +19,20 @@ def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes
     Raises:
         InputError: a mesh cannot be read.
     """
-    head = read_head_mesh(scenario.head_mesh)
-    nodes = [
+    return to_glb(scene_nodes(scenario, robot, read_head_mesh(scenario.head_mesh), task))
+
+
+def scene_nodes(
+    scenario: Scenario, robot: RobotModel, head: HeadMesh, task: Task | None
+) -> list[Node]:
+    """Return what stands in World; what moves has its place from the simulation's state.
+
+    Raises:
+        InputError: a mesh cannot be read.
+    """
+    return [
         *robot_nodes(robot),
         head_node(head, task),
-        stand_node(scenario.furniture, 0.15),
+        stand_node(scenario.furniture),
         *room_nodes(scenario.furniture),
     ]
-    return to_glb(nodes)
