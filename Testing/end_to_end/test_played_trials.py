@@ -1,0 +1,87 @@
+"""A hundred whole trials, played, recorded and replayed: what the trainee is told of them holds."""
+
+from __future__ import annotations
+
+import multiprocessing
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.journal.journal_reader import read_journal
+from rastrainer.registration import register
+from rastrainer.scripted_trainee import Skill
+from rastrainer.target_error import target_error
+from rastrainer_simulator.record.replay import ReplayReport, replay
+from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
+from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.setup import SimulationSetup, load_setup
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.virtual_trial import VirtualTrial, play_virtual_trial
+
+BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
+STEP_S = 0.05
+SEEDS = range(100)
+
+
+class Played(NamedTuple):
+    """What one trial showed."""
+
+    is_within_interval: bool
+    difference: str | None
+    compared_touches: int
+    compared_postures: int
+
+
+def played_trials(seeds: list[int]) -> list[Played]:
+    setup = load_setup()
+    simulation = Simulation(setup, seed=0)
+    with tempfile.TemporaryDirectory() as folder:
+        return [play(simulation, setup, seed, Path(folder)) for seed in seeds]
+
+
+def play(simulation: Simulation, setup: SimulationSetup, seed: int, folder: Path) -> Played:
+    with ThreadPoolExecutor(max_workers=1) as writer:
+        recorder = TrialRecorder(folder, TrialArchive(folder), writer, STEP_S)
+        trial = play_virtual_trial(simulation, "task-1", seed, BRISK, STEP_S, recorder.record)
+        recorder.stop(simulation.state)
+    (journal,) = folder.glob(f"*{SUFFIX}")
+    report = replay(read_journal(journal), setup)
+    journal.unlink()
+    return Played(is_within_interval(trial, setup), report.difference, *compared(report))
+
+
+def is_within_interval(trial: VirtualTrial, setup: SimulationSetup) -> bool:
+    target = setup.scenario.target_position
+    registration = register(trial.touches_mm, trial.fiducials_mm)
+    there_and_back = transforms.apply(registration.matrix @ trial.head_to_world, target[None])
+    true_tre_mm = np.linalg.norm(there_and_back[0] - target)
+    low, high = target_error(registration, target).interval_mm
+    return bool(low <= true_tre_mm <= high)
+
+
+def compared(report: ReplayReport) -> tuple[int, int]:
+    return report.compared["touch"], report.ticks
+
+
+@pytest.fixture(scope="module")
+def played() -> list[Played]:
+    halves = [list(SEEDS[0::2]), list(SEEDS[1::2])]
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        first, second = pool.map(played_trials, halves)
+    return first + second
+
+
+def test_true_target_error_lies_in_the_reported_interval_in_at_least_90_of_100_trials(played):
+    assert len(played) == 100
+    assert sum(trial.is_within_interval for trial in played) >= 90
+
+
+def test_100_recorded_trials_replay_to_the_same_joints_and_touches_to_the_last_bit(played):
+    assert [trial.difference for trial in played] == [None] * 100
+    assert all(trial.compared_touches >= 15 for trial in played)
+    assert all(trial.compared_postures > 100 for trial in played)
