@@ -50,3 +50,13 @@ def test_host_and_port_are_saved_with_the_scene(host):
 def test_the_connection_outlives_a_cleared_scene(host, simulator):
     host.clear_scene()
     host.wait_until(lambda: len(simulator.commands) > 1, "the module says hello again")
+
+
+@pytest.mark.usefixtures("connected")
+def test_any_node_may_be_deleted_while_connected(host):
+    host.delete_nodes()
+    host.wait_until(lambda: host.text("stateText").startswith("Connected"), "it is connected again")
+
+
+def test_the_self_tests_pass(host):
+    host.run_self_tests()

@@ -38,9 +38,20 @@ class Host:
     """
 
     def __init__(
-        self, folder: Path, module_file: Path = MODULE_FILE, connector: bool = True
+        self,
+        folder: Path,
+        module_file: Path = MODULE_FILE,
+        connector: bool = True,
+        window: bool = True,
     ) -> None:
-        """`connector` tells whether the extension SlicerOpenIGTLink is installed."""
+        """Start Slicer.
+
+        Args:
+            folder: for settings, temporary files and Slicer's own folder.
+            module_file: of the module.
+            connector: whether the extension SlicerOpenIGTLink is installed.
+            window: False is Slicer without a main window, as in its generic tests.
+        """
         appearance.application()
         ANSWERS.clear()
         FAILURES.texts.clear()
@@ -53,11 +64,12 @@ class Host:
         self._installation.set("mrmlScene", self.scene)
         logic = self._application_scene.applicationLogic
         self._layout = LayoutManager(self.scene, logic)
-        self._installation.set("app", Application(folder, logic, self._layout))
+        layout = self._layout if window else None
+        self._installation.set("app", Application(folder, logic, layout))
         if connector:
             self._installation.set("vtkMRMLIGTLConnectorNode", HeadlessConnector)
             self._installation.set("vtkSlicerOpenIGTLinkCommand", HeadlessCommand)
-        self._main_window = class_named("qSlicerMainWindow")()
+        self._main_window = class_named("qSlicerMainWindow")() if window else None
         self._excepthook, sys.excepthook = sys.excepthook, self._note
         # As the module OpenIGTLinkIF does.
         self._timer = QtCore.QTimer()
@@ -110,6 +122,20 @@ class Host:
         self.scene.Clear(0)
         self.process_events()
 
+    def delete_nodes(self) -> None:
+        """Delete each node that the user could delete, one after the other, as in module Data."""
+        ids = [self.scene.GetNthNode(i).GetID() for i in range(self.scene.GetNumberOfNodes())]
+        for node_id in ids:
+            node = self.scene.GetNodeByID(node_id)
+            if node is not None and node.GetSingletonTag() is None:
+                self.scene.RemoveNode(node)
+                self.let_pass(0.12)
+
+    def run_self_tests(self) -> None:
+        """Run the module's self tests, as the button Reload and Test does."""
+        module = sys.modules[self._module_name]
+        getattr(module, f"{self._module_name}Test")().runTest()
+
     def close(self) -> None:
         """Quit Slicer."""
         try:
@@ -124,7 +150,8 @@ class Host:
         finally:
             self._timer.stop()
             self._layout.close()
-            self._main_window._qt.deleteLater()
+            if self._main_window is not None:
+                self._main_window._qt.deleteLater()
             self.process_events()
             sys.excepthook = self._excepthook
             sys.modules.pop(self._module_name, None)
@@ -208,6 +235,13 @@ class Host:
             if time.monotonic() > deadline:
                 raise AssertionError(f"In {timeout_s} s it did not happen: {what}.")
             time.sleep(0.002)
+
+    def let_pass(self, seconds: float) -> None:
+        """Let some time pass, as a user does who waits."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.process_events()
+            time.sleep(0.005)
 
     def process_events(self) -> None:
         """Let Qt do what is due."""

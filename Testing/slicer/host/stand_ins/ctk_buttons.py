@@ -1,8 +1,45 @@
-"""CTK's buttons."""
+"""CTK's buttons, and what can be collapsed."""
 
 from __future__ import annotations
 
 from PySide6 import QtCore, QtGui, QtWidgets
+
+Style = QtWidgets.QStyle
+MARGIN = 4
+WITHOUT_LIMIT = 16777215
+
+
+class Folding:
+    """Hides the children of a widget, also those that come while it is collapsed."""
+
+    def __init__(self, widget: QtWidgets.QWidget) -> None:
+        self._widget = widget
+        self._hidden: list[QtWidgets.QWidget] = []
+        self.is_collapsed = False
+
+    def fold(self, is_collapsed: bool) -> None:
+        """Hide the children, or show again those that were shown before."""
+        self.is_collapsed = is_collapsed
+        if is_collapsed:
+            self.hide_children()
+            return
+        for child in self._hidden:
+            child.show()
+        self._hidden = []
+
+    def hide_children(self) -> None:
+        """Hide those children that are not hidden yet."""
+        direct = QtCore.Qt.FindChildOption.FindDirectChildrenOnly
+        for child in self._widget.findChildren(QtWidgets.QWidget, options=direct):
+            if not child.isHidden():
+                child.hide()
+                self._hidden.append(child)
+
+    def heed(self, event: QtCore.QEvent) -> None:
+        """Hide a child that has just come."""
+        kinds = (QtCore.QEvent.Type.ChildPolished, QtCore.QEvent.Type.LayoutRequest)
+        if self.is_collapsed and event.type() in kinds:
+            self.hide_children()
 
 
 class ctkCollapsibleButton(QtWidgets.QAbstractButton):
@@ -12,51 +49,47 @@ class ctkCollapsibleButton(QtWidgets.QAbstractButton):
 
     def __init__(self, *arguments: object) -> None:
         super().__init__(*(item for item in arguments if isinstance(item, QtWidgets.QWidget)))
-        self._isCollapsed = False
-        self._hidden: list[QtWidgets.QWidget] = []
+        self._folding = Folding(self)
         for text in arguments:
             if isinstance(text, str):
                 self.setText(text)
         self.setCheckable(True)
         self.setChecked(True)
         self.toggled.connect(lambda isOpen: self.setCollapsed(not isOpen))
-        self.setSizePolicy(
-            QtWidgets.QSizePolicy.Policy.Preferred, QtWidgets.QSizePolicy.Policy.Preferred
-        )
+        policy = QtWidgets.QSizePolicy.Policy.Preferred
+        self.setSizePolicy(policy, policy)
         self.setContentsMargins(0, self._header_height(), 0, 0)
 
     def isCollapsed(self) -> bool:
-        return self._isCollapsed
+        return self._folding.is_collapsed
 
     def setCollapsed(self, collapsed: bool) -> None:
-        if collapsed == self._isCollapsed:
+        if collapsed == self.isCollapsed():
             return
-        self._isCollapsed = collapsed
+        self._folding.fold(collapsed)
         self.setChecked(not collapsed)
-        children = self.findChildren(
-            QtWidgets.QWidget, options=QtCore.Qt.FindChildOption.FindDirectChildrenOnly
-        )
-        if collapsed:
-            self._hidden = [child for child in children if not child.isHidden()]
-        for child in self._hidden:
-            child.setVisible(not collapsed)
-        self.setMaximumHeight(self._header_height() + 4 if collapsed else 16777215)
+        self.setMaximumHeight(self._header_height() if collapsed else WITHOUT_LIMIT)
         self.updateGeometry()
         self.contentsCollapsed.emit(collapsed)
 
     collapsed = QtCore.Property(bool, isCollapsed, setCollapsed)
 
+    def event(self, event: QtCore.QEvent) -> bool:
+        self._folding.heed(event)
+        return super().event(event)
+
     def sizeHint(self) -> QtCore.QSize:
-        inner = self.layout().sizeHint() if self.layout() and not self._isCollapsed else None
-        width = self.fontMetrics().horizontalAdvance(self.text()) + 40
-        if inner is None:
-            return QtCore.QSize(width, self._header_height() + 4)
-        return QtCore.QSize(max(width, inner.width()), inner.height())
+        header = QtCore.QSize(
+            self.fontMetrics().horizontalAdvance(self.text()) + 40, self._header_height()
+        )
+        if self.layout() is None or self.isCollapsed():
+            return header
+        return self.layout().totalSizeHint().expandedTo(header)
 
     def minimumSizeHint(self) -> QtCore.QSize:
-        if self.layout() is None or self._isCollapsed:
+        if self.layout() is None or self.isCollapsed():
             return self.sizeHint()
-        return self.layout().minimumSize()
+        return self.layout().totalMinimumSize()
 
     def hitButton(self, position: QtCore.QPoint) -> bool:
         return position.y() < self._header_height()
@@ -67,50 +100,78 @@ class ctkCollapsibleButton(QtWidgets.QAbstractButton):
         option = QtWidgets.QStyleOptionButton()
         option.initFrom(self)
         option.rect = header
-        painter.drawControl(QtWidgets.QStyle.ControlElement.CE_PushButtonBevel, option)
-        arrow = QtWidgets.QStyleOption()
-        arrow.initFrom(self)
-        arrow.rect = QtCore.QRect(6, 0, 12, header.height())
-        painter.drawPrimitive(
-            QtWidgets.QStyle.PrimitiveElement.PE_IndicatorArrowRight
-            if self._isCollapsed
-            else QtWidgets.QStyle.PrimitiveElement.PE_IndicatorArrowDown,
-            arrow,
-        )
-        painter.drawText(
-            header.adjusted(24, 0, -4, 0), QtCore.Qt.AlignmentFlag.AlignVCenter, self.text()
-        )
+        painter.drawControl(Style.ControlElement.CE_PushButtonBevel, option)
+        _draw_arrow(self, painter, QtCore.QRect(6, 0, 12, header.height()), self.isCollapsed())
+        place = header.adjusted(24, 0, -MARGIN, 0)
+        painter.drawText(place, QtCore.Qt.AlignmentFlag.AlignVCenter, self.text())
 
     def _header_height(self) -> int:
-        return self.fontMetrics().height() + 8
+        return self.fontMetrics().height() + 2 * MARGIN
 
 
 class ctkCollapsibleGroupBox(QtWidgets.QGroupBox):
-    """A group box whose title hides its contents."""
+    """A group box whose title hides its contents; it is checked while it is open."""
 
     def __init__(self, *arguments: object) -> None:
         super().__init__(*arguments)
-        self._isCollapsed = False
-        self._hidden: list[QtWidgets.QWidget] = []
+        self._folding = Folding(self)
+        self.setCheckable(True)
+        self.setChecked(True)
+        self.toggled.connect(lambda isOpen: self.setCollapsed(not isOpen))
 
     def isCollapsed(self) -> bool:
-        return self._isCollapsed
+        return self._folding.is_collapsed
 
     def setCollapsed(self, collapsed: bool) -> None:
-        if collapsed == self._isCollapsed:
+        if collapsed == self.isCollapsed():
             return
-        self._isCollapsed = collapsed
-        children = self.findChildren(
-            QtWidgets.QWidget, options=QtCore.Qt.FindChildOption.FindDirectChildrenOnly
-        )
-        if collapsed:
-            self._hidden = [child for child in children if not child.isHidden()]
-        for child in self._hidden:
-            child.setVisible(not collapsed)
+        self._folding.fold(collapsed)
+        self.setChecked(not collapsed)
+        self.setMaximumHeight(self._title_height() if collapsed else WITHOUT_LIMIT)
         self.updateGeometry()
 
     collapsed = QtCore.Property(bool, isCollapsed, setCollapsed)
 
+    def event(self, event: QtCore.QEvent) -> bool:
+        self._folding.heed(event)
+        return super().event(event)
+
+    def minimumSizeHint(self) -> QtCore.QSize:
+        hint = super().minimumSizeHint()
+        return QtCore.QSize(hint.width(), self._title_height()) if self.isCollapsed() else hint
+
+    def paintEvent(self, _event: QtGui.QPaintEvent) -> None:
+        painter = QtWidgets.QStylePainter(self)
+        option = QtWidgets.QStyleOptionGroupBox()
+        self.initStyleOption(option)
+        kind, parts = Style.ComplexControl.CC_GroupBox, Style.SubControl
+        arrow, label = (
+            self.style().subControlRect(kind, option, part, self)
+            for part in (parts.SC_GroupBoxCheckBox, parts.SC_GroupBoxLabel)
+        )
+        if not self.isCollapsed():
+            option.subControls = parts.SC_GroupBoxFrame
+            painter.drawComplexControl(kind, option)
+        _draw_arrow(self, painter, arrow, self.isCollapsed())
+        painter.drawText(label, QtCore.Qt.AlignmentFlag.AlignVCenter, self.title())
+
+    def _title_height(self) -> int:
+        return self.fontMetrics().height() + MARGIN
+
 
 class ctkPushButton(QtWidgets.QPushButton):
     """A push button."""
+
+
+def _draw_arrow(
+    widget: QtWidgets.QWidget,
+    painter: QtWidgets.QStylePainter,
+    place: QtCore.QRect,
+    is_collapsed: bool,
+) -> None:
+    option = QtWidgets.QStyleOption()
+    option.initFrom(widget)
+    option.rect = place
+    kinds = Style.PrimitiveElement
+    kind = kinds.PE_IndicatorArrowRight if is_collapsed else kinds.PE_IndicatorArrowDown
+    painter.drawPrimitive(kind, option)

@@ -21,13 +21,15 @@ class ctkComboBox(QtWidgets.QComboBox):
 class ctkPathLineEdit(QtWidgets.QWidget):
     """A line for a path, and a button to browse for one."""
 
+    Dirs, Files, Drives, NoSymLinks, Readable, Writable, Executable = (1 << n for n in range(7))
+
     currentPathChanged = QtCore.Signal(str)
     validInputChanged = QtCore.Signal(bool)
 
     def __init__(self, parent: QtWidgets.QWidget | None = None) -> None:
         super().__init__(parent)
         self._edit = QtWidgets.QLineEdit()
-        self._filters = 0x001 | 0x002 | 0x004
+        self._filters = self.Dirs | self.Files | self.Drives
         self._nameFilters: list[str] = []
         button = QtWidgets.QToolButton()
         button.setText("…")
@@ -39,7 +41,9 @@ class ctkPathLineEdit(QtWidgets.QWidget):
         self._edit.textChanged.connect(self.currentPathChanged)
 
     def browse(self) -> None:
-        path = QFileDialog.getOpenFileName(self, "", self._edit.text())
+        isFolder = not self._filters & self.Files
+        choose = QFileDialog.getExistingDirectory if isFolder else QFileDialog.getOpenFileName
+        path = choose(self, self.objectName(), self._edit.text())
         if path:
             self._edit.setText(path)
 

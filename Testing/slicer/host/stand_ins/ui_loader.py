@@ -10,14 +10,26 @@ from Testing.slicer.host.members import members_of, module_of
 
 
 class QUiLoader(QtUiTools.QUiLoader):
-    """Makes the widgets of CTK and of Slicer, too."""
+    """Makes the widgets of CTK and of Slicer, too, and connects them."""
 
     def load(self, device: QtCore.QIODevice, parent: QtWidgets.QWidget | None = None) -> object:
-        tree = ElementTree.fromstring(bytes(device.readAll().data()))
-        for element in tree.iter("widget"):
+        root = ElementTree.fromstring(bytes(device.readAll().data()))
+        enumerations = {}
+        for element in root.iter("widget"):
             check_widget(element)
-        device.seek(0)
-        return super().load(device, parent)
+            enumerations |= _take_enumerations(element)
+        connections = [dict(_texts(item)) for item in root.iter("connection")]
+        for element in root.findall("connections"):
+            root.remove(element)
+        buffer = QtCore.QBuffer()
+        buffer.setData(ElementTree.tostring(root))
+        buffer.open(QtCore.QIODevice.OpenModeFlag.ReadOnly)
+        widget = super().load(buffer, parent)
+        for name, (key, value) in enumerations.items():
+            _named(widget, name).setProperty(key, value)
+        for connection in connections:
+            _connect(widget, connection)
+        return widget
 
     def createWidget(
         self, class_name: str, parent: QtWidgets.QWidget | None = None, name: str = ""
@@ -47,3 +59,42 @@ def check_widget(element: ElementTree.Element) -> None:
     for item in element.findall("property"):
         if item.get("stdset") != "0" and item.get("name") not in known:
             raise AttributeError(f"{name}: {class_name} has no property {item.get('name')}.")
+
+
+def _take_enumerations(element: ElementTree.Element) -> dict[str, tuple[str, int]]:
+    """Take the enumerations of CTK out of a widget: Qt cannot read those of Python's classes."""
+    from Testing.slicer.host import stand_ins
+
+    made = getattr(stand_ins, element.get("class"), None)
+    taken = {}
+    for item in element.findall("property"):
+        text = item.findtext("set") or item.findtext("enum") or ""
+        if text.startswith("ctk"):
+            flags = [getattr(made, flag.rpartition("::")[2]) for flag in text.split("|")]
+            taken[element.get("name")] = (item.get("name"), sum(flags))
+            element.remove(item)
+    return taken
+
+
+def _connect(widget: QtWidgets.QWidget, connection: dict[str, str]) -> None:
+    """Make one connection of the file.
+
+    Raises:
+        AttributeError: Slicer has no such signal or slot.
+    """
+    sender, receiver = (_named(widget, connection[end]) for end in ("sender", "receiver"))
+    signal, slot = connection["signal"], connection["slot"]
+    slot_name = slot.partition("(")[0]
+    if signal not in members_of(type(sender).__name__).signals:
+        raise AttributeError(f"{type(sender).__name__} has no signal {signal}.")
+    if slot_name not in members_of(type(receiver).__name__).methods:
+        raise AttributeError(f"{type(receiver).__name__} has no slot {slot}.")
+    getattr(sender, signal.partition("(")[0]).connect(getattr(receiver, slot_name))
+
+
+def _named(widget: QtWidgets.QWidget, name: str) -> QtWidgets.QWidget:
+    return widget if widget.objectName() == name else widget.findChild(QtCore.QObject, name)
+
+
+def _texts(element: ElementTree.Element) -> list[tuple[str, str]]:
+    return [(child.tag, child.text or "") for child in element if child.tag != "hints"]
