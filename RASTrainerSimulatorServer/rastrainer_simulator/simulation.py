@@ -35,8 +35,8 @@ from rastrainer_simulator.state import (
 )
 from rastrainer_simulator.teleoperation.commanded_motion import Outcome
 from rastrainer_simulator.teleoperation.teleoperation import Teleoperation, Wish
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import refusal
-from rastrainer_simulator.training.texts import Texts
 from rastrainer_simulator.training.training import Moment, Reply, Training
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector

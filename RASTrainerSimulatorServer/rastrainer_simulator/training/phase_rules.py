@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from rastrainer.protocol import FIDUCIAL_COUNT, CommandName, Phase
 from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.state import TrainingState
-from rastrainer_simulator.training.texts import Texts
+from rastrainer_simulator.texts.texts import Texts
 
 RECORDING_FAILED = "RecordingFailed"
 """By it the control loop takes back what could not be written; clients cannot send it."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rastrainer_simulator.training.texts import Texts
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.vectors import Vector, distance
 
 MM = 1000.0

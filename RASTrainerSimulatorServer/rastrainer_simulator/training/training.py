@@ -12,8 +12,8 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase
 from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.state import Event, EventKind, Touch, TrainingState, TrialResult
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, refusal
-from rastrainer_simulator.training.texts import Texts
 from rastrainer_simulator.training.touch_rule import MM, refused_touch
 from rastrainer_simulator.training.trial_clock import TrialClock
 from rastrainer_simulator.training.trial_seed import trial_id, trial_seed

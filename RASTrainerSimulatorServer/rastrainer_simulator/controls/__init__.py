@@ -1,0 +1,1 @@
+"""Gamepads, keys and headset controllers: what each input does, and who holds the control."""

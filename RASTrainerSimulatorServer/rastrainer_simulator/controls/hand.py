@@ -1,0 +1,127 @@
+"""One source's inputs, read as controls."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rastrainer_simulator.controls.bindings import Bindings
+from rastrainer_simulator.controls.control_name import ROTATION, TRANSLATION, ControlName
+from rastrainer_simulator.controls.inputs import Device
+from rastrainer_simulator.operator_input import OperatorInput
+
+DOWN_FROM = 0.6
+UP_BELOW = 0.4
+"""An input counts as pressed from the first on, and as released below the second."""
+AT_REST_BELOW = 0.1
+
+RAMP_START = 0.25
+RAMP_S = 0.25
+"""A key is a stick that is pushed a little at once and fully after so long."""
+
+_UNUSED = OperatorInput()
+
+
+class Hand:
+    """What a source is doing.
+
+    Keys are ramped, so that a tap moves the tip a little; they stop at once, as a released stick
+    does. What is held while the situation changes does nothing until it was let go: the arm must
+    not start because a menu closes.
+
+    Attributes:
+        device: whose bindings count.
+    """
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self._inputs: dict[str, float] = {}
+        self._down: set[str] = set()
+        self._blocked: set[str] = set()
+        self._sticks = _UNUSED
+        self._sticks_blocked = False
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether nothing is pressed or pushed."""
+        return not self._down and self._sticks == _UNUSED and not any(map(_is_pushed, self._values))
+
+    @property
+    def _values(self) -> tuple[float, ...]:
+        return tuple(self._inputs.values())
+
+    def is_down(self, name: str) -> bool:
+        """Whether an input is pressed."""
+        return name in self._down
+
+    def set_inputs(self, values: Mapping[str, float]) -> list[str]:
+        """Take all inputs of a gamepad, 0…1; return those that have just been pressed."""
+        self._inputs.update(values)
+        return self._pressed()
+
+    def set_key(self, code: str, is_down: bool) -> list[str]:
+        """Take a key; return it if it has just been pressed."""
+        if is_down:
+            self._inputs.setdefault(code, RAMP_START)
+            if code in self._down:
+                return []
+            self._down.add(code)
+            return [code]
+        self._inputs.pop(code, None)
+        self._down.discard(code)
+        self._blocked.discard(code)
+        return []
+
+    def set_sticks(self, sticks: OperatorInput) -> None:
+        """Take sticks that need no bindings, those of a headset."""
+        self._sticks = sticks
+        if max(map(abs, (*sticks.translation, *sticks.rotation))) < AT_REST_BELOW:
+            self._sticks_blocked = False
+
+    def block(self) -> None:
+        """Ignore what is held now until it is let go."""
+        self._blocked = {name for name, value in self._inputs.items() if _is_pushed(value)}
+        self._sticks_blocked = True
+
+    def advance(self, dt: float) -> None:
+        """Go on with the ramps of the keys for `dt` seconds."""
+        if self.device is Device.KEYBOARD:
+            for code, value in self._inputs.items():
+                self._inputs[code] = min(1.0, value + (1.0 - RAMP_START) * dt / RAMP_S)
+
+    def sticks(self, bindings: Bindings) -> OperatorInput:
+        """Return what the sticks and keys ask of the arm."""
+        table = bindings.table(self.device)
+
+        def value(control: ControlName) -> float:
+            names = (name for name in table[control] if name not in self._blocked)
+            return max((self._inputs.get(name, 0.0) for name in names), default=0.0)
+
+        translation = tuple(value(above) - value(below) for below, above in TRANSLATION)
+        rotation = tuple(value(above) - value(below) for below, above in ROTATION)
+        is_fine = any(self.is_down(name) for name in table[ControlName.FINE])
+        direct = _UNUSED if self._sticks_blocked else self._sticks
+        return OperatorInput(
+            translation=_joined(translation, direct.translation),
+            rotation=_joined(rotation, direct.rotation),
+            fine=is_fine or direct.fine,
+        )
+
+    def _pressed(self) -> list[str]:
+        pressed = []
+        for name, value in self._inputs.items():
+            if not _is_pushed(value):
+                self._blocked.discard(name)
+            if value >= DOWN_FROM and name not in self._down:
+                self._down.add(name)
+                pressed.append(name)
+            elif value < UP_BELOW:
+                self._down.discard(name)
+        return pressed
+
+
+def _is_pushed(value: float) -> bool:
+    return value >= AT_REST_BELOW
+
+
+def _joined(first: tuple[float, ...], second: tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(max(-1.0, min(1.0, a + b)) for a, b in zip(first, second, strict=True))

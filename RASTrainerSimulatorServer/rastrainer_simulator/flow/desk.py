@@ -1,0 +1,279 @@
+"""The operator's desk: controls, flow and feedback, as the views and the server see them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from rastrainer.protocol import Mode
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.controls.bindings import Bindings
+from rastrainer_simulator.controls.control_name import ControlName, Situation
+from rastrainer_simulator.controls.controls import Controls
+from rastrainer_simulator.controls.inputs import Device, w3c_gamepad_inputs
+from rastrainer_simulator.controls.source import SIMULATOR_SEAT, Source, SourceKind
+from rastrainer_simulator.flow.feedback import SENSATIONS, Happening
+from rastrainer_simulator.flow.flow import Flow
+from rastrainer_simulator.flow.preferences import Preferences
+from rastrainer_simulator.flow.screen import Message, Screen, Tone
+from rastrainer_simulator.flow.session import Session, Surroundings
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
+from rastrainer_simulator.state import StepResult
+from rastrainer_simulator.view_server.operator_desk import (
+    Control,
+    Feedback,
+    Frames,
+    Hello,
+    News,
+)
+
+REFRESH_S = 0.1
+"""How often a screen is made anew though nothing was pressed: its clock, distances and axes."""
+
+_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
+"""What a view's own buttons mean while a menu is open: those of a headset have no bindings."""
+
+
+class Rumbler(Protocol):
+    """What can vibrate."""
+
+    def __call__(self, strength: float, seconds: float) -> None:
+        """Vibrate with a strength of 0 to 1 for so many seconds."""
+
+
+class Desk:
+    """An `OperatorDesk` that a trainee sits at.
+
+    Everything but what the control loop calls belongs to one thread. `advance` is to be called
+    some hundred times a second; nothing here waits.
+    """
+
+    def __init__(
+        self,
+        control_loop: ControlLoop,
+        surroundings: Surroundings,
+        bindings: Bindings,
+        preferences: Preferences,
+    ) -> None:
+        self._control_loop = control_loop
+        self.controls = Controls(bindings, self)
+        self._session = Session(
+            control_loop, self.controls, surroundings, preferences, self.happened
+        )
+        self._flow = Flow(self._session, control_loop)
+        self.rumble: Rumbler = _nothing_vibrates
+        self._results: deque[StepResult] = deque()
+        self._listeners: tuple[Callable[[News], None], ...] = ()
+        self._views: dict[int, Hello] = {}
+        self._lasting: dict[str, Message] = {}
+        self._number = 0
+        self._told_sticks = HANDS_OFF
+        self._is_changed = True
+        self._since_refresh = 0.0
+        self.screen: Screen = self._flow.screen()
+        self.control = Control()
+        self._unsubscribe = control_loop.subscribe(self._take_tick)
+
+    def close(self) -> None:
+        """Let go of the sticks and of the control loop."""
+        self._unsubscribe()
+        self._control_loop.hold_sticks(HANDS_OFF)
+
+    def advance(self, dt: float) -> None:
+        """Go on for `dt` seconds."""
+        while self._results:
+            self._flow.take(self._results.popleft())
+            self._is_changed = True
+        self.controls.advance(dt)
+        self._flow.advance(dt, self._control_loop.latest)
+        self._settle()
+        self._since_refresh += dt
+        if self._is_changed or self._since_refresh >= REFRESH_S:
+            self._refresh()
+
+    def subscribe(self, listener: Callable[[News], None]) -> Callable[[], None]:
+        """Have `listener` called with each new screen, feedback and holder of the control."""
+        self._listeners = (*self._listeners, listener)
+
+        def unsubscribe() -> None:
+            self._listeners = tuple(each for each in self._listeners if each is not listener)
+
+        return unsubscribe
+
+    def view_joined(self, view: int, hello: Hello) -> None:
+        """Take note of a view; with a headset the next trial is one in a headset."""
+        self._views[view] = hello
+        if hello.kind == "headset":
+            self._session.mode = Mode.HMD.value
+
+    def view_left(self, view: int) -> None:
+        """Forget a view."""
+        self._views.pop(view, None)
+        for kind in SourceKind:
+            self.controls.forget(self._source(kind, view))
+        self._settle()
+
+    def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
+        """Take a key: what it types, where a text has the focus, or what it does."""
+        source = self._source(SourceKind.KEYBOARD, view)
+        if is_down and self._types(source, code, text):
+            self._is_changed = True
+            return
+        self.controls.set_key(source, code, is_down)
+        self._settle()
+
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        """Take a gamepad that a browser reads."""
+        source = self._source(SourceKind.BROWSER_GAMEPAD, view)
+        self.controls.set_inputs(source, w3c_gamepad_inputs(axes, buttons))
+        self._settle()
+
+    def on_sticks(
+        self,
+        view: int,
+        translation: tuple[float, float, float],
+        rotation: tuple[float, float],
+        is_fine: bool,
+    ) -> None:
+        """Take the sticks of XR controllers."""
+        sticks = OperatorInput(tuple(translation), tuple(rotation), is_fine)
+        self.controls.set_sticks(self._source(SourceKind.XR, view), sticks)
+        self._settle()
+
+    def on_press(self, view: int, control: str) -> None:
+        """Take one press of a control; a name that is none does nothing."""
+        if control not in ControlName._value2member_map_:
+            return
+        name = ControlName(control)
+        if self._flow.situation is Situation.MENU:
+            name = _IN_MENUS.get(name, name)
+        self.controls.press(self._source(SourceKind.XR, view), name)
+        self._settle()
+
+    def on_item(self, view: int, name: str) -> None:
+        """Take a click on an item of the menu."""
+        if self.controls.allows(self._source(SourceKind.MOUSE, view)):
+            self._session.pages.choose(name)
+            self._is_changed = True
+            self._settle()
+
+    def on_text(self, view: int, name: str, value: str) -> None:
+        """Take what now stands in a text item."""
+        if self.controls.allows(self._source(SourceKind.KEYBOARD, view)):
+            self._session.pages.write(name, value)
+            self._is_changed = True
+
+    def on_frames(self, view: int, frames: Frames) -> None:
+        """Take how smoothly a view draws."""
+
+    def on_visibility(self, view: int, is_visible: bool) -> None:
+        """Pause the trial when the one who operates no longer sees it."""
+        holder = self.controls.holder
+        if not is_visible and holder is not None and holder.view == view:
+            self._flow.pause()
+
+    def pressed(self, control: ControlName) -> None:
+        """A control was pressed by the operator."""
+        self._flow.pressed(control)
+        self._is_changed = True
+        self._settle()
+
+    def input_pressed(self, device: Device, name: str) -> bool:
+        """An input was pressed; return whether an open page wants it for itself."""
+        page = self._session.pages.top
+        self._is_changed = True
+        return page is not None and page.input_pressed(device, name)
+
+    def taken_over(self, source: Source) -> None:
+        """Another operator has taken the control."""
+        name = self._session.texts.say(f"source.{source.kind.value}")
+        self._session.notice(self._session.texts.say("control.taken", source=name))
+        self._flow.taken_over()
+        self._is_changed = True
+
+    def refused(self, _source: Source) -> None:
+        """Tell somebody who wants to operate how to."""
+        holder = self.controls.holder
+        name = self._session.texts.say(f"source.{holder.kind.value}")
+        menu = self._session.texts.say("control.menu")
+        text = self._session.texts.say("control.held", source=name, menu=menu)
+        self._session.notice(text, Tone.WARNING)
+        self._is_changed = True
+
+    def warn(self, about: str, key: str = "", **values: object) -> None:
+        """Show a warning until it is called off by an empty key."""
+        self._lasting.pop(about, None)
+        if key:
+            self._lasting[about] = Message(self._session.texts.say(key, **values), Tone.WARNING)
+        self._is_changed = True
+
+    def happened(self, what: Happening) -> None:
+        """Let something be heard and felt, once."""
+        sensation = SENSATIONS[what]
+        preferences = self._session.preferences
+        self._number += 1
+        feedback = Feedback(
+            number=self._number,
+            kind=what.value,
+            sound=sensation.sound,
+            volume=0.0 if preferences.muted else preferences.volume / 100.0,
+            rumble=sensation.rumble,
+            data={"rumbleMs": round(1000.0 * sensation.seconds)},
+        )
+        if sensation.rumble > 0.0:
+            self.rumble(sensation.rumble, sensation.seconds)
+        self._tell(feedback)
+
+    def _take_tick(self, result: StepResult) -> None:
+        """Keep a tick in which something happened; called in the control loop's thread."""
+        if result.events:
+            self._results.append(result)
+
+    def _source(self, kind: SourceKind, view: int) -> Source:
+        """Return a view's source; the simulator's own windows share a seat with its gamepad."""
+        hello = self._views.get(view)
+        is_own = hello is not None and hello.kind == "desktop"
+        return Source(kind, SIMULATOR_SEAT if is_own else f"view {view}", view)
+
+    def _types(self, source: Source, code: str, text: str) -> bool:
+        """Let a key type into the text that has the focus; return whether it did."""
+        item = self._session.pages.text_item()
+        is_deleting = code == "Backspace"
+        if item is None or not (is_deleting or (len(text) == 1 and text.isprintable())):
+            return False
+        if not self.controls.allows(source):
+            return True
+        value = item.value[:-1] if is_deleting else item.value + text
+        self._session.pages.write(item.name, value)
+        return True
+
+    def _settle(self) -> None:
+        """Pass on what follows at once: the situation, the sticks, who holds the control."""
+        self.controls.enter(self._flow.situation)
+        sticks = self.controls.sticks
+        if sticks != self._told_sticks:
+            self._told_sticks = sticks
+            self._control_loop.hold_sticks(sticks)
+        holder = self.controls.holder
+        control = Control() if holder is None else Control(holder.kind.value, holder.view)
+        if control != self.control:
+            self.control = control
+            self._tell(control)
+            self._is_changed = True
+
+    def _refresh(self) -> None:
+        self._is_changed = False
+        self._since_refresh = 0.0
+        screen = self._flow.screen(tuple(self._lasting.values()))
+        if screen != self.screen:
+            self.screen = screen
+            self._tell(screen)
+
+    def _tell(self, news: News) -> None:
+        for listener in self._listeners:
+            listener(news)
+
+
+def _nothing_vibrates(strength: float, seconds: float) -> None:  # noqa: ARG001
+    """Stand in for a gamepad."""

@@ -1,0 +1,150 @@
+"""From the start menu to the result: which screen follows from what happens (paper, figure 4)."""
+
+from __future__ import annotations
+
+from rastrainer.protocol import Phase
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.controls.control_name import ControlName, Situation
+from rastrainer_simulator.flow.feedback import happening
+from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.result import ResultPage, WaitingPage
+from rastrainer_simulator.flow.pages.start import StartPage
+from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
+from rastrainer_simulator.flow.screen import Hint, Message, Screen, Tone
+from rastrainer_simulator.flow.session import Session
+from rastrainer_simulator.flow.working import Working, points_in_world
+from rastrainer_simulator.state import EventKind, SimulationState, StepResult
+from rastrainer_simulator.texts.texts import Said
+
+NOT_RECORDED = "not recorded"
+
+
+class Flow:
+    """Follows the trial with the pages, and the trainee's presses with commands.
+
+    The trial's phase decides what is open, whoever changed it: a trial that Slicer starts, pauses
+    or aborts leads to the same screen as one of the trainee's.
+    """
+
+    def __init__(self, session: Session, control_loop: ControlLoop) -> None:
+        self._session = session
+        self._control_loop = control_loop
+        self._working = Working(session)
+        self._seen = ("", Phase.IDLE)
+        self._had_slicer = False
+        session.pages.home = lambda: StartPage(session)
+        session.pages.show_start()
+
+    @property
+    def situation(self) -> Situation:
+        """Whether the trainee drives the arm or is in a menu."""
+        return Situation.WORK if self._session.pages.top is None else Situation.MENU
+
+    def take(self, result: StepResult) -> None:
+        """Take a tick in which something happened."""
+        for event in result.events:
+            said = result.state.training.instruction
+            is_back = isinstance(said, Said) and said.key == NOT_RECORDED
+            felt = happening(event, is_back and event.kind is EventKind.PHASE)
+            if felt is not None:
+                self._session.happened(felt)
+            self._working.take(event)
+
+    def advance(self, dt: float, state: SimulationState) -> None:
+        """Go on for `dt` seconds with the newest state."""
+        session = self._session
+        session.advance(dt, state)
+        training = state.training
+        if (training.trial_id, training.phase) != self._seen:
+            before, self._seen = self._seen, (training.trial_id, training.phase)
+            self._follow(before)
+        if session.pages.top is not None:
+            session.pages.top.advance(dt)
+        elif self._working.end_of_practice_to_tell():
+            self._working.open_menu()
+
+    def pressed(self, control: ControlName) -> None:
+        """Take a press of a control."""
+        if self._session.pages.top is None:
+            self._working.pressed(control)
+        else:
+            self._session.pages.pressed(control)
+
+    def taken_over(self) -> None:
+        """Another operator takes the control: they begin in the menu."""
+        if self._session.pages.top is None:
+            self._working.open_menu()
+
+    def pause(self) -> None:
+        """Pause a trial that runs, since nobody can see it."""
+        if self._session.training.phase is Phase.RUNNING and self._session.pages.top is None:
+            self._working.open_menu()
+
+    def screen(self, more_warnings: tuple[Message, ...] = ()) -> Screen:
+        """Return what the trainee reads now."""
+        session = self._session
+        menu = session.pages.menu()
+        is_open = session.training.phase in (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
+        warnings = (*more_warnings, *self._link_warnings(), *session.notices())
+        if menu is not None:
+            return Screen(
+                menu=menu,
+                warnings=(*self._record_warnings(), *warnings),
+                status=self._working.status() if is_open else (),
+                hints=self._menu_hints(),
+                language=session.preferences.language,
+            )
+        return Screen(
+            instruction=self._working.instruction(),
+            warnings=(*self._working.warnings(), *warnings),
+            status=self._working.status(),
+            hints=self._working.hints(),
+            language=session.preferences.language,
+        )
+
+    def _follow(self, before: tuple[str, Phase]) -> None:
+        """Show what belongs to the trial's new phase."""
+        session = self._session
+        training = session.training
+        if training.trial_id and training.trial_id != before[0]:
+            self._working.begin(*points_in_world(self._control_loop.truth))
+            session.trainee = training.trainee
+            session.mode = training.mode
+        if training.phase in (Phase.RUNNING, Phase.COMPLETE):
+            session.pages.show(None)
+        elif training.phase is Phase.PAUSED:
+            is_over = self._working.is_practice_over
+            session.pages.show((PracticePage if is_over else TrialPage)(session))
+        elif training.phase is Phase.REGISTERED:
+            session.progress.note(training.trainee, training.task)
+            session.pages.show(WaitingPage(session))
+        elif training.phase is Phase.SCORED:
+            session.pages.show(ResultPage(session))
+        else:
+            session.pages.show_start()
+            session.pages.open(ExperimentPage(session))
+
+    def _link_warnings(self) -> tuple[Message, ...]:
+        """Tell that Slicer has been lost, once it was there."""
+        is_there = self._session.is_slicer_there()
+        self._had_slicer = self._had_slicer or is_there
+        if is_there or not self._had_slicer:
+            return ()
+        return (Message(self._session.texts.say("warning.slicer"), Tone.WARNING),)
+
+    def _record_warnings(self) -> tuple[Message, ...]:
+        """Tell why the trial was paused where the disk had refused what was to be recorded."""
+        said = self._session.training.instruction
+        if isinstance(said, Said) and said.key == NOT_RECORDED:
+            return (Message(self._session.texts.again(said), Tone.ERROR),)
+        return ()
+
+    def _menu_hints(self) -> tuple[Hint, ...]:
+        session = self._session
+        say = session.texts.say
+        up, down = session.label(ControlName.UP), session.label(ControlName.DOWN)
+        return (
+            Hint(f"{up} / {down}", say("hint.choose")),
+            Hint(session.label(ControlName.ACCEPT), say("hint.accept")),
+            Hint(session.label(ControlName.BACK), say("hint.back")),
+        )

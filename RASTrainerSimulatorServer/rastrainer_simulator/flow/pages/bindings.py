@@ -1,0 +1,162 @@
+"""Give a control another button, axis or key."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TypeVar
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.controls.control_name import IN_MENUS, STICKS, ControlName
+from rastrainer_simulator.controls.inputs import Device
+from rastrainer_simulator.flow.page import Page
+from rastrainer_simulator.flow.screen import Item, Menu
+from rastrainer_simulator.flow.session import Session
+
+GROUPS = {
+    "work": tuple(name for name in ControlName if name not in STICKS and name not in IN_MENUS),
+    "movement": tuple(name for name in ControlName if name in STICKS),
+    "menus": IN_MENUS,
+}
+LISTEN_S = 10.0
+
+T = TypeVar("T")
+
+
+class BindingsPage(Page):
+    """The controls of a device, a group at a time."""
+
+    name = "bindings"
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._device = session.device
+        self._group = "work"
+
+    def menu(self) -> Menu:
+        """Return the controls of the group with their inputs."""
+        device = self.choice("device", self.say(f"device.{self._device.value}"))
+        group = self.choice("group", self.say(f"bindings.group.{self._group}"))
+        controls = tuple(self._control(control) for control in GROUPS[self._group])
+        items = (device, group, *controls, self.button("defaults"), self.button("back"))
+        return Menu(self.name, self.say("bindings.title"), items=items)
+
+    def accept(self, item: str) -> None:
+        """Listen for a control's new input, or go back to the defaults."""
+        session = self.session
+        if item == "back":
+            self.back()
+        elif item == "defaults":
+            session.rebind(DEFAULT_BINDINGS)
+            session.notice(self.say("bindings.are default"))
+        else:
+            session.pages.open(ListenPage(session, self._device, ControlName(item)))
+
+    def step(self, item: str, direction: int) -> None:
+        """Show another device or group."""
+        if item == "device":
+            self._device = _stepped(tuple(Device), self._device, direction)
+        elif item == "group":
+            self._group = _stepped(tuple(GROUPS), self._group, direction)
+
+    def _control(self, control: ControlName) -> Item:
+        inputs = self.session.input_labels(self._device, control)
+        return self.button(control.value, self.say(f"control.{control.value}"), value=inputs)
+
+
+class ListenPage(Page):
+    """Waits for the new input of one control; the control for the menu calls it off."""
+
+    name = "listen"
+
+    def __init__(self, session: Session, device: Device, control: ControlName) -> None:
+        super().__init__(session)
+        self._device = device
+        self._control = control
+        self._left = LISTEN_S
+
+    def menu(self) -> Menu:
+        """Return what is asked for."""
+        control = self.say(f"control.{self._control.value}")
+        key = f"listen.{self._device.value}"
+        text = self.say(key, control=control, seconds=math.ceil(self._left))
+        title = self.say("listen.title", control=control)
+        return Menu(self.name, title, (text,), items=(self.button("cancel"),))
+
+    def accept(self, item: str) -> None:  # noqa: ARG002
+        """Call it off."""
+        self.back()
+
+    def input_pressed(self, device: Device, name: str) -> bool:
+        """Take the input, or ask what shall become of the control that it works now."""
+        if device is not self._device:
+            return False
+        session = self.session
+        others = session.bindings.others(device, self._control, name)
+        if others:
+            page = ConflictPage(session, device, self._control, name)
+            session.pages.replace(page)
+        else:
+            session.pages.close()
+            rebind(session, device, self._control, name)
+        return True
+
+    def advance(self, dt: float) -> None:
+        """Give up after a while."""
+        self._left -= dt
+        if self._left <= 0.0:
+            self.back()
+
+
+class ConflictPage(Page):
+    """The input works another control already: the two are exchanged, or nothing changes."""
+
+    name = "conflict"
+
+    def __init__(self, session: Session, device: Device, control: ControlName, wanted: str) -> None:
+        super().__init__(session)
+        self._device, self._control, self._wanted = device, control, wanted
+
+    def menu(self) -> Menu:
+        """Return the question."""
+        others = self.session.bindings.others(self._device, self._control, self._wanted)
+        text = self.say(
+            "conflict.text",
+            input=self.session.input_label(self._device, self._wanted),
+            other=", ".join(self.say(f"control.{other.value}") for other in others),
+            control=self.say(f"control.{self._control.value}"),
+        )
+        items = tuple(self.button(item) for item in ("exchange", "another", "cancel"))
+        return Menu(self.name, self.say("conflict.title"), (text,), items=items)
+
+    def accept(self, item: str) -> None:
+        """Exchange, listen again, or leave it."""
+        pages = self.session.pages
+        if item == "another":
+            pages.replace(ListenPage(self.session, self._device, self._control))
+            return
+        pages.close()
+        if item == "exchange":
+            rebind(self.session, self._device, self._control, self._wanted)
+
+
+def rebind(session: Session, device: Device, control: ControlName, name: str) -> None:
+    """Give a control its new input and say so, or say why that cannot be."""
+    try:
+        bindings = session.bindings.rebound(device, control, name)
+    except InputError:
+        session.complain(session.texts.say("bindings.impossible"))
+        return
+    session.rebind(bindings)
+    session.notice(
+        session.texts.say(
+            "bindings.changed",
+            control=session.texts.say(f"control.{control.value}"),
+            input=session.input_label(device, name),
+        )
+    )
+
+
+def _stepped(options: Sequence[T], value: T, direction: int) -> T:
+    return options[(options.index(value) + direction) % len(options)]

@@ -1,0 +1,99 @@
+"""The experiment menu: who trains, in which mode, and which task."""
+
+from __future__ import annotations
+
+from rastrainer.protocol import TRIAL_RUN, CommandName, Mode
+from rastrainer_simulator.controls.source import SourceKind
+from rastrainer_simulator.flow.page import Page
+from rastrainer_simulator.flow.pages.keyboard import KeyboardPage
+from rastrainer_simulator.flow.screen import Item, ItemKind, Menu
+from rastrainer_simulator.flow.session import Session
+
+LONGEST_ID = 32
+
+_TYPES = (SourceKind.KEYBOARD, SourceKind.MOUSE)
+
+
+class ExperimentPage(Page):
+    """Begins trials; a task waits for the one before it unless the instructor says otherwise."""
+
+    name = "experiment"
+
+    def __init__(self, session: Session, first: str = "") -> None:
+        super().__init__(session)
+        self.first = first
+
+    def menu(self) -> Menu:
+        """Return who, how and what."""
+        session = self.session
+        trainee = Item(
+            "trainee",
+            self.say("experiment.trainee"),
+            ItemKind.TEXT,
+            session.trainee,
+            help=self.say("experiment.trainee help"),
+        )
+        mode = self.choice("mode", self.say(f"mode.{session.mode}"))
+        tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
+        return Menu(
+            self.name,
+            self.say("experiment.title"),
+            items=(trainee, mode, *tasks, self.button("back")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Begin a task, or type."""
+        if item == "back":
+            self.back()
+        elif item == "trainee":
+            if self.session.is_typing_possible(_TYPES):
+                self.session.pages.move(1)
+            else:
+                self.session.pages.open(KeyboardPage(self.session, self.write))
+        else:
+            self._begin(item)
+
+    def step(self, item: str, direction: int) -> None:
+        """Change the mode."""
+        if item == "mode":
+            modes = [mode.value for mode in Mode]
+            place = (modes.index(self.session.mode) + direction) % len(modes)
+            self.session.mode = modes[place]
+
+    def write(self, item: str, value: str) -> None:
+        """Take the trainee's ID."""
+        if item == "trainee":
+            self.session.trainee = value.lstrip()[:LONGEST_ID]
+
+    def _task(self, name: str) -> Item:
+        """Return a task's button: a disabled one says why."""
+        session = self.session
+        reason = self._obstacle(name)
+        is_done = session.progress.has_done(session.trainee.strip(), name)
+        return Item(
+            name,
+            session.task_title(name),
+            value=self.say("experiment.done") if is_done else "",
+            is_enabled=not reason,
+            help=reason or self.say("experiment.task help"),
+        )
+
+    def _obstacle(self, name: str) -> str:
+        session = self.session
+        trainee = session.trainee.strip()
+        if not trainee:
+            return self.say("experiment.no trainee")
+        if session.is_being_set_up:
+            return self.say("experiment.being set up")
+        if session.preferences.order == "any":
+            return ""
+        order = [task.name for task in session.scenario.tasks]
+        missing = session.progress.missing_before(trainee, name, order)
+        return self.say("experiment.order", task=session.task_title(missing)) if missing else ""
+
+    def _begin(self, task: str) -> None:
+        session = self.session
+        trainee = session.trainee.strip()
+        if task == TRIAL_RUN:
+            session.progress.note(trainee, task)
+        session.do(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": session.mode})

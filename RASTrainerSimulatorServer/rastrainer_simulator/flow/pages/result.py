@@ -1,0 +1,137 @@
+"""What comes after the registration: waiting for Slicer, and its score."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rastrainer_simulator.flow.page import Page
+from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.screen import Fact, Item, Menu, Tone
+from rastrainer_simulator.flow.session import Session
+from rastrainer_simulator.state import TrialResult
+
+GOOD_MM = 2.0
+POOR_MM = 4.0
+"""Errors up to the first are good, from the second on they are poor: what frameless stereotaxy
+reaches in the clinic lies between them."""
+GOOD_SCORE = 70.0
+POOR_SCORE = 40.0
+
+
+class FinishedPage(Page):
+    """What both pages after a trial offer."""
+
+    def items(self) -> tuple[Item, ...]:
+        """Return where one can go from here."""
+        following = self._following()
+        label = self.say("result.next", task=self.session.task_title(following))
+        again = self.say("result.again", task=self.session.task_title(self.session.training.task))
+        buttons = [self.button("next", label)] if following else []
+        return (
+            *buttons,
+            self.button("again", again),
+            self.button("menu", self.say("result.menu")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Go to the experiment menu, where the next task has the focus."""
+        session = self.session
+        first = {"next": self._following(), "again": session.training.task}.get(item, "")
+        session.pages.show_start()
+        session.pages.open(ExperimentPage(session, first=first))
+
+    def back(self) -> None:
+        """Go to the experiment menu."""
+        self.accept("next")
+
+    def _following(self) -> str:
+        order = [task.name for task in self.session.scenario.tasks]
+        task = self.session.training.task
+        place = order.index(task) + 1 if task in order else len(order)
+        return order[place] if place < len(order) else ""
+
+
+class WaitingPage(FinishedPage):
+    """The points are registered, and the score has not come yet."""
+
+    name = "waiting"
+
+    def menu(self) -> Menu:
+        """Return who is waited for."""
+        training = self.session.training
+        is_there = self.session.is_slicer_there()
+        key = "waiting.slicer" if is_there else "waiting.nobody"
+        return Menu(
+            self.name,
+            self.say("waiting.title"),
+            (self.say(key, trainee=training.trainee),),
+            _facts_of_trial(self.session),
+            self.items(),
+        )
+
+
+class ResultPage(FinishedPage):
+    """The score, and what it is made of."""
+
+    name = "result"
+
+    def menu(self) -> Menu:
+        """Return the results with their units."""
+        training = self.session.training
+        result = training.result
+        task = self.session.task_title(training.task)
+        return Menu(
+            self.name,
+            self.say("result.title", trainee=training.trainee, task=task),
+            tuple(_warnings(result)),
+            (*self._facts_of_result(result), *_facts_of_trial(self.session)),
+            self.items(),
+        )
+
+    def _facts_of_result(self, result: TrialResult) -> list[Fact]:
+        score = f"{result.score:.0f} / 100"
+        facts = [
+            Fact(self.say("result.score"), score, _tone_of_score(result.score)),
+            self._error("result.fre", result.fre_mm),
+            self._error("result.expected tre", result.expected_tre_mm),
+            self._error("result.true tre", result.true_tre_mm),
+        ]
+        ctps = result.details.get("ctps")
+        if _is_number(ctps):
+            facts.append(Fact(self.say("result.ctps"), self.session.number(ctps, 1)))
+        return facts
+
+    def _error(self, key: str, error_mm: float) -> Fact:
+        tone = Tone.GOOD if error_mm <= GOOD_MM else Tone.PLAIN
+        tone = Tone.WARNING if error_mm >= POOR_MM else tone
+        return Fact(self.say(key), f"{self.session.number(error_mm, 2)} mm", tone)
+
+
+def _tone_of_score(score: float) -> Tone:
+    if score >= GOOD_SCORE:
+        return Tone.GOOD
+    return Tone.WARNING if score < POOR_SCORE else Tone.PLAIN
+
+
+def _facts_of_trial(session: Session) -> tuple[Fact, ...]:
+    training = session.training
+    say = session.texts.say
+    return (
+        Fact(say("result.time"), session.duration(session.state.elapsed)),
+        Fact(say("result.refused"), str(training.rejected)),
+        Fact(say("result.undone"), str(training.undone)),
+    )
+
+
+def _warnings(result: TrialResult) -> list[str]:
+    """Return Slicer's own warnings about the registration: what is not text is left out."""
+    warnings = result.details.get("warnings")
+    if not isinstance(warnings, list):
+        return []
+    return [text[:200] for text in warnings[:3] if isinstance(text, str) and text.isprintable()]
+
+
+def _is_number(value: Any) -> bool:
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return is_number and math.isfinite(value)

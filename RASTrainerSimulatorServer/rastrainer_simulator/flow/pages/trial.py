@@ -1,0 +1,120 @@
+"""The pages over a trial that is open: the menu, what is paused, giving up, registering."""
+
+from __future__ import annotations
+
+from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
+from rastrainer_simulator.controls.control_name import ControlName
+from rastrainer_simulator.flow.page import Page
+from rastrainer_simulator.flow.pages.introduction import ControlsPage
+from rastrainer_simulator.flow.pages.settings import SettingsPage
+from rastrainer_simulator.flow.screen import Menu
+
+
+class TrialPage(Page):
+    """The menu during a trial, which is paused while it is open."""
+
+    name = "trial"
+
+    def menu(self) -> Menu:
+        """Return what one can do with the trial."""
+        training = self.session.training
+        task = self.session.task_title(training.task)
+        is_complete = training.phase is Phase.COMPLETE
+        items = ["resume", "controls", "settings"]
+        if training.touches and is_complete:
+            items[1:1] = ["register"]
+        items.append("finish" if training.task == TRIAL_RUN else "abort")
+        key = "trial.complete" if is_complete else "trial.paused"
+        return Menu(
+            self.name,
+            self.say("trial.title", task=task),
+            (self.say(key, trainee=training.trainee, kept=len(training.touches)),),
+            items=tuple(self.button(item) for item in items),
+        )
+
+    def accept(self, item: str) -> None:
+        """Do what was chosen."""
+        session = self.session
+        if item == "resume":
+            self.back()
+        elif item == "register":
+            session.do(CommandName.REGISTER)
+        elif item == "finish":
+            session.do(CommandName.ABORT)
+        else:
+            pages = {"controls": ControlsPage, "settings": SettingsPage, "abort": AbortPage}
+            session.pages.open(pages[item](session))
+
+    def back(self) -> None:
+        """Go on with the trial."""
+        if self.session.training.phase is Phase.PAUSED:
+            self.session.do(CommandName.RESUME)
+        else:
+            self.session.pages.close()
+
+    def pressed(self, control: ControlName) -> bool:
+        """The control that pauses goes on, too."""
+        if control is ControlName.PAUSE:
+            self.back()
+        return control is ControlName.PAUSE
+
+
+class AbortPage(Page):
+    """Asks once more before a trial is given up."""
+
+    name = "abort"
+    first = "keep"
+
+    def menu(self) -> Menu:
+        """Return the question."""
+        training = self.session.training
+        text = self.say("abort.text", trainee=training.trainee, kept=len(training.touches))
+        items = (self.button("keep"), self.button("abort"))
+        return Menu(self.name, self.say("abort.title"), (text,), items=items)
+
+    def accept(self, item: str) -> None:
+        """Keep the trial or give it up."""
+        if item == "abort":
+            self.session.do(CommandName.ABORT)
+        else:
+            self.session.pages.close()
+
+
+class PracticePage(Page):
+    """The trial run's minutes are over: the trainee decides how to go on."""
+
+    name = "practice"
+
+    def menu(self) -> Menu:
+        """Return the choice."""
+        items = (self.button("finish"), self.button("resume"))
+        text = self.say("practice.text", trainee=self.session.training.trainee)
+        return Menu(self.name, self.say("practice.title"), (text,), items=items)
+
+    def accept(self, item: str) -> None:
+        """Finish, or practice on."""
+        self.session.do(CommandName.ABORT if item == "finish" else CommandName.RESUME)
+
+    def back(self) -> None:
+        """Practice on."""
+        self.accept("resume")
+
+
+class CompletePage(Page):
+    """All points are touched: they are registered, or the last one is taken back."""
+
+    name = "complete"
+
+    def menu(self) -> Menu:
+        """Return the choice."""
+        training = self.session.training
+        items = tuple(self.button(item) for item in ("register", "undo", "abort"))
+        text = self.say("complete.text", trainee=training.trainee, count=len(training.touches))
+        return Menu(self.name, self.say("complete.title"), (text,), items=items)
+
+    def accept(self, item: str) -> None:
+        """Do what was chosen."""
+        if item == "abort":
+            self.session.pages.open(AbortPage(self.session))
+        else:
+            self.session.do(CommandName.REGISTER if item == "register" else CommandName.UNDO)

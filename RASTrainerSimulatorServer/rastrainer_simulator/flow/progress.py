@@ -1,0 +1,55 @@
+"""Which tasks each trainee has done: told by the journals, and by the trials of this session."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+
+from rastrainer.journal.journal_line import (
+    LONGEST_LINE,
+    NO_LINE,
+    DamagedLineError,
+    decode_line,
+)
+from rastrainer.protocol import TRIAL_RUN
+
+_TAIL_BYTES = 1 << 16
+_REGISTERED = b'"kind":"registered"'
+
+
+class Progress:
+    """Counts a task as done when it was registered, and the trial run when it was begun."""
+
+    def __init__(self, records: Path) -> None:
+        """Look through the folder's journals: at the first line and the end of each."""
+        self._done: dict[str, set[str]] = defaultdict(set)
+        for path in sorted(records.glob("*.journal")):
+            self._take(path)
+
+    def note(self, trainee: str, task: str) -> None:
+        """Take note of a task that was done."""
+        self._done[trainee].add(task)
+
+    def has_done(self, trainee: str, task: str) -> bool:
+        """Return whether a trainee has done a task."""
+        return task in self._done.get(trainee, ())
+
+    def missing_before(self, trainee: str, task: str, order: Sequence[str]) -> str | None:
+        """Return the first task that has to be done before another; None where none is missing."""
+        before = order[: order.index(task)]
+        return next((name for name in before if not self.has_done(trainee, name)), None)
+
+    def _take(self, path: Path) -> None:
+        """Take note of a journal; one that cannot be read tells nothing."""
+        try:
+            with path.open("rb") as file:
+                header = decode_line(file.readline(LONGEST_LINE).rstrip(b"\n"), 1, NO_LINE)
+                file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
+                is_registered = _REGISTERED in file.read(_TAIL_BYTES)
+            trainee, task = header["trainee"], header["task"]
+        except (OSError, KeyError, DamagedLineError):
+            return
+        is_told = isinstance(trainee, str) and isinstance(task, str)
+        if is_told and (is_registered or task == TRIAL_RUN):
+            self.note(trainee, task)

@@ -1,0 +1,236 @@
+"""What all pages share: who trains, what is chosen, and what the simulator can do for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName, Mode
+from rastrainer.scenario import Scenario
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.controls.bindings import Bindings
+from rastrainer_simulator.controls.bindings_file import FILE_NAME as BINDINGS_FILE
+from rastrainer_simulator.controls.bindings_file import write_bindings
+from rastrainer_simulator.controls.control_name import ControlName
+from rastrainer_simulator.controls.controls import Controls
+from rastrainer_simulator.controls.inputs import Device
+from rastrainer_simulator.controls.source import SourceKind
+from rastrainer_simulator.flow.commands import Commands
+from rastrainer_simulator.flow.feedback import Happening
+from rastrainer_simulator.flow.pages_open import OpenPages
+from rastrainer_simulator.flow.preferences import FILE_NAME as PREFERENCES_FILE
+from rastrainer_simulator.flow.preferences import Preferences, write_preferences
+from rastrainer_simulator.flow.progress import Progress
+from rastrainer_simulator.flow.screen import Message, Tone
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.settings import SimulationSettings
+from rastrainer_simulator.state import Answer, SimulationState, TrainingState
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.vectors import Vector
+
+NOTICE_S = 5.0
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the flow needs of the process that it runs in.
+
+    Attributes:
+        config: folder of the settings files.
+        records: folder of the trials' journals.
+        use_settings: has the simulation go on with other settings, between two trials.
+        is_slicer_there: tells whether a client is connected over OpenIGTLink.
+        quit: ends the process.
+    """
+
+    config: Path
+    records: Path
+    use_settings: Callable[[SimulationSettings], Future[Answer]]
+    is_slicer_there: Callable[[], bool]
+    quit: Callable[[], None]
+
+
+class Session:
+    """The trainee's choices and the services behind the pages.
+
+    Attributes:
+        trainee: what was typed as the trainee's ID.
+        mode: "desktop" or "hmd".
+        has_read_introduction: whether the pages before the experiment menu can be skipped.
+        preferences: what is chosen in the settings.
+        texts: say everything in the chosen language.
+        progress: which tasks each trainee has done.
+        pages: which are open.
+        happened: tells the senses.
+        is_slicer_there: tells whether Slicer is connected.
+        quit: ends the simulator.
+    """
+
+    def __init__(
+        self,
+        control_loop: ControlLoop,
+        controls: Controls,
+        surroundings: Surroundings,
+        preferences: Preferences,
+        happened: Callable[[Happening], None],
+    ) -> None:
+        self.trainee = ""
+        self.mode = Mode.DESKTOP.value
+        self.has_read_introduction = False
+        self.preferences = preferences
+        self.texts = Texts(LANGUAGES[preferences.language])
+        self.progress = Progress(surroundings.records)
+        self.happened = happened
+        self.pages = OpenPages(happened)
+        self.is_slicer_there = surroundings.is_slicer_there
+        self.quit = surroundings.quit
+        self._surroundings = surroundings
+        self._control_loop = control_loop
+        self._controls = controls
+        self._commands = Commands(control_loop.submit, self._refused)
+        self._setting_up: Future[Answer] | None = None
+        self._time = 0.0
+        self._notices: list[tuple[float, Message]] = []
+        self.state: SimulationState = control_loop.latest
+
+    @property
+    def training(self) -> TrainingState:
+        """Where the trial stands."""
+        return self.state.training
+
+    @property
+    def tip(self) -> Vector:
+        """Where the tool's tip is, World, m."""
+        return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
+
+    @property
+    def scenario(self) -> Scenario:
+        """The head and the tasks."""
+        return self._control_loop.setup.scenario
+
+    @property
+    def bindings(self) -> Bindings:
+        """Which input does what."""
+        return self._controls.bindings
+
+    @property
+    def held(self) -> OperatorInput:
+        """How the operator's sticks stand."""
+        return self._controls.held
+
+    @property
+    def device(self) -> Device:
+        """What the operator has in their hands."""
+        holder = self._controls.holder
+        keys = holder is not None and holder.kind in (SourceKind.KEYBOARD, SourceKind.MOUSE)
+        return Device.KEYBOARD if keys else Device.GAMEPAD
+
+    @property
+    def is_being_set_up(self) -> bool:
+        """Whether other settings of the simulation are on their way."""
+        return self._setting_up is not None
+
+    def is_typing_possible(self, kinds: tuple[SourceKind, ...]) -> bool:
+        """Return whether what the operator uses is one of these."""
+        holder = self._controls.holder
+        return holder is not None and holder.kind in kinds
+
+    def advance(self, dt: float, state: SimulationState) -> None:
+        """Take the newest state, and what has been answered within `dt` seconds."""
+        self._time += dt
+        self.state = state
+        self._commands.poll()
+        if self._setting_up is not None and self._setting_up.done():
+            answer = self._setting_up.result()
+            self._setting_up = None
+            if not answer.ok:
+                self.complain(answer.message)
+
+    def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
+        """Have a command carried out."""
+        holder = self._controls.holder
+        sender = "" if holder is None else holder.kind.value
+        try:
+            self._commands.do(command, sender, arguments or {})
+        except InputError as error:
+            self.complain(str(error))
+
+    def prefer(self, preferences: Preferences) -> None:
+        """Take on other preferences and save them."""
+        before = self._control_loop.setup.settings
+        self.preferences = preferences
+        self.texts = Texts(LANGUAGES[preferences.language])
+        wanted = preferences.applied_to(before)
+        if wanted != before or self._setting_up is not None:
+            self._setting_up = self._surroundings.use_settings(wanted)
+        path = self._surroundings.config / PREFERENCES_FILE
+        self._save(lambda: write_preferences(path, preferences))
+
+    def rebind(self, bindings: Bindings) -> None:
+        """Take on other bindings and save them."""
+        self._controls.bindings = bindings
+        path = self._surroundings.config / BINDINGS_FILE
+        self._save(lambda: write_bindings(path, bindings))
+
+    def notice(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+        """Show a sentence for some seconds."""
+        self._notices = [each for each in self._notices if each[1].text != text]
+        self._notices.append((self._time + NOTICE_S, Message(text, tone)))
+
+    def complain(self, text: str) -> None:
+        """Say what went wrong."""
+        self.notice(self.texts.again(text), Tone.ERROR)
+        self.happened(Happening.ERROR)
+
+    def notices(self) -> tuple[Message, ...]:
+        """Return the sentences that are still to be shown."""
+        self._notices = [each for each in self._notices if each[0] > self._time]
+        return tuple(message for _, message in self._notices)
+
+    def task_title(self, name: str) -> str:
+        """Return what people call a task."""
+        key = f"task.{name}"
+        if key in self.texts:
+            return self.texts.say(key)
+        titles = {task.name: task.title for task in self.scenario.tasks}
+        return titles.get(name, name)
+
+    def label(self, control: ControlName) -> str:
+        """Return the first input of a control on what the operator has in their hands."""
+        return self.input_label(self.device, self.bindings.table(self.device)[control][0])
+
+    def input_labels(self, device: Device, control: ControlName) -> str:
+        """Return all inputs of a control."""
+        names = self.bindings.table(device)[control]
+        return ", ".join(self.input_label(device, name) for name in names)
+
+    def input_label(self, device: Device, name: str) -> str:
+        """Return what an input is called."""
+        key = f"{device.value}.{name}"
+        if key in self.texts:
+            return self.texts.say(key)
+        return name.removeprefix("Key").removeprefix("Digit")
+
+    def number(self, value: float, digits: int) -> str:
+        """Return a number as it is written in the chosen language."""
+        return f"{value:.{digits}f}".replace(".", self.texts.say("decimal sign"))
+
+    def duration(self, seconds: float) -> str:
+        """Return minutes and seconds, such as 03:21."""
+        whole = int(seconds)
+        return f"{whole // 60:02d}:{whole % 60:02d}"
+
+    def _save(self, write: Callable[[], None]) -> None:
+        try:
+            write()
+        except InputError as error:
+            self.complain(str(error))
+
+    def _refused(self, command: str, sentence: str) -> None:
+        # A touch that does not count comes as an event of its own, with its own sound.
+        if command != CommandName.CAPTURE:
+            self.complain(sentence)

@@ -1,0 +1,1 @@
+"""Everything that the simulator says to people, one table a language."""

@@ -1,0 +1,3 @@
+"""Die Sätze des Simulators auf Deutsch."""
+
+GERMAN = {}

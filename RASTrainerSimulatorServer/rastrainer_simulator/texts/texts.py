@@ -1,0 +1,48 @@
+"""Say a sentence in a language, and say it again in another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.german import GERMAN
+
+LANGUAGES: Mapping[str, Mapping[str, str]] = {"en": ENGLISH, "de": GERMAN}
+"""BCP 47 tag → table. What a table lacks is said in English."""
+
+
+class Said(str):
+    """A sentence that remembers how it was made, so that a view can show it in its own language.
+
+    Attributes:
+        key: of the sentence in its table.
+        values: what was filled in.
+    """
+
+    key: str
+    values: Mapping[str, object]
+
+    def __new__(cls, text: str, key: str, values: Mapping[str, object]) -> Said:
+        """Make one of the finished sentence."""
+        said = super().__new__(cls, text)
+        said.key = key
+        said.values = values
+        return said
+
+
+class Texts:
+    """Says the sentences, in the language of its table."""
+
+    def __init__(self, table: Mapping[str, str] = ENGLISH) -> None:
+        self._table = {**ENGLISH, **table}
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._table
+
+    def say(self, key: str, **values: object) -> Said:
+        """Return the sentence with its values filled in."""
+        return Said(self._table[key].format(**values), key, values)
+
+    def again(self, sentence: str) -> str:
+        """Return a sentence in this language; one that is not ours stays as it is."""
+        return self.say(sentence.key, **sentence.values) if isinstance(sentence, Said) else sentence
