@@ -7,7 +7,7 @@ from math import inf
 from rastrainer_simulator.robot.branches import Roll, joint_angles, nearest_branch
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm
 from rastrainer_simulator.robot.elbow_circle import (
-    elbow_circle,
+    ElbowCircle,
     elbows_at_limits,
     nearest_elbow,
     tilts_allow,
@@ -17,20 +17,19 @@ from rastrainer_simulator.vectors import Vector
 
 def close(
     arm: CanonicalArm,
+    circle: ElbowCircle,
     wrist: Vector,
     tool: Vector,
     roll: Roll,
-    guess: Vector,
     last: Angles,
     farthest: float = inf,
 ) -> Angles | None:
     """Return θ that holds the wrist and the tool's direction, and its roll where given, or None.
 
-    The elbow is the feasible one nearest to `guess`, the branch the one nearest to `last`. Where
-    that leaves a joint more than `farthest` (rad) from `last`, an elbow at a limit is taken if it
-    avoids such a jump.
+    The elbow is the feasible one nearest to φ = 0 of its circle, the branch the one nearest to
+    `last`. Where that leaves a joint more than `farthest` (rad) from `last`, an elbow at a limit is
+    taken if it avoids such a jump.
     """
-    circle = elbow_circle(arm, wrist, guess)
     (cx, cy, cz), (sx, sy, sz), _ = circle
     elbow = (cx + sx, cy + sy, cz + sz)
     if not tilts_allow(arm, elbow, wrist, tool):
@@ -46,6 +45,15 @@ def close(
             return other
         theta = theta or other
     return theta
+
+
+def close_at(
+    arm: CanonicalArm, elbow: Vector, wrist: Vector, tool: Vector, roll: Roll, last: Angles
+) -> Angles | None:
+    """Do as `close` with the elbow at a given place of its circle, None where it cannot be."""
+    if not tilts_allow(arm, elbow, wrist, tool):
+        return None
+    return _branch(arm, elbow, wrist, tool, roll, last)
 
 
 def _branch(

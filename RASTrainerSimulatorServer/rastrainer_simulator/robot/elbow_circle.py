@@ -42,6 +42,17 @@ class ElbowCircle(NamedTuple):
         c, s = cos(angle), sin(angle)
         return (cx + x * c + sx * s, cy + y * c + sy * s, cz + z * c + sz * s)
 
+    def turned(self, elbow: Vector, angle: float) -> Vector:
+        """Return the elbow `angle` farther along the circle than one on it."""
+        (cx, cy, cz), (ax, ay, az) = self.center, self.axis
+        x, y, z = elbow[0] - cx, elbow[1] - cy, elbow[2] - cz
+        c, s = cos(angle), sin(angle)
+        return (
+            cx + x * c + (ay * z - az * y) * s,
+            cy + y * c + (az * x - ax * z) * s,
+            cz + z * c + (ax * y - ay * x) * s,
+        )
+
     def wave(self, normal: Vector, constant: float) -> Wave:
         """Return `normal` · elbow + `constant` as a function of φ."""
         return (

@@ -10,8 +10,12 @@ from itertools import islice
 from math import inf, sqrt
 
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, chain, clear
-from rastrainer_simulator.robot.closure import close
-from rastrainer_simulator.robot.elbow_circle import elbow_circle, elbows_that_keep_a_pan
+from rastrainer_simulator.robot.closure import close, close_at
+from rastrainer_simulator.robot.elbow_circle import (
+    ElbowCircle,
+    elbow_circle,
+    elbows_that_keep_a_pan,
+)
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.vectors import Vector, scale
 
@@ -24,65 +28,95 @@ _MOST_KEPT = 4
 
 
 def with_least_motion(
-    arm: CanonicalArm, theta: Angles, wrist: Vector, goal: Goal, last: Angles, guess: Vector
+    arm: CanonicalArm, theta: Angles, circle: ElbowCircle, wrist: Vector, goal: Goal, last: Angles
 ) -> Angles:
-    """Return θ with the elbow near `guess` (m) from where the joints move least from `last`.
+    """Return θ with the elbow where on its circle the joints move least from `last`.
 
     `theta` already holds the wrist (m) and the goal's tool, and so does what is returned.
     """
-    theta = _slide(arm, theta, wrist, goal, last)
-    if _motion(theta, last) < _LEAP:
+    theta, motion = _slide(arm, theta, circle, wrist, goal, last)
+    if motion < _LEAP:
         return theta
     # Close to a singularity the nearest elbow can need a pan to turn far: try to keep each.
-    circle = elbow_circle(arm, wrist, guess)
     elbows = elbows_that_keep_a_pan(arm, circle, wrist, goal.tool, goal.roll, last)
     for elbow in islice(elbows, _MOST_KEPT):
-        kept = close(arm, wrist, goal.tool, goal.roll, elbow, last)
-        if kept is not None and _motion(kept, last) < _motion(theta, last):
-            theta = kept
-    return _slide(arm, theta, wrist, goal, last)
+        kept = _near(arm, elbow, wrist, goal, last)
+        if kept is not None and _motion(kept, last) < motion:
+            theta, motion = kept, _motion(kept, last)
+    return _slide(arm, theta, circle, wrist, goal, last)[0]
 
 
-def _slide(arm: CanonicalArm, theta: Angles, wrist: Vector, goal: Goal, last: Angles) -> Angles:
+def _slide(
+    arm: CanonicalArm, theta: Angles, circle: ElbowCircle, wrist: Vector, goal: Goal, last: Angles
+) -> tuple[Angles, float]:
+    """Return θ after the elbow has slid, and the squared motion (rad²) from `last`."""
+    motion = _motion(theta, last)
     for _ in range(_MOST_SLIDES):
         links = chain(theta)
-        angle, motion = _slide_angle(arm, theta, links, last, goal.roll is not None)
-        if motion < _NO_MOTION:
+        angle, way = _slide_angle(circle.axis, theta, links, last, goal.roll is not None)
+        if way < _NO_MOTION:
             break
-        elbow = elbow_circle(arm, wrist, scale(links[0], arm.upper)).at(angle)
-        slid = close(arm, wrist, goal.tool, goal.roll, elbow, last)
-        if slid is None or _motion(slid, last) >= _motion(theta, last):
+        elbow = circle.turned(scale(links[0], arm.upper), angle)
+        slid = close_at(arm, elbow, wrist, goal.tool, goal.roll, last)
+        if slid is None:
+            slid = _near(arm, elbow, wrist, goal, last)
+        if slid is None or _motion(slid, last) >= motion:
             break
-        theta = slid
+        theta, motion = slid, _motion(slid, last)
         if clear(theta):
             break
-    return theta
+    return theta, motion
+
+
+def _near(
+    arm: CanonicalArm, elbow: Vector, wrist: Vector, goal: Goal, last: Angles
+) -> Angles | None:
+    """Return θ with the elbow as near to `elbow` as the tilts allow, or None."""
+    circle = elbow_circle(arm, wrist, elbow)
+    return close(arm, circle, wrist, goal.tool, goal.roll, last)
 
 
 def _motion(theta: Angles, last: Angles) -> float:
-    return sum([(a - b) * (a - b) for a, b in zip(theta, last, strict=True)])
+    a1, a2, a3, a4, a5, a6, a7 = theta
+    b1, b2, b3, b4, b5, b6, b7 = last
+    return (
+        (a1 - b1) * (a1 - b1)
+        + (a2 - b2) * (a2 - b2)
+        + (a3 - b3) * (a3 - b3)
+        + (a4 - b4) * (a4 - b4)
+        + (a5 - b5) * (a5 - b5)
+        + (a6 - b6) * (a6 - b6)
+        + (a7 - b7) * (a7 - b7)
+    )
 
 
 def _slide_angle(
-    arm: CanonicalArm, theta: Angles, links: Chain, last: Angles, rolls: bool
+    axis: Vector, theta: Angles, links: Chain, last: Angles, rolls: bool
 ) -> tuple[float, float]:
     """Return the angle (rad) that brings θ nearest to `last`, and how far the joints then move.
 
-    `links` is the chain of θ; `rolls` tells whether the tool's roll is held too.
+    `axis` is that of the elbow's circle, `links` the chain of θ; `rolls` tells whether the tool's
+    roll is held too.
     """
-    (ux, uy, uz), (fx, fy, fz), tool, axis2, _, axis6 = links
-    a, b = arm.upper, arm.fore
-    wx, wy, wz = a * ux + b * fx, a * uy + b * fy, a * uz + b * fz
-    size = sqrt(wx * wx + wy * wy + wz * wz)
-    axis = (wx / size, wy / size, wz / size)
-    pan, tilt, turn = _rates(axis, (0.0, 0.0, 1.0), axis2, links[0])
+    upper, fore, tool, axis2, _, axis6 = links
+    r1, r2, r3 = _rates(axis, (0.0, 0.0, 1.0), axis2, upper)
     # Seen from the hand, which stays, it is the forearm that turns back.
-    roll, wrist_tilt, wrist_pan = _rates(axis, tool, axis6, links[1])
-    rates = (pan, tilt, turn, 0.0, -wrist_pan, -wrist_tilt, -roll if rolls else 0.0)
-    square = sum([rate * rate for rate in rates])
+    r7, r6, r5 = _rates(axis, tool, axis6, fore)
+    if not rolls:
+        r7 = 0.0
+    square = r1 * r1 + r2 * r2 + r3 * r3 + r5 * r5 + r6 * r6 + r7 * r7
     if not _FLAT < square < inf:
         return 0.0, 0.0
-    along = sum([rate * (a - b) for rate, a, b in zip(rates, theta, last, strict=True)])
+    t1, t2, t3, _, t5, t6, t7 = theta
+    l1, l2, l3, _, l5, l6, l7 = last
+    along = (
+        r1 * (t1 - l1)
+        + r2 * (t2 - l2)
+        + r3 * (t3 - l3)
+        - r5 * (t5 - l5)
+        - r6 * (t6 - l6)
+        - r7 * (t7 - l7)
+    )
     return -along / square, abs(along) / sqrt(square)
 
 

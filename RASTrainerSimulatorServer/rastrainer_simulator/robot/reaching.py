@@ -8,6 +8,7 @@ from typing import NamedTuple
 from rastrainer_simulator.robot.branches import TURN, fit, joint_angles, nearest_branch
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, chain
 from rastrainer_simulator.robot.closure import close
+from rastrainer_simulator.robot.elbow_circle import elbow_circle
 from rastrainer_simulator.robot.elbow_slide import with_least_motion
 from rastrainer_simulator.robot.fabrik_passes import backward, forward, settle
 from rastrainer_simulator.robot.goal import Goal
@@ -62,18 +63,19 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
     then the position.
     """
     wrist, tool = aim.wrist(arm), goal.tool
-    theta = close(arm, wrist, tool, goal.roll, start.elbow, start.theta, start.farthest)
+    circle = elbow_circle(arm, wrist, start.elbow)
+    theta = close(arm, circle, wrist, tool, goal.roll, start.theta, start.farthest)
     if theta is not None:
         if start.farthest < inf:
-            theta = with_least_motion(arm, theta, wrist, goal, start.theta, start.elbow)
+            theta = with_least_motion(arm, theta, circle, wrist, goal, start.theta)
         return Reached(theta, 1)
     passes = 1
     if goal.roll:
-        theta = close(arm, wrist, tool, None, start.elbow, start.theta)
+        theta = close(arm, circle, wrist, tool, None, start.theta)
     if theta is None:
         passes += most
         wrist, elbow = settle(arm, goal.wrist(arm), start.elbow, tool, most)
-        theta = close(arm, wrist, tool, None, elbow, start.theta)
+        theta = close(arm, elbow_circle(arm, wrist, elbow), wrist, tool, None, start.theta)
     if theta is None:
         return Reached(start.theta, passes, True)
     return Reached(_rolled(arm, theta, goal) if goal.roll else theta, passes)
@@ -89,7 +91,8 @@ def _iterate(
         if reached is None:
             return None, passes
         held, tool = reached
-        theta = close(arm, held, tool, None, elbow, last, farthest)
+        circle = elbow_circle(arm, held, elbow)
+        theta = close(arm, circle, held, tool, None, last, farthest)
         if theta is not None:
             return theta, passes
         wrist, elbow = forward(arm, held, elbow)
