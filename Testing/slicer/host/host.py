@@ -195,10 +195,13 @@ class Host:
         self.process_events()
 
     def type(self, name: str, text: str) -> None:
-        """Replace the text of an edit by typing, and leave it."""
+        """Replace the text of an edit, or the path of a path edit, and leave it."""
         widget = self._usable(name)
         if isinstance(widget, QtWidgets.QAbstractSpinBox):
-            widget.setValue(type(widget.value())(text))
+            kind = type(widget.value())
+            widget.setValue(kind(text))
+        elif hasattr(widget, "setCurrentPath"):
+            widget.setCurrentPath(text)
         elif isinstance(widget, QtWidgets.QLineEdit):
             widget.selectAll()
             QtTest.QTest.keyClicks(widget, text) if text else widget.clear()

@@ -5,9 +5,20 @@ from __future__ import annotations
 import functools
 from typing import Any
 
+import slicer
+
 from Testing.slicer.host.checked import Checked
 from Testing.slicer.host.members import FACTS, members_of
+from Testing.slicer.host.qt_module import class_named
 from Testing.slicer.host.views import SLICES, SliceView, ThreeDView
+
+PLOT_LAYOUTS = (
+    slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpPlotView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpPlotTableView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutPlotView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutThreeDPlotView,
+)
 
 
 def _all_members(class_name: str) -> frozenset[str]:
@@ -19,8 +30,9 @@ class LayoutManager(Checked):
     """Stands in for `qSlicerLayoutManager`.
 
     Attributes:
-        layout: the layout that was chosen; the views stay the same here.
+        layout: the layout that was chosen; but for the plot the views stay the same here.
         threeDViewCount: number of 3D views.
+        plotViewCount: number of plot views.
     """
 
     measured = frozenset(FACTS["slicer.app.layoutManager()"])
@@ -29,8 +41,10 @@ class LayoutManager(Checked):
     def __init__(self, scene: Any, application_logic: Any) -> None:
         self._scene = scene
         self._logic = application_logic
-        self.layout = 3
+        self.layout = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpView
         self.threeDViewCount = 1
+        self.plotViewCount = 0
+        self._plots: list[Any] = []
 
     @functools.cached_property
     def _three_d(self) -> ThreeDView:
@@ -42,6 +56,15 @@ class LayoutManager(Checked):
 
     def setLayout(self, layout: int) -> None:
         self.layout = layout
+        if layout in PLOT_LAYOUTS and not self._plots:
+            plot = class_named("qMRMLPlotWidget")()
+            plot.setMRMLScene(self._scene)
+            plot.setMRMLPlotViewNode(self._plot_view_node())
+            self._plots.append(plot)
+        self.plotViewCount = len(self._plots) if layout in PLOT_LAYOUTS else 0
+
+    def plotWidget(self, index: int) -> Any:
+        return self._plots[index] if index < self.plotViewCount else None
 
     def threeDWidget(self, index: int) -> ThreeDWidget | None:
         return ThreeDWidget(self._three_d) if index == 0 else None
@@ -57,6 +80,13 @@ class LayoutManager(Checked):
 
     def resetSliceViews(self) -> None:
         """Pictures of the slices are always fitted here."""
+
+    def _plot_view_node(self) -> Any:
+        node = slicer.vtkMRMLPlotViewNode()
+        node.SetSingletonTag("PlotView1")
+        node.SetLayoutName("PlotView1")
+        node.SetName("PlotView1")
+        return self._scene.AddNode(node)
 
     def three_d_view_of_host(self) -> ThreeDView:
         """Return the 3D view, to draw it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6 import QtCore, QtGui, QtWidgets
 
 from Testing.slicer.host.layout import LayoutManager
+from Testing.slicer.host.stand_ins.plot_view import draw_chart
 
 GAP = 4
 
@@ -20,12 +21,17 @@ def window(panel: QtWidgets.QWidget, layout: LayoutManager, size: tuple) -> QtGu
     painter.drawPixmap(0, 0, panel.grab())
     right, lower = left + width + GAP, height + GAP
     red, green, yellow = layout.slice_views_of_host()
-    for view, place in (
-        (red, (left, 0)),
-        (layout.three_d_view_of_host(), (right, 0)),
-        (green, (left, lower)),
-        (yellow, (right, lower)),
-    ):
-        painter.drawImage(*place, view.picture(width, height))
+    pictures = {
+        (left, 0): red.picture(width, height),
+        (right, 0): layout.three_d_view_of_host().picture(width, height),
+        (left, lower): green.picture(width, height),
+        (right, lower): yellow.picture(width, height),
+    }
+    if layout.plotViewCount:
+        chart = layout.plotWidget(0).mrmlPlotViewNode().GetPlotChartNode()
+        if chart is not None:
+            pictures[right, lower] = draw_chart(chart, width, height)
+    for place, view in pictures.items():
+        painter.drawImage(*place, view)
     painter.end()
     return picture
