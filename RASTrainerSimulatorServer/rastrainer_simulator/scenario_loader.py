@@ -41,13 +41,23 @@ class ScenarioLoader:
         """Load the scenario of a folder, by its path or by the name of one that comes with us."""
         return self._worker.submit(self._load, folder)
 
+    def reload(self) -> Future[Answer]:
+        """Make the present scenario's simulation anew, such as with other settings."""
+        return self._worker.submit(self._use, self._control_loop.setup.scenario.folder)
+
     def close(self) -> None:
         """Wait for what is being loaded, and load nothing more."""
         self._worker.shutdown(cancel_futures=True)
 
     def _load(self, folder: str) -> Answer:
         try:
-            simulation = self._make_simulation(self._found(folder))
+            return self._use(self._found(folder))
+        except InputError as error:
+            return Answer(0, False, str(error))
+
+    def _use(self, folder: Path) -> Answer:
+        try:
+            simulation = self._make_simulation(folder)
         except InputError as error:
             return Answer(0, False, str(error))
         handover = self._control_loop.replace_simulation(simulation)

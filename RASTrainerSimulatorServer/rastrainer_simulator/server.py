@@ -15,18 +15,23 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.errors import RASTrainerError
+from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
 from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.controls.config_folder import config_folder
+from rastrainer_simulator.flow.preferences import FILE_NAME as PREFERENCES_FILE
+from rastrainer_simulator.flow.preferences import Preferences, read_preferences
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.igtl.state_feed import StateFeed
 from rastrainer_simulator.scenario_loader import ScenarioLoader
+from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.setup import load_setup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer
 
 if TYPE_CHECKING:
+    from rastrainer_simulator.flow.running_desk import RunningDesk
     from rastrainer_simulator.view_server.view_server import ViewServer
 
 _log = logging.getLogger(__name__)
@@ -49,7 +54,9 @@ class ServerOptions:
         robot_meshes: folder of the robot's official meshes; None is our own.
         limits: what one client may cost.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
-        has_views: whether views are served at all.
+        has_views: whether views are served at all, and a trainee can operate.
+        has_gamepad: whether gamepads at this computer are read.
+        config: folder of the user's settings; None is the usual one.
     """
 
     records: Path
@@ -63,6 +70,8 @@ class ServerOptions:
     limits: Limits = field(default_factory=Limits)
     view_port: int | None = None
     has_views: bool = True
+    has_gamepad: bool = True
+    config: Path | None = None
 
 
 class SimulatorServer:
@@ -75,6 +84,7 @@ class SimulatorServer:
             InputError: one of their files cannot be used.
         """
         self._options = options
+        self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
         self._control_loop = ControlLoop(
             self._make_simulation(options.scenario), options.records, speed=options.speed
@@ -103,16 +113,19 @@ class SimulatorServer:
         feed = StateFeed(link.publisher.is_due, link.tell, loop)
         unsubscribe = self._control_loop.subscribe(feed)
         tasks = [loop.create_task(link.beat())]
-        serve_views, views = self._views_to_serve(), None
+        stop = asyncio.Event()
+        desk = self._desk(link, stop) if self._options.has_views else None
+        serve_views, views = self._views_to_serve(desk), None
         # What was loaded stays: no garbage collection needs to look at it between two ticks.
         gc.collect()
         gc.freeze()
-        with _stop_on_signals(loop) as stop:
+        with _stop_on_signals(loop, stop):
             self._control_loop.start()
             try:
                 on_ready(await self._open(link, tasks))
                 if serve_views is not None:
                     views = await serve_views(on_ready)
+                    tasks.append(loop.create_task(desk.run()))
                 await self._until(stop)
             finally:
                 for task in tasks:
@@ -120,28 +133,64 @@ class SimulatorServer:
                 unsubscribe()
                 if views is not None:
                     await views.close()
+                if desk is not None:
+                    desk.close()
                 # What was commanded is still answered, and then the connections are closed.
                 await loop.run_in_executor(None, self._stop)
                 await link.server.close()
 
-    def _views_to_serve(self) -> Callable[[Callable[[str], None]], Awaitable[ViewServer]] | None:
-        """Return what opens the view server; None where no views are wanted."""
+    def _preferred_settings(self) -> SimulationSettings:
+        """Return how the trainee wants the simulation to behave; without views, as by default."""
         if not self._options.has_views:
+            return SimulationSettings()
+        try:
+            preferences = read_preferences(self._config / PREFERENCES_FILE)
+        except InputError:
+            # Whether the file is missing or wrong, the desk looks at it again, and says so.
+            preferences = Preferences()
+        return preferences.applied_to(SimulationSettings())
+
+    @property
+    def _config(self) -> Path:
+        return self._options.config or config_folder()
+
+    def _desk(self, link: SimulatorLink, stop: asyncio.Event) -> RunningDesk:
+        """Return the desk that the trainee sits at."""
+        from rastrainer_simulator.flow.running_desk import RunningDesk
+        from rastrainer_simulator.flow.session import Surroundings
+
+        surroundings = Surroundings(
+            config=self._config,
+            records=self._options.records,
+            use_settings=self._use_settings,
+            is_slicer_there=lambda: bool(link.server.clients),
+            quit=stop.set,
+        )
+        return RunningDesk(self._control_loop, surroundings, self._options.has_gamepad)
+
+    def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:
+        self._settings = settings
+        return self._scenarios.reload()
+
+    def _views_to_serve(
+        self, desk: RunningDesk | None
+    ) -> Callable[[Callable[[str], None]], Awaitable[ViewServer]] | None:
+        """Return what opens the view server; None where no views are wanted."""
+        if desk is None:
             return None
         # Here, before the control loop ticks: the import of aiohttp would make ticks late.
-        from rastrainer_simulator.view_server.idle_desk import IdleDesk
         from rastrainer_simulator.view_server.open_views import open_views
 
         return lambda tell: open_views(
             self._control_loop,
-            IdleDesk(),
+            desk.desk,
             tell,
             self._options.view_port,
             self._options.robot_meshes,
         )
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:
-        setup = load_setup(scenario, robot_meshes=self._options.robot_meshes)
+        setup = load_setup(scenario, self._settings, robot_meshes=self._options.robot_meshes)
         return Simulation(setup, next(self._seeds))
 
     async def _open(self, link: SimulatorLink, tasks: list[asyncio.Task[None]]) -> str:
@@ -188,9 +237,8 @@ def _is_loopback(host: str) -> bool:
 
 
 @contextlib.contextmanager
-def _stop_on_signals(loop: asyncio.AbstractEventLoop) -> Iterator[asyncio.Event]:
+def _stop_on_signals(loop: asyncio.AbstractEventLoop, stop: asyncio.Event) -> Iterator[None]:
     """Set the event on SIGTERM and Ctrl-C, in place of what these do otherwise."""
-    stop = asyncio.Event()
 
     def ask(*_signal: object) -> None:
         loop.call_soon_threadsafe(stop.set)
@@ -198,7 +246,7 @@ def _stop_on_signals(loop: asyncio.AbstractEventLoop) -> Iterator[asyncio.Event]
     # Not by the event loop's own means, which Windows lacks.
     before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield stop
+        yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

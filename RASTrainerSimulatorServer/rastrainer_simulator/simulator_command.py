@@ -61,6 +61,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--robot-meshes", type=Path, metavar="DIR", help="the robot's official meshes"
     )
+    parser.add_argument(
+        "--gamepad",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="read the gamepads of this computer",
+    )
+    parser.add_argument(
+        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
+    )
     parser.set_defaults(run=run)
 
 
@@ -85,6 +94,8 @@ def run(arguments: argparse.Namespace) -> int:
         port=arguments.port,
         view_port=arguments.view_port,
         has_views=not arguments.no_views,
+        has_gamepad=arguments.gamepad,
+        config=arguments.config,
         connect_to=connect_to,
         speed=arguments.speed,
         scenario=arguments.scenario,

@@ -275,5 +275,5 @@ class Desk:
             listener(news)
 
 
-def _nothing_vibrates(strength: float, seconds: float) -> None:  # noqa: ARG001
+def _nothing_vibrates(strength: float, seconds: float) -> None:
     """Stand in for a gamepad."""

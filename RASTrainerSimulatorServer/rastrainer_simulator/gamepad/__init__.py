@@ -1,0 +1,1 @@
+"""Gamepads at the simulator, read through SDL."""
