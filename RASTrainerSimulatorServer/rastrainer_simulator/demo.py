@@ -158,28 +158,27 @@ def _draw_robot(
     path: Path, scenario: Scenario, state: dict[str, Any], trial: dict[str, Any]
 ) -> None:
     """Picture the last touch: the arm as it then stood, at the head that is no longer secret."""
-    from rastrainer_simulator.views.head_actors import ShownHead
-    from rastrainer_simulator.views.picture import render_robot_picture
+    from rastrainer_simulator.scene.scene_glb import scene_nodes
+    from rastrainer_simulator.views.moment import Moment
+    from rastrainer_simulator.views.picture import render_picture
 
     robot = load_robot()
     task = scenario.task(trial["task"])
-    head_to_world = np.array(trial["truth"]["head_to_world"])
-    head = ShownHead(
-        mesh=read_head_mesh(scenario.head_mesh),
-        head_to_world=head_to_world,
-        fiducials=task.fiducials,
-        labels=task.labels,
+    head = read_head_mesh(scenario.head_mesh)
+    moment = Moment(
+        link_to_world=make_kinematics(robot).links(state["q"]),
+        head_to_world=np.array(trial["truth"]["head_to_world"]),
+        head_base=head.base,
         touched=frozenset(task.labels),
+        proximity=Proximity(state["proximity"]),
     )
-    render_robot_picture(
+    render_picture(
         path,
+        scene_nodes(scenario, robot, head, task),
         robot,
-        make_kinematics(robot).links(state["q"]),
-        head,
-        scenario.furniture,
+        moment,
         scenario.cameras["far"],
         inset=scenario.cameras["close-up"],
-        proximity=Proximity(state["proximity"]),
     )
 
 

@@ -8,18 +8,16 @@ from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario import Camera, Furniture
+from rastrainer.tasks import Task
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
-from rastrainer_simulator.views.head_actors import ShownHead
+from rastrainer_simulator.scene.head_nodes import head_node
+from rastrainer_simulator.scene.robot_nodes import robot_nodes
+from rastrainer_simulator.scene.room_nodes import room_nodes
+from rastrainer_simulator.scene.table_nodes import stand_node, table_node
+from rastrainer_simulator.views.moment import Moment
 from rastrainer_simulator.views.offscreen import write_png
-from rastrainer_simulator.views.picture import render_robot_picture
-from rastrainer_simulator.views.skin_marks import (
-    DOT_LIFT,
-    NUMBER_HEIGHT,
-    NUMBER_LIFT,
-    RIM_LIFT,
-    skin_marks,
-)
+from rastrainer_simulator.views.picture import render_picture
 
 RADIUS = 80.0
 SIZE = (480, 270)
@@ -40,22 +38,35 @@ def ball() -> HeadMesh:
 
 
 @pytest.fixture(scope="module")
-def head(ball) -> ShownHead:
-    """A ball beside the tool, its face to the camera: one point done, one next, one waiting."""
+def head_to_world() -> np.ndarray:
+    """A ball beside the tool, its face to the camera."""
     pose = np.diag([-1.0, -1.0, 1.0, 1.0])
     pose[:3, 3] = 760.0, 0.0, 300.0
-    return ShownHead(ball, pose, FRONT, ("1", "2", "3"), frozenset({"1"}), "2")
+    return pose
 
 
 @pytest.fixture(scope="module")
-def picture(tmp_path_factory, head):
-    """Render the robot at home and return the pixels, (height, width, 3) int."""
+def picture(tmp_path_factory, ball, head_to_world):
+    """Render the robot at home and return the pixels, (height, width, 3) int.
+
+    One point is done, one is next, one waits.
+    """
     robot = load_robot()
     links = make_kinematics(robot).links(np.array(robot.home))
+    base = (head_to_world @ np.append(ball.base, 1.0))[:3] / 1000
+    nodes = [
+        *robot_nodes(robot),
+        head_node(ball, Task("ball", "Ball", ("1", "2", "3"), FRONT, 1.0)),
+        stand_node(FURNITURE, base),
+        table_node(FURNITURE, base),
+        *room_nodes(),
+    ]
 
-    def render(**arguments) -> np.ndarray:
+    def render(proximity=Proximity.FREE, **arguments) -> np.ndarray:
         path = tmp_path_factory.mktemp("pictures") / "robot.png"
-        render_robot_picture(path, robot, links, head, FURNITURE, size=SIZE, **arguments)
+        done = frozenset({"1"})
+        moment = Moment(links, head_to_world, ball.base, done, "2", proximity)
+        render_picture(path, nodes, robot, moment, size=SIZE, **arguments)
         return _pixels(path)
 
     return render
@@ -123,16 +134,16 @@ def test_the_tool_tip_is_blue_when_free_and_red_when_near_or_touching(tip):
         assert _share(near, *blue) == 0
 
 
-def test_fiducials_are_colored_by_their_state_and_numbered(picture, head):
-    pixels = picture(camera=close_up(head.head_to_world[:3, 3]))
+def test_fiducials_are_colored_by_their_state_and_numbered(picture, head_to_world):
+    pixels = picture(camera=close_up(head_to_world[:3, 3]))
     assert _share(pixels, (10, 130, 40), (60, 190, 90)) > 1e-4, "touched: green"
     assert _share(pixels, (220, 180, 0), (255, 225, 60)) > 1e-4, "next: yellow"
     assert _share(pixels, (10, 40, 130), (60, 90, 190)) > 1e-4, "waiting: blue"
     assert _share(pixels, (0, 0, 20), (60, 60, 80)) > 1e-4, "numbers: nearly black"
 
 
-def test_an_inset_shows_a_second_view_in_a_white_frame(picture, far, head):
-    both = picture(camera=FAR, inset=close_up(head.head_to_world[:3, 3]))
+def test_an_inset_shows_a_second_view_in_a_white_frame(picture, far, head_to_world):
+    both = picture(camera=FAR, inset=close_up(head_to_world[:3, 3]))
     changed = np.argwhere(np.any(np.abs(both - far) > 60, axis=2))
     (top, left), (bottom, right) = changed.min(axis=0), changed.max(axis=0)
     assert left > SIZE[0] / 2
@@ -144,39 +155,3 @@ def test_an_inset_shows_a_second_view_in_a_white_frame(picture, far, head):
 def test_an_unwritable_picture_is_refused_in_one_sentence(tmp_path):
     with pytest.raises(InputError, match=r"robot\.png cannot be written: No such file"):
         write_png(np.zeros((2, 2, 3), np.uint8), tmp_path / "nowhere" / "robot.png")
-
-
-def _points(shape) -> np.ndarray:
-    return vtk_to_numpy(shape.GetPoints().GetData()).astype(float)
-
-
-def test_marks_lie_on_the_skin_and_follow_its_curve(ball):
-    for mark in skin_marks(ball, FRONT, ("7", "12", "15")):
-        for shape, lift in (
-            (mark.dot, DOT_LIFT),
-            (mark.rim, RIM_LIFT),
-            (mark.number, NUMBER_LIFT),
-        ):
-            heights = np.linalg.norm(_points(shape), axis=1) - RADIUS
-            assert np.all(np.abs(heights - lift) < 0.3)
-
-
-def test_a_number_reads_from_outside_with_the_patients_superior_up(ball):
-    mark = skin_marks(ball, FRONT[:1], ("1L",))[0]
-    points = _points(mark.number)
-    assert np.ptp(points[:, 2]) == pytest.approx(NUMBER_HEIGHT, rel=0.05)
-    # Seen from in front of the face, the patient's right (+x) is on the left.
-    foot = points[points[:, 2] < points[:, 2].min() + 0.15 * NUMBER_HEIGHT]
-    assert foot[:, 0].min() < points[:, 0].mean(), "the foot of the L reaches to the viewer's right"
-    assert np.median(foot[:, 0]) < np.median(points[:, 0])
-
-
-def test_numbers_keep_away_from_other_fiducials():
-    sphere = trimesh.creation.icosphere(subdivisions=4, radius=RADIUS)
-    dense = HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
-    angles = np.radians([-12, 0, 12])
-    row = RADIUS * np.column_stack([np.sin(angles), np.cos(angles), np.zeros(3)])
-    for index, mark in enumerate(skin_marks(dense, row, ("1", "2", "3"))):
-        distances = np.linalg.norm(_points(mark.number)[:, None] - row, axis=2)
-        assert distances.min() > 5.2, "clear of every dot's rim"
-        assert np.argmin(distances.mean(axis=0)) == index

@@ -9,7 +9,8 @@ from vtkmodules.vtkFiltersModeling import vtkAdaptiveSubdivisionFilter
 from vtkmodules.vtkFiltersSources import vtkDiskSource
 from vtkmodules.vtkRenderingFreeType import vtkVectorText
 
-from rastrainer_simulator.scene.shading import poly_data, triangles_of
+from rastrainer_simulator.scene.shading import triangles_of
+from rastrainer_simulator.views.actors import surface
 
 DOT_RADIUS = 4.0
 RIM_RADIUS = 5.2
@@ -39,7 +40,7 @@ def number(label: str) -> Flat:
     points = (points - (low + high) / 2.0) * NUMBER_HEIGHT / (high[1] - low[1])
     pieces = vtkAdaptiveSubdivisionFilter()
     upright = np.column_stack([points, np.zeros(len(points))])
-    pieces.SetInputData(poly_data(upright, triangles))
+    pieces.SetInputData(surface(upright, triangles))
     pieces.SetMaximumEdgeLength(LONGEST_EDGE)
     pieces.Update()
     made = pieces.GetOutput()

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from rastrainer_simulator.scene.materials import Material
 from rastrainer_simulator.scene.nodes import Surface
+from rastrainer_simulator.views.actors import surface
 
 CREASE_DEG = 22.0
 
@@ -25,7 +25,7 @@ def shaded(
     Where two triangles meet at more than `crease_deg`, the edge stays sharp.
     """
     normals = vtkPolyDataNormals()
-    normals.SetInputData(poly_data(vertices, triangles))
+    normals.SetInputData(surface(vertices, triangles))
     normals.SetFeatureAngle(crease_deg)
     normals.ConsistencyOff()
     normals.Update()
@@ -36,19 +36,6 @@ def shaded(
         triangles_of(made),
         material,
     )
-
-
-def poly_data(vertices: np.ndarray, triangles: np.ndarray) -> vtkPolyData:
-    """Return VTK's surface of (n, 3) float vertices and (m, 3) int triangles."""
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(vertices, dtype=np.float32), deep=True))
-    corners = np.ascontiguousarray(triangles, dtype=np.int64).reshape(-1)
-    cells = vtkCellArray()
-    cells.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
-    data = vtkPolyData()
-    data.SetPoints(points)
-    data.SetPolys(cells)
-    return data
 
 
 def triangles_of(data: vtkPolyData) -> np.ndarray:

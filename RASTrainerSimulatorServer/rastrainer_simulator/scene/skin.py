@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonCore import mutable, vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator, vtkStaticPointLocator
 
 from rastrainer.head_mesh import HeadMesh
-from rastrainer_simulator.scene.shading import poly_data
+from rastrainer_simulator.views.actors import surface
 
 REACH = 25.0
 PATCH_RADIUS = 10.0
@@ -35,7 +35,7 @@ class Skin:
 
     def __init__(self, head: HeadMesh) -> None:
         self._normals = head.vertex_normals
-        shape = poly_data(head.vertices, head.triangles)
+        shape = surface(head.vertices, head.triangles)
         self._cells, self._points = vtkStaticCellLocator(), vtkStaticPointLocator()
         for locator in (self._cells, self._points):
             locator.SetDataSet(shape)

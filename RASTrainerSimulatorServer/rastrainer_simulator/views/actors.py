@@ -1,4 +1,4 @@
-"""Turn arrays into VTK actors."""
+"""Turn arrays into what VTK draws."""
 
 from __future__ import annotations
 
@@ -7,12 +7,6 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
-from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
-
-from rastrainer_simulator.views.materials import Material
-
-CREASE_DEG = 22.0
 
 
 def surface(vertices: np.ndarray, triangles: np.ndarray) -> vtkPolyData:
@@ -26,30 +20,6 @@ def surface(vertices: np.ndarray, triangles: np.ndarray) -> vtkPolyData:
     data.SetPoints(points)
     data.SetPolys(cells)
     return data
-
-
-def actor(
-    shape: vtkPolyData,
-    material: Material,
-    pose: np.ndarray | None = None,
-    crease_deg: float = CREASE_DEG,
-) -> vtkActor:
-    """Return an actor, smooth but for creases sharper than `crease_deg`.
-
-    `pose` is a (4, 4) float matrix from the shape's frame to World.
-    """
-    normals = vtkPolyDataNormals()
-    normals.SetInputData(shape)
-    normals.SetFeatureAngle(crease_deg)
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(normals.GetOutputPort())
-    mapper.ScalarVisibilityOff()
-    made = vtkActor()
-    made.SetMapper(mapper)
-    material.apply(made.GetProperty())
-    if pose is not None:
-        made.SetUserMatrix(vtk_matrix(pose))
-    return made
 
 
 def vtk_matrix(matrix: np.ndarray) -> vtkMatrix4x4:

@@ -2,54 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from rastrainer.protocol import Proximity
-from rastrainer.scenario import Camera, Furniture
+from rastrainer.scenario import Camera
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.views.head_actors import ShownHead, head_actors
+from rastrainer_simulator.scene.nodes import Node
 from rastrainer_simulator.views.lighting import light_room
+from rastrainer_simulator.views.moment import Moment
+from rastrainer_simulator.views.node_actors import node_actors
 from rastrainer_simulator.views.offscreen import OffscreenWindow, write_png
-from rastrainer_simulator.views.robot_actors import robot_actors
-from rastrainer_simulator.views.room import head_stand, room
 
 INSET_SHARE = 0.31
 FRAME_SHARE = 0.006
 
 
-def render_robot_picture(
+def render_picture(
     path: Path,
+    nodes: Sequence[Node],
     robot: RobotModel,
-    link_to_world: Mapping[str, np.ndarray],
-    head: ShownHead,
-    furniture: Furniture,
+    moment: Moment,
     camera: Camera,
     inset: Camera | None = None,
-    proximity: Proximity = Proximity.FREE,
     size: tuple[int, int] = (1600, 900),
 ) -> None:
-    """Write a PNG of the robot at the head, in place of an older one.
+    """Write a PNG of a scene at one moment, in place of an older one.
 
-    `link_to_world` has a (4, 4) float pose in metres for every link, as `Kinematics.links` returns
-    them; `furniture` and the cameras are a scenario's; `inset` is a second view, laid into the
-    upper right corner; `size` is the picture's width and height in pixels. Takes some seconds where
-    VTK renders in software.
+    `nodes` are the scene's, as `scene_nodes` gives them, and `robot` is the one among them; the
+    cameras are a scenario's; `inset` is a second view, laid into the upper right corner; `size` is
+    the picture's width and height in pixels. Takes some seconds where VTK renders in software.
 
     Raises:
-        InputError: the picture cannot be written, or a mesh of the robot cannot be read.
+        InputError: the picture cannot be written.
     """
     renderer = vtkRenderer()
-    shown = (
-        *room(furniture),
-        *head_actors(head),
-        *head_stand(head, furniture),
-        *robot_actors(robot, link_to_world, proximity),
-    )
-    for actor in shown:
+    for actor in node_actors(nodes, moment.poses(robot), moment.looks()):
         renderer.AddActor(actor)
     light_room(renderer)
     window = OffscreenWindow(renderer)
