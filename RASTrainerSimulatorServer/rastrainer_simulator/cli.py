@@ -15,6 +15,7 @@ SUBCOMMANDS = {
     "register": "rastrainer.commands.register_command",
     "score": "rastrainer.commands.score_command",
     "simulator": "rastrainer_simulator.simulator_command",
+    "window": "rastrainer_simulator.window_command",
     "replay": "rastrainer_simulator.replay_command",
     "verify": "rastrainer_simulator.verify_command",
     "demo": "rastrainer_simulator.demo_command",

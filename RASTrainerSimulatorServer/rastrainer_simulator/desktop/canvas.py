@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -62,7 +63,7 @@ class Canvas:
         right, bottom = np.ceil(corners.max(axis=0) + reach).astype(int)
         x, y = np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom) + 0.5)
         nearest = np.full(x.shape, np.inf)
-        for start, end in zip(corners[:-1], corners[1:], strict=True):
+        for start, end in pairwise(corners):
             nearest = np.minimum(nearest, _distance(x, y, start, end))
         cover = np.clip(thickness / 2.0 - nearest + 0.5, 0.0, 1.0)
         self._cover(int(left), int(top), cover.astype(np.float32), color)

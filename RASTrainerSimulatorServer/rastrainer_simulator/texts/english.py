@@ -304,6 +304,14 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "keyboard.",
         "warning.no SDL": "Gamepads cannot be read on this computer ({reason}): use the keyboard.",
         "warning.settings": "{reason} The defaults are used.",
+        # What the window says itself, because the simulator cannot.
+        "window.title": "RASTrainer",
+        "window.connecting": "The window is joining the simulator.",
+        "window.lost": "The connection to the simulator is lost. It is joined again as soon as the "
+        "simulator answers.",
+        "window.unknown": "The simulator does not know this window: close it and open one with the "
+        "pairing code that the simulator shows now.",
+        "window.refused": "The simulator serves as many views as it can: close another one.",
         "status.points": "{kept} of {count} points",
         "status.left": "{time} left",
         "status.toward": "Point {point}: {distance} mm {direction}",

@@ -29,6 +29,10 @@ class Said(str):
         said.values = values
         return said
 
+    def __deepcopy__(self, _memo: object) -> Said:
+        """Stay the same object, as any text does where a screen is turned into JSON."""
+        return self
+
 
 class Texts:
     """Says the sentences, in the language of its table."""

@@ -27,12 +27,15 @@ LAMP_INTENSITY = 2.5
 SHADOW_PIXELS = 2048
 
 
-def light_room(renderer: vtkRenderer) -> None:
-    """Give a renderer its surroundings, lamps, shadows and smooth edges."""
+def light_room(renderer: vtkRenderer, has_shadows: bool = True) -> None:
+    """Give a renderer its surroundings, lamps and smooth edges, and shadows where wanted."""
     _surround(renderer)
     for x, y in LAMP_CORNERS:
         renderer.AddLight(_lamp(x * LAMP_SPREAD, y * LAMP_SPREAD))
-    renderer.SetPass(_passes())
+    if has_shadows:
+        renderer.SetPass(_passes())
+    else:
+        renderer.UseFXAAOn()
 
 
 def _surround(renderer: vtkRenderer) -> None:

@@ -23,17 +23,23 @@ def warning(message: Message, brush: Brush, room: int) -> np.ndarray:
     return _sentence(message, theme.STRONG, theme.BANNERS[message.tone], theme.TEXT, brush, room)
 
 
-def status(facts: Sequence[str], brush: Brush) -> np.ndarray:
-    """Return short facts, one beside the other."""
-    widths = [brush.width(fact, theme.SMALL_STRONG) for fact in facts]
+def status(facts: Sequence[str], brush: Brush, room: int) -> np.ndarray:
+    """Return short facts, one beside the other, in as many rows as they need."""
     pad, gap = brush.px(theme.GAP), brush.px(theme.STEP)
     height = brush.line_height(theme.SMALL_STRONG) + 2 * brush.px(theme.STEP)
-    canvas = Canvas(sum(widths) + 2 * pad * len(facts) + gap * (len(facts) - 1), height)
-    left = 0
-    for fact, width in zip(facts, widths, strict=True):
-        canvas.box(Box(left, 0, width + 2 * pad, height), theme.GLASS, height / 2)
-        brush.write(canvas, fact, theme.SMALL_STRONG, theme.TEXT, left + pad, brush.px(theme.STEP))
-        left += width + 2 * pad + gap
+    places: list[Box] = []
+    left = top = 0
+    for fact in facts:
+        width = brush.width(fact, theme.SMALL_STRONG) + 2 * pad
+        if left and left + width > room:
+            left, top = 0, top + height + gap
+        places.append(Box(left, top, width, height))
+        left += width + gap
+    canvas = Canvas(max(place.left + place.width for place in places), top + height)
+    for fact, place in zip(facts, places, strict=True):
+        canvas.box(place, theme.GLASS, height / 2)
+        inside = place.top + brush.px(theme.STEP)
+        brush.write(canvas, fact, theme.SMALL_STRONG, theme.TEXT, place.left + pad, inside)
     return canvas.pixels()
 
 

@@ -1,0 +1,182 @@
+"""The window's process: events in, messages out, and the latest state as a picture."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+import pygame
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.desktop.connection import Connection
+from rastrainer_simulator.desktop.frame_count import FrameCount
+from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.inbox import Inbox
+from rastrainer_simulator.desktop.operator_keys import OperatorKeys
+from rastrainer_simulator.desktop.picture import Picture
+from rastrainer_simulator.desktop.picture_file import save_picture
+from rastrainer_simulator.desktop.quality import SLOWEST_FRAME_S, Quality, first_quality
+from rastrainer_simulator.desktop.sounds import Sounds
+from rastrainer_simulator.view_server.messages import FRAMES, ITEM
+
+LOOK_S = 0.004
+"""How often the window looks for keys while nothing arrives."""
+LEAST_REFRESH_HZ = 60.0
+TRIED_FRAMES = 12
+POLITENESS = 10
+LEFT_BUTTON = 1
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class WindowOptions:
+    """What the window is started with.
+
+    Attributes:
+        url: of the simulator, such as "http://127.0.0.1:18945".
+        key: that the simulator knows.
+        size: in pixels; None for one that suits the display.
+        is_fullscreen: whether to begin without a frame.
+        quality: None finds out what the machine can afford.
+        pictures: folder of what F12 keeps.
+        frame_log: file that gets a line for each picture, for measurements.
+    """
+
+    url: str
+    key: str
+    size: tuple[int, int] | None = None
+    is_fullscreen: bool = False
+    quality: Quality | None = None
+    pictures: Path = Path.home() / "RASTrainer" / "pictures"
+    frame_log: Path | None = None
+
+
+class DesktopWindow:
+    """Runs until the user closes it."""
+
+    def __init__(self, options: WindowOptions):
+        """Open the window.
+
+        Raises:
+            RASTrainerError: there is no display.
+        """
+        self._options = options
+        self._window = GlWindow(options.size, options.is_fullscreen)
+        self._sounds = Sounds()
+        self._inbox = Inbox()
+        quality = options.quality or first_quality(self._window.renderer_name)
+        if quality is Quality.LOW and hasattr(os, "nice"):
+            # It draws with the processor that the control loop needs on time.
+            os.nice(POLITENESS)
+        self._picture = Picture(self._window, self._inbox, quality)
+        self._trial: list[float] | None = [] if options.quality is None else None
+        self._connection = Connection(
+            options.url, options.key, self._inbox, self._window.refresh_hz
+        )
+        self._keys = OperatorKeys(self._connection)
+        self._frames = FrameCount(self._report_frames, time.monotonic())
+        self._is_open = True
+
+    async def run(self) -> None:
+        """Draw and listen until the window is closed."""
+        connecting = asyncio.create_task(self._connection.run())
+        try:
+            with self._open_log() as log:
+                while self._is_open and not connecting.done():
+                    await self._turn(log)
+        finally:
+            connecting.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await connecting
+            self._sounds.close()
+            self._window.close()
+
+    async def _turn(self, log: IO[str] | None) -> None:
+        """Take what has come, and draw it if it shows."""
+        begin = time.monotonic()
+        for event in pygame.event.get():
+            self._take(event)
+        self._keys.keep_alive()
+        while self._inbox.sounds:
+            sound = self._inbox.sounds.popleft()
+            self._sounds.play(sound.name, sound.volume)
+        if not self._picture.is_due(begin):
+            self._frames.tell(begin)
+            await self._inbox.wait(LOOK_S)
+            return
+        self._frames.due()
+        self._picture.draw()
+        self._frames.shown()
+        self._log_frame(log)
+        self._judge(time.monotonic() - begin)
+        self._frames.tell(begin)
+        rest = begin + 1.0 / max(LEAST_REFRESH_HZ, self._window.refresh_hz) - time.monotonic()
+        # Not drawn faster than it can be seen; what arrives meanwhile is taken in.
+        await asyncio.sleep(max(0.0, rest))
+
+    def _take(self, event: pygame.event.Event) -> None:
+        if event.type == pygame.QUIT:
+            self._is_open = False
+        elif event.type == pygame.KEYDOWN and event.key == pygame.K_F11:
+            self._window.toggle_fullscreen()
+        elif event.type == pygame.KEYDOWN and event.key == pygame.K_F12:
+            self._keep_picture()
+        elif event.type == pygame.MOUSEMOTION:
+            self._picture.pointer = event.pos
+        elif event.type == pygame.MOUSEBUTTONDOWN and event.button == LEFT_BUTTON:
+            self._picture.pointer = event.pos
+            name = self._picture.item_at_pointer()
+            if name:
+                self._connection.send(ITEM, name=name)
+        elif event.type == pygame.MOUSEWHEEL and event.y:
+            self._keys.tap("ArrowUp" if event.y > 0 else "ArrowDown")
+        elif event.type in (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED):
+            self._picture.redraw()
+        self._keys.take(event)
+
+    def _keep_picture(self) -> None:
+        try:
+            path = save_picture(self._picture.best(), self._options.pictures)
+        except InputError as error:
+            _log.warning("%s", error)
+        else:
+            print(f"Picture {path}", flush=True)
+
+    def _judge(self, seconds: float) -> None:
+        """Draw with less light where the machine turns out to be too slow for so much."""
+        if self._trial is None or self._inbox.scene is None:
+            return
+        self._trial.append(seconds)
+        if len(self._trial) < TRIED_FRAMES:
+            return
+        # The first pictures also compile what draws them.
+        median = sorted(self._trial[TRIED_FRAMES // 2 :])[TRIED_FRAMES // 4]
+        quality = self._picture.stage.quality
+        if median <= SLOWEST_FRAME_S or quality is Quality.LOW:
+            self._trial = None
+        else:
+            self._trial = []
+            self._picture.set_quality(quality.lower)
+
+    def _report_frames(self, shown: int, dropped: int) -> None:
+        hz = self._window.refresh_hz
+        self._connection.send(FRAMES, shown=shown, dropped=dropped, refreshHz=hz)
+
+    def _open_log(self) -> contextlib.AbstractContextManager[IO[str] | None]:
+        path = self._options.frame_log
+        return contextlib.nullcontext() if path is None else path.open("w", encoding="utf-8")
+
+    def _log_frame(self, log: IO[str] | None) -> None:
+        if log is None or self._inbox.state is None:
+            return
+        line = {"shown": time.monotonic(), "tick": self._inbox.state["tick"]}
+        log.write(json.dumps(line) + "\n")
+        log.flush()

@@ -1,0 +1,175 @@
+"""Join the simulator, hear its stream, and come back whenever it was away."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import aiohttp
+
+from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_finite_json
+from rastrainer_simulator.desktop.flight import Viewpoint
+from rastrainer_simulator.desktop.glb_parts import read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, SceneNews, SoundEvent
+from rastrainer_simulator.desktop.screen_reader import screen_from_json
+from rastrainer_simulator.view_server.messages import HELLO, SUBPROTOCOL
+
+RETRY_S = 1.0
+ANSWER_S = 10.0
+LARGEST_MESSAGE = 2**20
+LARGEST_SCENE = 2**28
+UNAUTHORIZED = 401
+
+_log = logging.getLogger(__name__)
+
+
+class Connection:
+    """One view of one simulator."""
+
+    def __init__(self, url: str, key: str, inbox: Inbox, refresh_hz: float):
+        self._url = url.rstrip("/")
+        self._key = key
+        self._inbox = inbox
+        self._refresh_hz = refresh_hz
+        self._stream: aiohttp.ClientWebSocketResponse | None = None
+        self._outgoing: asyncio.Queue[Mapping[str, Any]] = asyncio.Queue()
+        self._bodies: tuple[str, ...] = ()
+        self._last_event = 0
+        self._scene_url = ""
+
+    def send(self, message: str, /, **members: Any) -> None:
+        """Send a message of that type, unless there is no connection: what was pressed then does not count."""
+        if self._stream is not None:
+            self._outgoing.put_nowait({"type": message, **members})
+
+    async def run(self) -> None:
+        """Stay connected until cancelled."""
+        headers = {"Authorization": f"Bearer {self._key}"}
+        async with aiohttp.ClientSession(headers=headers) as session:
+            while True:
+                with contextlib.suppress(aiohttp.ClientError, OSError, asyncio.TimeoutError):
+                    await self._join(session)
+                if not self._inbox.problem:
+                    self._tell("window.lost")
+                await asyncio.sleep(RETRY_S)
+
+    async def _join(self, session: aiohttp.ClientSession) -> None:
+        try:
+            stream = await session.ws_connect(
+                f"{self._url}/stream",
+                protocols=(SUBPROTOCOL,),
+                max_msg_size=LARGEST_MESSAGE,
+                timeout=aiohttp.ClientWSTimeout(ws_close=1.0),
+                heartbeat=ANSWER_S,
+            )
+        except aiohttp.WSServerHandshakeError as error:
+            unknown = error.status == UNAUTHORIZED
+            self._tell("window.unknown" if unknown else "window.refused")
+            return
+        async with stream:
+            self._outgoing = asyncio.Queue()
+            self._last_event = 0
+            self.send_first(stream)
+            sending = asyncio.create_task(self._send_all(stream))
+            try:
+                async for message in stream:
+                    if message.type is aiohttp.WSMsgType.TEXT:
+                        await self._take(session, message.data)
+            finally:
+                self._stream = None
+                sending.cancel()
+
+    def send_first(self, stream: aiohttp.ClientWebSocketResponse) -> None:
+        """Greet; from now on messages are sent."""
+        self._stream = stream
+        self.send(HELLO, kind="desktop", device="", refreshHz=self._refresh_hz)
+
+    async def _send_all(self, stream: aiohttp.ClientWebSocketResponse) -> None:
+        with contextlib.suppress(ConnectionError):
+            while True:
+                await stream.send_str(json.dumps(await self._outgoing.get()))
+
+    async def _take(self, session: aiohttp.ClientSession, text: str) -> None:
+        try:
+            message = decode_finite_json(text)
+            kind = message["type"]
+            if kind == "scene":
+                await self._take_scene(session, message)
+            elif kind in _TAKE:
+                _TAKE[kind](self, message)
+        except (InputError, KeyError, TypeError, ValueError) as error:
+            _log.warning("A message of the simulator cannot be used: %s", error)
+            return
+        if self._inbox.problem and self._inbox.state is not None:
+            self._inbox.problem = ""
+        self._inbox.touch()
+
+    def _take_welcome(self, message: Mapping[str, Any]) -> None:
+        self._bodies = tuple(message["bodies"])
+
+    def _take_state(self, message: Mapping[str, Any]) -> None:
+        poses = dict(zip(self._bodies, message["poses"], strict=True))
+        self._inbox.take_state({**message, "poses": poses})
+
+    def _take_screen(self, message: Mapping[str, Any]) -> None:
+        self._inbox.screen = screen_from_json(message["screen"])
+
+    def _take_event(self, message: Mapping[str, Any]) -> None:
+        number = int(message["number"])
+        if number > self._last_event:
+            self._last_event = number
+            if message["sound"]:
+                sound = SoundEvent(str(message["sound"]), float(message.get("volume", 1.0)))
+                self._inbox.sounds.append(sound)
+
+    async def _take_scene(
+        self, session: aiohttp.ClientSession, message: Mapping[str, Any]
+    ) -> None:
+        """Load a scene; the one that is shown stays until the next is there."""
+        url = str(message["url"])
+        async with session.get(self._url + url) as answer:
+            answer.raise_for_status()
+            content = await answer.content.read(LARGEST_SCENE)
+            while not answer.content.at_eof() and len(content) < LARGEST_SCENE:
+                content += await answer.content.read(LARGEST_SCENE - len(content))
+        self._inbox.scene = SceneNews(
+            read_parts(content, self._bodies),
+            {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
+            {str(label): tuple(place) for label, place in message["fiducials"].items()},
+        )
+
+    def _tell(self, problem: str) -> None:
+        self._inbox.problem = problem
+        self._inbox.touch()
+
+
+_TAKE: Mapping[str, Callable[[Connection, Mapping[str, Any]], None]] = {
+    "welcome": Connection._take_welcome,
+    "state": Connection._take_state,
+    "screen": Connection._take_screen,
+    "event": Connection._take_event,
+}
+
+
+async def pair(url: str, code: str) -> str:
+    """Return a key in exchange for the code that the simulator shows.
+
+    Raises:
+        InputError: the code is wrong, or there is no simulator.
+    """
+    address = f"{url.rstrip('/')}/pair"
+    try:
+        async with (
+            aiohttp.ClientSession(timeout=aiohttp.ClientTimeout(total=ANSWER_S)) as session,
+            session.post(address, json={"code": code}) as answer,
+        ):
+            if answer.status != 200:
+                raise InputError("The pairing code must be the one that the simulator shows now.")
+            return str((await answer.json())["key"])
+    except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
+        raise InputError(f"There must be a simulator at {url}: {error}.") from None

@@ -1,0 +1,140 @@
+"""A window of SDL's into which VTK draws.
+
+SDL tells keys by their place on the keyboard, typed text, repeats and the loss of the focus alike
+on every system, all of which VTK's own windows leave out.
+"""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pygame
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLogger
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
+from vtkmodules.vtkRenderingOpenGL2 import vtkGenericOpenGLRenderWindow
+
+from rastrainer.errors import RASTrainerError
+
+TITLE = "RASTrainer"
+LEAST_SIZE = (960, 540)
+REPEAT_AFTER_MS, REPEAT_EVERY_MS = 450, 45
+NO_WINDOW = "No window can be opened on this machine: {reason}."
+_CORE_PROFILE = {
+    pygame.GL_CONTEXT_MAJOR_VERSION: 3,
+    pygame.GL_CONTEXT_MINOR_VERSION: 2,
+    pygame.GL_CONTEXT_PROFILE_MASK: pygame.GL_CONTEXT_PROFILE_CORE,
+    pygame.GL_DOUBLEBUFFER: 1,
+    pygame.GL_DEPTH_SIZE: 24,
+}
+
+
+class GlWindow:
+    """The window and its OpenGL context.
+
+    Attributes:
+        render_window: VTK's; what it renders appears in the window.
+        renderer_name: of OpenGL, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
+        refresh_hz: of the display, 0 where unknown.
+    """
+
+    def __init__(self, size: tuple[int, int] | None, is_fullscreen: bool):
+        """Open the window, as large as the display allows where no size is given.
+
+        Raises:
+            RASTrainerError: there is no display, or no OpenGL.
+        """
+        # What VTK has to say of its own passes is not for people; errors still are.
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+        # A trainee looks at the screen for long without touching a key.
+        os.environ.setdefault("SDL_VIDEO_ALLOW_SCREENSAVER", "0")
+        try:
+            pygame.display.init()
+            for attribute, value in _CORE_PROFILE.items():
+                pygame.display.gl_set_attribute(attribute, value)
+            flags = pygame.OPENGL | pygame.DOUBLEBUF | pygame.RESIZABLE
+            pygame.display.set_mode(size or _roomy_size(), flags)
+        except pygame.error as error:
+            raise RASTrainerError(NO_WINDOW.format(reason=error)) from None
+        pygame.display.set_caption(TITLE)
+        pygame.key.set_repeat(REPEAT_AFTER_MS, REPEAT_EVERY_MS)
+        self._window = pygame.Window.from_display_module()
+        self._window.minimum_size = tuple(
+            min(least, own) for least, own in zip(LEAST_SIZE, self.size, strict=True)
+        )
+        self._is_fullscreen = False
+        if is_fullscreen:
+            self.toggle_fullscreen()
+        self.refresh_hz = float(max(0, pygame.display.get_current_refresh_rate()))
+        self.render_window = self._make_render_window()
+        self.renderer_name = _renderer_name(self.render_window)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        width, height = pygame.display.get_window_size()
+        return max(1, width), max(1, height)
+
+    def toggle_fullscreen(self) -> None:
+        """Fill the display, or be a window again."""
+        self._is_fullscreen = not self._is_fullscreen
+        if self._is_fullscreen:
+            self._window.set_fullscreen(desktop=True)
+        else:
+            self._window.set_windowed()
+
+    def fit(self) -> None:
+        """Have VTK draw as large as the window is."""
+        if self.render_window.GetSize() != self.size:
+            self.render_window.SetSize(*self.size)
+
+    def pixels(self) -> np.ndarray:
+        """Return (height, width, 3) uint8 of what was rendered last, the top row first."""
+        shot = vtkWindowToImageFilter()
+        shot.SetInput(self.render_window)
+        shot.ReadFrontBufferOff()
+        shot.ShouldRerenderOff()
+        shot.Update()
+        image = shot.GetOutput()
+        width, height, _ = image.GetDimensions()
+        pixels = vtk_to_numpy(image.GetPointData().GetScalars())
+        return pixels.reshape(height, width, 3)[::-1].copy()
+
+    def close(self) -> None:
+        """Free the graphics resources and take the window away."""
+        self.render_window.Finalize()
+        pygame.display.quit()
+
+    def _make_render_window(self) -> vtkGenericOpenGLRenderWindow:
+        window = vtkGenericOpenGLRenderWindow()
+        answers = {
+            "WindowMakeCurrentEvent": lambda *_event: None,
+            "WindowIsCurrentEvent": lambda *_event: window.SetIsCurrent(True),
+            "WindowSupportsOpenGLEvent": lambda *_event: window.SetSupportsOpenGL(1),
+            "WindowIsDirectEvent": lambda *_event: window.SetIsDirect(1),
+            "WindowFrameEvent": lambda *_event: pygame.display.flip(),
+        }
+        for name, answer in answers.items():
+            window.AddObserver(name, answer)
+        window.SetOwnContext(False)
+        window.SetMapped(True)
+        window.SetReadyForRendering(True)
+        window.OpenGLInitContext()
+        window.SetMultiSamples(0)
+        window.SetSize(*self.size)
+        return window
+
+
+def _roomy_size() -> tuple[int, int]:
+    """Return a size of 16:9 that leaves room for the desktop's own bars."""
+    info = pygame.display.Info()
+    unit = max(30, min(round(0.86 * info.current_w / 16), round(0.86 * info.current_h / 9)))
+    return 16 * unit, 9 * unit
+
+
+def _renderer_name(window: vtkGenericOpenGLRenderWindow) -> str:
+    lines = window.ReportCapabilities().splitlines()
+    found = [line for line in lines if line.startswith("OpenGL renderer string:")]
+    return found[0].partition(":")[2].strip() if found else ""
+

@@ -1,0 +1,224 @@
+"""Everything laid over the picture: painted when it changes, placed when the window does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+
+import numpy as np
+from vtkmodules.vtkRenderingCore import vtkRenderer
+
+from rastrainer_simulator.desktop import theme
+from rastrainer_simulator.desktop.canvas import Box
+from rastrainer_simulator.desktop.panels import edges, strips
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
+from rastrainer_simulator.desktop.panels.target_arrow import REACH, STEP_DEG, target_arrow
+from rastrainer_simulator.desktop.sprite import Sprite
+from rastrainer_simulator.desktop.target_direction import Direction
+from rastrainer_simulator.flow.screen import Screen
+
+MOST_WARNINGS = 3
+GLOW = 44
+INSET_FRAME = 4
+
+
+@dataclass(frozen=True)
+class Content:
+    """What is to be laid over the picture.
+
+    Attributes:
+        screen: what the trainee reads.
+        is_contact: whether the tool touches the head.
+        inset: where the second view is; None without one.
+        target: direction to a target out of sight, and its distance in mm.
+        hovered: name of the item under the mouse.
+    """
+
+    screen: Screen
+    is_contact: bool = False
+    inset: Box | None = None
+    target: tuple[Direction, int] | None = None
+    hovered: str = ""
+
+
+class Overlay:
+    """The panels of one window."""
+
+    def __init__(self, renderer: vtkRenderer):
+        self._slots = {
+            name: _Slot(Sprite(renderer, order))
+            for order, name in enumerate(_SLOTS)
+        }
+        self._size = (0, 0)
+        self._brush = Brush(1.0)
+        self._menu: tuple[MenuPicture, Box] | None = None
+        self._shown: Content | None = None
+
+    def item_at(self, x: float, y: float) -> str:
+        """Return the name of the menu's item at a pixel, counted from the upper left corner."""
+        if self._menu is None:
+            return ""
+        picture, box = self._menu
+        return picture.item_at(x - box.left, y - box.top)
+
+    def show(self, content: Content, size: tuple[int, int]) -> bool:
+        """Lay something over a window of so many pixels; return whether anything has changed."""
+        if content == self._shown and size == self._size:
+            return False
+        self._shown, self._size = content, size
+        self._brush = Brush(theme.scale_of(*size))
+        self._show_contact(content.is_contact)
+        self._show_inset(content.inset)
+        self._show_target(content.target)
+        top = self._show_top(content.screen)
+        bottom = self._show_bottom(content.screen)
+        self._show_menu(content, top, bottom)
+        return True
+
+    @property
+    def _scale(self) -> float:
+        return self._brush.scale
+
+    def _place(self, name: str, left: int, top: int) -> None:
+        """Place a painted slot by its upper left corner."""
+        sprite = self._slots[name].sprite
+        sprite.show(left, self._size[1] - top - sprite.size[1])
+
+    def _show_top(self, screen: Screen) -> int:
+        """Show status, instruction and warnings; return how far down they reach."""
+        brush, margin = self._brush, self._brush.px(theme.MARGIN)
+        room = min(brush.px(theme.INSTRUCTION_WIDTH), self._size[0] - 2 * margin)
+        aside = (self._size[0] - room) // 2 - 2 * margin
+        if self._paint("status", bool(screen.status), (screen.status, aside), lambda: strips.status(screen.status, brush, aside)):  # fmt: skip  # noqa: E501
+            self._place("status", margin, margin)
+        top = margin
+        message = screen.instruction
+        if self._paint("instruction", bool(message.text), (message, room), lambda: strips.instruction(message, brush, room)):  # fmt: skip  # noqa: E501
+            top = self._center("instruction", top)
+        for index in range(MOST_WARNINGS):
+            name = f"warning{index}"
+            shown = screen.warnings[index : index + 1]
+            if self._paint(name, bool(shown), (shown, room), lambda shown=shown: strips.warning(shown[0], brush, room)):  # fmt: skip  # noqa: E501
+                top = self._center(name, top)
+        return top
+
+    def _center(self, name: str, top: int) -> int:
+        width, height = self._slots[name].sprite.size
+        self._place(name, (self._size[0] - width) // 2, top)
+        return top + height + self._brush.px(1.5 * theme.STEP)
+
+    def _show_bottom(self, screen: Screen) -> int:
+        """Show the hints; return how far up they reach."""
+        brush, margin = self._brush, self._brush.px(theme.MARGIN)
+        room = self._size[0] - 2 * margin
+        bottom = self._size[1] - margin
+        if self._paint("hints", bool(screen.hints), (screen.hints, room), lambda: strips.hints(screen.hints, brush, room)):  # fmt: skip  # noqa: E501
+            height = self._slots["hints"].sprite.size[1]
+            self._center("hints", bottom - height)
+            bottom -= height + self._brush.px(1.5 * theme.STEP)
+        return bottom
+
+    def _show_menu(self, content: Content, top: int, bottom: int) -> None:
+        menu = content.screen.menu
+        if self._paint("scrim", menu is not None, (), lambda: edges.plain(theme.SCRIM)):
+            self._slots["scrim"].sprite.show(0, 0, *self._size)
+        if menu is None:
+            self._slots["menu"].hide()
+            self._menu = None
+            return
+        room = (self._size[0] - 2 * self._brush.px(theme.MARGIN), bottom - top)
+        slot = self._slots["menu"]
+        if slot.is_other((menu, room, content.hovered, self._scale)):
+            picture = menu_panel(menu, self._scale, room, content.hovered)
+            slot.sprite.paint(picture.pixels)
+            self._menu = (picture, Box(0, 0, 0, 0))
+        width, height = slot.sprite.size
+        box = Box((self._size[0] - width) // 2, top + (room[1] - height) // 2, width, height)
+        self._menu = (self._menu[0], box)
+        self._place("menu", box.left, box.top)
+
+    def _show_contact(self, is_contact: bool) -> None:
+        """Frame the whole picture in red."""
+        width, height = self._size
+        thick = self._brush.px(GLOW)
+        column = lambda: edges.glow(thick, theme.CONTACT)  # noqa: E731
+        places = {
+            "contact top": (column, (0, height - thick, width, thick)),
+            "contact bottom": (lambda: column()[::-1], (0, 0, width, thick)),
+            "contact left": (lambda: column().swapaxes(0, 1), (0, 0, thick, height)),
+            "contact right": (
+                lambda: column()[::-1].swapaxes(0, 1),
+                (width - thick, 0, thick, height),
+            ),
+        }
+        for name, (paint, place) in places.items():
+            if self._paint(name, is_contact, (thick,), paint):
+                self._slots[name].sprite.show(*place)
+
+    def _show_inset(self, box: Box | None) -> None:
+        thick = self._brush.px(INSET_FRAME)
+        if box is None:
+            self._slots["inset"].hide()
+            return
+        outer = box.inset(-thick)
+        self._paint("inset", True, (outer.width, outer.height), lambda: edges.frame(outer.width, outer.height, thick, theme.INSET_EDGE))  # fmt: skip  # noqa: E501
+        self._place("inset", outer.left, outer.top)
+
+    def _show_target(self, target: tuple[Direction, int] | None) -> None:
+        if target is None:
+            self._slots["target"].hide()
+            return
+        direction, distance_mm = target
+        angle = STEP_DEG * round(direction.angle_deg / STEP_DEG)
+        self._paint("target", True, (angle, distance_mm), lambda: target_arrow(angle, distance_mm, self._brush))  # fmt: skip  # noqa: E501
+        half = self._brush.px(REACH) + 2
+        reach = (self._size[0] / 2 - half - 4, self._size[1] / 2 - half - 4)
+        x = self._size[0] / 2 + direction.across * reach[0]
+        y = self._size[1] / 2 + direction.upward * reach[1]
+        self._slots["target"].sprite.show(round(x - half), round(y - half))
+
+    def _paint(
+        self, name: str, is_shown: bool, key: Hashable, paint: Callable[[], np.ndarray]
+    ) -> bool:
+        """Paint a slot if its key is another, or hide it; return whether it is to be placed."""
+        slot = self._slots[name]
+        if not is_shown:
+            slot.hide()
+            return False
+        if slot.is_other((key, self._scale)):
+            slot.sprite.paint(paint())
+        return True
+
+
+# From the farthest to the nearest.
+_SLOTS = (
+    "inset",
+    "contact top",
+    "contact bottom",
+    "contact left",
+    "contact right",
+    "scrim",
+    "target",
+    "status",
+    "hints",
+    *(f"warning{index}" for index in range(MOST_WARNINGS)),
+    "instruction",
+    "menu",
+)
+
+
+class _Slot:
+    """A sprite and what it shows."""
+
+    def __init__(self, sprite: Sprite):
+        self.sprite = sprite
+        self._key: Hashable = None
+
+    def is_other(self, key: Hashable) -> bool:
+        """Return whether something else is to be painted, and take note of it."""
+        is_other, self._key = key != self._key, key
+        return is_other
+
+    def hide(self) -> None:
+        self.sprite.hide()

@@ -1,0 +1,147 @@
+"""The picture of a moment: what the simulator said last, drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
+from rastrainer_simulator.desktop.notices import notice
+from rastrainer_simulator.desktop.overlay import Content, Overlay
+from rastrainer_simulator.desktop.quality import Quality
+from rastrainer_simulator.desktop.shown_scene import ShownScene
+from rastrainer_simulator.desktop.stage import Stage
+from rastrainer_simulator.desktop.target_direction import Direction, direction_out_of_sight
+from rastrainer_simulator.flow.screen import Screen
+
+MM_IN_M = 1000.0
+PULSE_S = 1.4
+PULSE_HZ: Mapping[Quality, float] = {Quality.HIGH: 30.0, Quality.MEDIUM: 30.0, Quality.LOW: 4.0}
+
+
+class Picture:
+    """Draws the inbox into the window, and only when something in it has changed."""
+
+    def __init__(self, window: GlWindow, inbox: Inbox, quality: Quality):
+        self._window = window
+        self._inbox = inbox
+        self.stage = Stage(window, quality)
+        self._overlay = Overlay(self.stage.overlay)
+        self._scene: ShownScene | None = None
+        self._news: SceneNews | None = None
+        self._drawn_state: Mapping[str, Any] | None = None
+        self._pulse_step = 0
+        self._must_draw = True
+        self.pointer = (-1, -1)
+
+    def item_at_pointer(self) -> str:
+        """Return the name of the menu's item under the mouse."""
+        return self._overlay.item_at(*self.pointer)
+
+    def redraw(self) -> None:
+        """Draw at the next occasion, whatever has changed."""
+        self._must_draw = True
+
+    def is_due(self, now: float) -> bool:
+        """Take in what has come, and return whether the picture is to be drawn."""
+        self._window.fit()
+        self._take_scene()
+        self._take_state(now)
+        self.stage.prepare(now)
+        if self._overlay.show(self._content(), self._window.size):
+            self._must_draw = True
+        return self._must_draw or self.stage.is_moving(now)
+
+    def draw(self) -> None:
+        """Draw it."""
+        self._must_draw = False
+        self._window.render_window.Render()
+
+    def best(self) -> np.ndarray:
+        """Return the same picture in the best quality, (height, width, 3) uint8."""
+        quality = self.stage.quality
+        self.stage.set_quality(Quality.HIGH)
+        self._mark(0.0)
+        self._window.render_window.Render()
+        pixels = self._window.pixels()
+        self.stage.set_quality(quality)
+        self._mark(0.0)
+        self._must_draw = True
+        return pixels
+
+    def set_quality(self, quality: Quality) -> None:
+        """Draw better, or faster."""
+        self.stage.set_quality(quality)
+        self._drawn_state = None
+
+    def _take_scene(self) -> None:
+        news = self._inbox.scene
+        if news is None or news is self._news:
+            return
+        self._news, self._drawn_state = news, None
+        self._scene = ShownScene(news.parts, self.stage.quality.is_physical)
+        self.stage.show(self._scene, news.cameras)
+
+    def _take_state(self, now: float) -> None:
+        state = self._inbox.state
+        if self._scene is None or state is None:
+            return
+        if _differs(state, self._drawn_state):
+            self._scene.place(state["poses"])
+            self._must_draw = True
+        self._drawn_state = state
+        self.stage.choose(state["camera"], now)
+        self._mark(now)
+
+    def _mark(self, now: float) -> None:
+        """Color what the state says; the next fiducial grows brighter and darker again."""
+        state = self._inbox.state
+        if self._scene is None or state is None:
+            return
+        self._scene.mark(state["next"], state["touched"], state["proximity"])
+        if state["next"] is None:
+            return
+        step = math.floor(now * PULSE_HZ[self.stage.quality])
+        if step != self._pulse_step:
+            self._pulse_step = step
+            self._scene.pulse(0.5 - 0.5 * math.cos(2.0 * math.pi * now / PULSE_S))
+            self._must_draw = True
+
+    def _content(self) -> Content:
+        screen = self._inbox.screen or Screen()
+        if self._inbox.problem:
+            return Content(notice(self._inbox.problem, screen.language))
+        state = self._inbox.state or {}
+        is_free = screen.menu is None
+        return Content(
+            screen=screen,
+            is_contact=is_free and state.get("proximity") == "contact",
+            inset=self.stage.inset_box if self.stage.has_inset else None,
+            target=self._target() if is_free else None,
+            hovered="" if is_free else self.item_at_pointer(),
+        )
+
+    def _target(self) -> tuple[Direction, int] | None:
+        """Return the direction to the next fiducial and its distance in mm, if out of sight."""
+        state = self._inbox.state
+        if self._scene is None or self._news is None or state is None or state["next"] is None:
+            return None
+        place = self._news.fiducials.get(state["next"])
+        head, tool = self._scene.poses.get("head"), self._scene.poses.get("tool")
+        if place is None or head is None or tool is None:
+            return None
+        target = head[:3, :3] @ place + head[:3, 3]
+        direction = direction_out_of_sight(self.stage.main, target, self._window.size)
+        if direction is None:
+            return None
+        return direction, round(MM_IN_M * float(np.linalg.norm(target - tool[:3, 3])))
+
+
+def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
+    """Return whether two states look different."""
+    names = ("poses", "proximity", "next", "touched", "camera")
+    return other is None or any(state[name] != other[name] for name in names)

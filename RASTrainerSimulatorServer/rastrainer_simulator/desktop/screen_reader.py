@@ -1,0 +1,66 @@
+"""Read what the trainee reads from the stream; what is not understood is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rastrainer_simulator.flow.screen import (
+    Fact,
+    Hint,
+    Item,
+    ItemKind,
+    Menu,
+    Message,
+    Screen,
+    Tone,
+)
+
+Json = Mapping[str, Any]
+
+
+def screen_from_json(value: Json) -> Screen:
+    """Return the screen of a `screen` message.
+
+    Raises:
+        ValueError, KeyError, TypeError: it is none.
+    """
+    menu = value["menu"]
+    return Screen(
+        menu=None if menu is None else _menu(menu),
+        instruction=_message(value["instruction"]),
+        warnings=tuple(_message(warning) for warning in value["warnings"]),
+        status=tuple(str(fact) for fact in value["status"]),
+        hints=tuple(Hint(str(hint["control"]), str(hint["action"])) for hint in value["hints"]),
+        language=str(value["language"]),
+    )
+
+
+def _menu(value: Json) -> Menu:
+    return Menu(
+        name=str(value["name"]),
+        title=str(value["title"]),
+        paragraphs=tuple(str(text) for text in value["paragraphs"]),
+        facts=tuple(
+            Fact(str(fact["label"]), str(fact["value"]), Tone(fact["tone"]))
+            for fact in value["facts"]
+        ),
+        items=tuple(_item(item) for item in value["items"]),
+        focus=str(value["focus"]),
+        picture=str(value["picture"]),
+    )
+
+
+def _item(value: Json) -> Item:
+    return Item(
+        name=str(value["name"]),
+        label=str(value["label"]),
+        kind=ItemKind(value["kind"]),
+        value=str(value["value"]),
+        is_enabled=bool(value["is_enabled"]),
+        help=str(value["help"]),
+    )
+
+
+def _message(value: Json) -> Message:
+    return Message(str(value["text"]), Tone(value["tone"]))

@@ -1,0 +1,116 @@
+"""The scene as VTK's actors: moved, marked and colored as the simulator's state says."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+from rastrainer_simulator.desktop.finish import finish_surface, glow
+from rastrainer_simulator.desktop.glb_parts import Part
+from rastrainer_simulator.scene.materials import NEXT, TIP_FREE, TIP_NEAR, TOUCHED, WAITING
+from rastrainer_simulator.views.actors import surface
+
+TIP_MARKER = "tip_marker"
+FIDUCIAL = "fiducial_"
+FREE = "free"
+PULSE_COLOR = (1.0, 0.97, 0.75)
+
+
+class ShownScene:
+    """Actors of one scene.
+
+    Attributes:
+        actors: all of them, for a renderer.
+        poses: (4, 4) float of each body that was placed, to World.
+    """
+
+    def __init__(self, parts: Sequence[Part], is_physical: bool):
+        self._finishes = {}
+        self._matrices: dict[str, vtkMatrix4x4] = defaultdict(vtkMatrix4x4)
+        self._named: dict[str, list[vtkActor]] = defaultdict(list)
+        self.actors: list[vtkActor] = []
+        self.poses: dict[str, np.ndarray] = {}
+        for part in parts:
+            actor = self._actor(part)
+            self.actors.append(actor)
+            self._finishes[actor] = part.finish
+            for name in part.nodes:
+                self._named[name].append(actor)
+        self._marked: object = None
+        self._pulsing: list[vtkActor] = []
+        self.finish(is_physical)
+
+    def finish(self, is_physical: bool) -> None:
+        """Make the surfaces physically based, or plain; marks and tip are as in the file again."""
+        for actor, finish in self._finishes.items():
+            finish_surface(actor.GetProperty(), finish, is_physical)
+        self._marked = None
+
+    def place(self, poses: Mapping[str, Sequence[float]]) -> None:
+        """Move bodies; each pose is x, y, z (m) and a quaternion x, y, z, w, in World."""
+        for body, pose in poses.items():
+            if body not in self._matrices:
+                continue
+            matrix = pose_matrix(pose)
+            self.poses[body] = matrix
+            self._matrices[body].DeepCopy(matrix.ravel().tolist())
+
+    def mark(self, next_point: str | None, touched: Collection[str], proximity: str) -> None:
+        """Color the tool's tip and the fiducials."""
+        wanted = (next_point, tuple(touched), proximity == FREE)
+        if wanted == self._marked:
+            return
+        self._marked = wanted
+        self._paint(TIP_MARKER, TIP_FREE.color if proximity == FREE else TIP_NEAR.color)
+        done = set(touched)
+        for name in list(self._named):
+            if name.startswith(FIDUCIAL):
+                label = name.removeprefix(FIDUCIAL)
+                state = TOUCHED if label in done else NEXT if label == next_point else WAITING
+                self._paint(name, state.color)
+        self._pulsing = [] if next_point is None else self._named[f"{FIDUCIAL}{next_point}"]
+
+    def pulse(self, share: float) -> None:
+        """Brighten the next fiducial by a share, 0 to 1."""
+        color = [
+            (1.0 - share) * value + share * bright
+            for value, bright in zip(NEXT.color, PULSE_COLOR, strict=True)
+        ]
+        for actor in self._pulsing:
+            actor.GetProperty().SetColor(*color)
+
+    def _paint(self, name: str, color: tuple[float, float, float]) -> None:
+        for actor in self._named[name]:
+            glow(actor.GetProperty(), color)
+
+    def _actor(self, part: Part) -> vtkActor:
+        data = surface(part.vertices, part.triangles)
+        normals = np.ascontiguousarray(part.normals, dtype=np.float32)
+        data.GetPointData().SetNormals(numpy_to_vtk(normals, deep=True))
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputData(data)
+        mapper.ScalarVisibilityOff()
+        mapper.StaticOn()
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        if part.body:
+            actor.SetUserMatrix(self._matrices[part.body])
+        return actor
+
+
+def pose_matrix(pose: Sequence[float]) -> np.ndarray:
+    """Return (4, 4) float of a position and a unit quaternion x, y, z, w."""
+    px, py, pz, x, y, z, w = pose
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), px],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), py],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), pz],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
