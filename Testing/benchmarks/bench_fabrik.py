@@ -17,6 +17,7 @@ import pinocchio as pin
 
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.robot.velocity_limit import limit_step
 from Testing.benchmarks.ik_peers import LeastSquares, Pinocchio, PinPink
 
 MODES = ("position", "direction", "pose")
@@ -24,7 +25,9 @@ SEED = 2011
 EXACT_M = 1e-9
 EXACT_RAD = 1e-7
 CLINICAL_BOX = ([0.35, -0.15, 0.15], [0.65, 0.15, 0.5])
+WIDE_BOX = ([-0.9, -0.9, -0.1], [0.9, 0.9, 1.4])
 STEP_M = 0.001
+TICK_S = 0.004
 STEP_LIMIT = 0.15
 
 
@@ -68,7 +71,7 @@ class Ours:
 
 
 def rows(quick: bool = True) -> list[dict]:
-    """Return `ik.<mode>.cold` and `ik.<mode>.track` beside each peer, and `ik.position.step`."""
+    """Return `ik.<mode>.cold` and `ik.<mode>.track` beside each peer, and the joints' steps."""
     sizes = Sizes(3_000, 200, 3) if quick else Sizes(100_000, 2_000, 5)
     robot, ours = Pinocchio(), Ours()
     peers = (PinPink(robot), LeastSquares(robot))
@@ -79,7 +82,29 @@ def rows(quick: bool = True) -> list[dict]:
         track = [row for mode in MODES for row in _track(robot, ours, peers, mode, sizes)]
     finally:
         gc.unfreeze()
-    return cold + track
+    return [*cold, *track, _wide(robot, ours, sizes)]
+
+
+def _wide(robot: Pinocchio, ours: Ours, sizes: Sizes) -> dict:
+    """Return how far the joints are asked to move by 1 mm anywhere, past singularities and edges.
+
+    `success` is the share of ticks in which they then move, the velocity limiter in between, by at
+    most 2 ° and no faster than their limits.
+    """
+    path = _path(30 * sizes.timed, *WIDE_BOX)
+    fastest = robot.velocity * TICK_S
+    asked, q = np.array(ours.home), np.array(ours.home)
+    steps, kept = [], 0
+    for target in path:
+        question = ours.question(target, "position")
+        before, asked = asked, np.array(ours.solve(question, asked))
+        steps.append(np.degrees(np.abs(asked - before).max()))
+        limited = np.array(limit_step(q, ours.solve(question, q), robot.velocity, TICK_S).q)
+        moved = np.abs(limited - q)
+        kept += bool(np.all(moved <= fastest * (1.0 + 1e-9)) and np.degrees(moved).max() <= 2.0)
+        q = limited
+    success = kept / len(path)
+    return _row("ik.position.wide", (np.array(steps), None), None, success, len(path), "°/mm")
 
 
 def _cold(
@@ -110,7 +135,7 @@ def _cold(
 def _track(
     robot: Pinocchio, ours: Ours, peers: Sequence[Solver], mode: str, sizes: Sizes
 ) -> list[dict]:
-    targets = _path(sizes.timed)
+    targets = _path(sizes.timed, *CLINICAL_BOX)
     start = np.array(ours.solve(ours.question(targets[0], "direction"), ours.home))
     for target in targets:
         target.rotation = robot.tip(start).rotation
@@ -156,15 +181,15 @@ def _exact(robot: Pinocchio, q: np.ndarray, target: pin.SE3, mode: str) -> bool:
     return inside and off <= EXACT_M and turned <= EXACT_RAD
 
 
-def _path(count: int) -> list[pin.SE3]:
-    """Return a walk of 1 mm steps between random points around the head."""
+def _path(count: int, low: Sequence[float], high: Sequence[float]) -> list[pin.SE3]:
+    """Return a walk of 1 mm steps between random points of a box."""
     random = np.random.default_rng(SEED)
-    point, goal, path = random.uniform(*CLINICAL_BOX), random.uniform(*CLINICAL_BOX), []
+    point, goal, path = random.uniform(low, high), random.uniform(low, high), []
     while len(path) < count:
         rest = goal - point
         far = np.linalg.norm(rest)
         if far < STEP_M:
-            goal = random.uniform(*CLINICAL_BOX)
+            goal = random.uniform(low, high)
             continue
         point = point + rest * (STEP_M / far)
         path.append(pin.SE3(np.diag([1.0, -1.0, -1.0]), point))

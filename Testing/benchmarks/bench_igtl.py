@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import socket
 import subprocess
 import sys
@@ -17,6 +16,7 @@ from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
 from rastrainer.protocol import PROTOCOL_VERSION
+from Testing.benchmarks.process_cost import cpu_share, resident_mb
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 PROBE = Message("Echo", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, 30)))
@@ -43,8 +43,8 @@ def rows(quick: bool) -> list[dict]:
             hello = {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"}
             slicer.send_command("Hello", hello)
             echoes = _echo_times(simulator.port, 100 if quick else 1000)
-            cpu = [_cpu_share(simulator.pid, 1.0) for _ in range(3 if quick else 20)]
-            rss = _resident_mb(simulator.pid)
+            cpu = [cpu_share(simulator.pid, 1.0) for _ in range(3 if quick else 20)]
+            rss = resident_mb(simulator.pid)
     peer = _pyigtl_echo_times(50 if quick else 300)
     return [
         _row("igtl.echo", np.array(echoes) * 1e3, "ms", "pyigtl", np.array(peer) * 1e3),
@@ -109,20 +109,3 @@ def _echo_time(peer: socket.socket, reader: MessageReader, data: bytes) -> float
                 return time.perf_counter() - begin
     except TimeoutError:
         return float("nan")
-
-
-def _cpu_share(pid: int, seconds: float) -> float:
-    """Return the share of one core that a process used."""
-    begin, used = time.perf_counter(), _cpu_time(pid)
-    time.sleep(seconds)
-    return (_cpu_time(pid) - used) / (time.perf_counter() - begin)
-
-
-def _cpu_time(pid: int) -> float:
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def _resident_mb(pid: int) -> float:
-    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6

@@ -26,6 +26,7 @@ class Pinocchio:
         self.data = self.model.createData()
         self.frame = self.model.getFrameId(TIP)
         self.lower, self.upper = self.model.lowerPositionLimit, self.model.upperPositionLimit
+        self.velocity = self.model.velocityLimit
 
     def tip(self, q: np.ndarray) -> pin.SE3:
         pin.forwardKinematics(self.model, self.data, q)
