@@ -53,9 +53,14 @@ def test_the_connection_outlives_a_cleared_scene(host, simulator):
 
 
 @pytest.mark.usefixtures("connected")
-def test_any_node_may_be_deleted_while_connected(host):
+def test_any_node_may_be_deleted_while_connected(host, simulator):
     host.delete_nodes()
-    host.wait_until(lambda: host.text("stateText").startswith("Connected"), "it is connected again")
+
+    def is_connected_again():
+        simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+        return host.text("stateText").startswith("Connected")
+
+    host.wait_until(is_connected_again, "it is connected again")
 
 
 def test_the_self_tests_pass(host):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
 
-from PySide6 import QtGui, QtWidgets
+from PySide6 import QtCore, QtGui, QtWidgets
 
 FONTS = ("Noto Sans", "DejaVu Sans", "Liberation Sans")
 POINT_SIZE = 9
+OFFSCREEN_REMARK = "This plugin does not support propagateSizeHints()"
 
 
 def application() -> QtWidgets.QApplication:
@@ -18,6 +20,7 @@ def application() -> QtWidgets.QApplication:
         return running
     made = QtWidgets.QApplication(["Slicer"])
     made.setQuitOnLastWindowClosed(False)
+    QtCore.qInstallMessageHandler(_pass_on)
     made.setStyle("Fusion")
     families = set(QtGui.QFontDatabase.families())
     font = QtGui.QFont(next((name for name in FONTS if name in families), made.font().family()))
@@ -25,6 +28,11 @@ def application() -> QtWidgets.QApplication:
     made.setFont(font)
     made.setPalette(light_palette())
     return made
+
+
+def _pass_on(_kind: QtCore.QtMsgType, _context: object, text: str) -> None:
+    if text != OFFSCREEN_REMARK:
+        print(text, file=sys.stderr)
 
 
 def light_palette() -> QtGui.QPalette:

@@ -11,6 +11,7 @@ from PySide6 import QtCore, QtGui, QtWidgets
 
 from Testing.slicer.host.checked import Checked
 from Testing.slicer.host.members import FACTS
+from Testing.slicer.host.other_modules import ModuleManager
 from Testing.slicer.host.proxy import wrap
 from Testing.slicer.host.values import from_qt
 
@@ -29,6 +30,7 @@ class Application(Checked):
         )
         self._application_logic = application_logic
         self._layout_manager = layout_manager
+        self._module_manager = ModuleManager(application_logic)
         self.applicationName = NAME
         self.slicerHome = str(folder / "Slicer")
         self.temporaryPath = str(folder / "temporary")
@@ -49,6 +51,9 @@ class Application(Checked):
 
     def layoutManager(self) -> Any:
         return self._layout_manager
+
+    def moduleManager(self) -> Any:
+        return self._module_manager
 
     def mrmlScene(self) -> Any:
         return self._application_logic.GetMRMLScene()

@@ -4,11 +4,10 @@ import pytest
 
 
 @pytest.fixture
-def host(tmp_path, monkeypatch):
+def host(tmp_path):
     """Slicer with our module in it; a slot that raised fails the test."""
     from Testing.slicer.host.host import Host  # Loads Qt, which few tests need.
 
-    monkeypatch.setenv("HOME", str(tmp_path / "home"))
     running = Host(tmp_path / "slicer")
     try:
         yield running

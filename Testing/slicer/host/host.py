@@ -18,6 +18,7 @@ from Testing.slicer.host import appearance, pictures
 from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application
 from Testing.slicer.host.failures import FAILURES
+from Testing.slicer.host.home import Home
 from Testing.slicer.host.installation import Installation
 from Testing.slicer.host.layout import LayoutManager
 from Testing.slicer.host.proxy import wrap
@@ -55,7 +56,7 @@ class Host:
         appearance.application()
         ANSWERS.clear()
         FAILURES.texts.clear()
-        QtCore.QStandardPaths.setTestModeEnabled(True)
+        self._home = Home(folder / "home")
         self._application_scene = ApplicationScene()
         self.scene = self._application_scene.scene
         self._module_file = module_file
@@ -154,6 +155,7 @@ class Host:
                 self._main_window._qt.deleteLater()
             self.process_events()
             sys.excepthook = self._excepthook
+            self._home.leave()
             sys.modules.pop(self._module_name, None)
             self._installation.remove()
 

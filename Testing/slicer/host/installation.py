@@ -10,6 +10,7 @@ import slicer
 
 from Testing.slicer.host import parameter_node, scripted_module
 from Testing.slicer.host.offered import OFFERED
+from Testing.slicer.host.other_modules import qSlicerScriptedLoadableModule
 from Testing.slicer.host.qt_module import class_named, ctk, qt
 
 _MISSING = object()
@@ -40,6 +41,7 @@ class Installation:
             if name.startswith("slicer."):
                 self.set(name.removeprefix("slicer."), module)
         self.set("modules", SimpleNamespace())
+        self.set("qSlicerScriptedLoadableModule", qSlicerScriptedLoadableModule)
         for name in OFFERED["qMRML"]:
             try:
                 self.set(name, class_named(name))

@@ -16,8 +16,7 @@ PLOT_LAYOUTS = (
     slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView,
     slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpPlotView,
     slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpPlotTableView,
-    slicer.vtkMRMLLayoutNode.SlicerLayoutPlotView,
-    slicer.vtkMRMLLayoutNode.SlicerLayoutThreeDPlotView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutOneUpPlotView,
 )
 
 
