@@ -6,7 +6,9 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli", "simulator"]
 READY = "RASTrainer simulator ready on 127.0.0.1:"
 
 
@@ -17,14 +19,20 @@ class SimulatorProcess:
         ready: the line by which it says where it is ready.
         port: where it listens; 0 where it connects.
         pid: of the process.
+        command: that starts it.
     """
 
-    def __init__(self, records: Path, *arguments: str):
+    command = tuple(COMMAND)
+
+    def __init__(self, records: Path, *arguments: str, **others: Any):
+        config = str(records.with_name(records.name + "-config"))
+        settings = ["--port", "0", "--records", str(records), "--config", config]
         self._process = subprocess.Popen(
-            [*COMMAND, "--port", "0", "--records", str(records), *arguments],
+            [*self.command, *settings, *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            **others,
         )
         self.pid = self._process.pid
         self.ready = self._process.stdout.readline().strip()
@@ -49,6 +57,3 @@ class SimulatorProcess:
         """End it as a crash would."""
         self._process.kill()
         self._process.communicate()
-
-
-COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli", "simulator"]

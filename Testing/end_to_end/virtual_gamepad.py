@@ -1,0 +1,102 @@
+"""The simulator's process with a virtual gamepad plugged in, for tests to work over a pipe.
+
+Run as a module it is that process: `python -m Testing.end_to_end.virtual_gamepad FELT simulator …`
+attaches the gamepad to its own SDL and otherwise runs the ordinary `rastrainer simulator …`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.sdl_virtual_gamepad import INIT_JOYSTICK, VirtualGamepad, load_sdl
+
+REPOSITORY = Path(__file__).parents[2]
+
+
+class SimulatorWithGamepad(SimulatorProcess):
+    """`rastrainer simulator` with a gamepad.
+
+    Every move is on its way when the call returns; the simulator looks at its gamepads 200 times a
+    second, so a press has to be held for some milliseconds: `tap` does.
+    """
+
+    command = (sys.executable, "-m", "Testing.end_to_end.virtual_gamepad")
+
+    def __init__(self, records: Path, *arguments: str):
+        self._felt = records.with_name(records.name + "-felt.jsonl")
+        self._felt.parent.mkdir(parents=True, exist_ok=True)
+        self._felt.touch()
+        self.command = (*self.command, str(self._felt), "simulator")
+        # pygame greets on the standard output otherwise, where the simulator's lines are read.
+        environment = {**os.environ, "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
+        others = {"stdin": subprocess.PIPE, "cwd": REPOSITORY, "env": environment}
+        super().__init__(records, *arguments, **others)
+
+    def plug_in(self) -> None:
+        """Plug the gamepad in; it is at first."""
+        self._send({"plug": True})
+
+    def plug_out(self) -> None:
+        """Plug the gamepad out."""
+        self._send({"plug": False})
+
+    def move(self, **positions: float) -> None:
+        """Push axes by SDL's names ("leftx", …): sticks −1…1, triggers 0…1."""
+        self._send({"move": positions})
+
+    def press(self, button: str, is_down: bool = True) -> None:
+        """Press a button by SDL's name ("a", "dpdown", …), or let it go."""
+        self._send({"press": button, "isDown": is_down})
+
+    def tap(self, button: str, seconds: float = 0.05) -> None:
+        """Press a button for a moment."""
+        self.press(button)
+        time.sleep(seconds)
+        self.press(button, False)
+        time.sleep(seconds)
+
+    def felt(self) -> list[tuple[float, float]]:
+        """Return the strengths (0 to 1) of both motors at each of SDL's calls so far."""
+        return [tuple(json.loads(line)) for line in self._felt.read_text().splitlines()]
+
+    def _send(self, order: dict[str, Any]) -> None:
+        self._process.stdin.write(json.dumps(order) + "\n")
+        self._process.stdin.flush()
+
+
+def main() -> int:
+    """Be the process: obey the pipe beside the ordinary program."""
+    from rastrainer_simulator.cli import main as run
+
+    felt = Path(sys.argv[1])
+    threading.Thread(target=_obey, args=(felt,), daemon=True).start()
+    return run(sys.argv[2:])
+
+
+def _obey(path: Path) -> None:
+    with path.open("a", buffering=1) as felt:
+        gamepad = VirtualGamepad(lambda *strengths: felt.write(json.dumps(strengths) + "\n"))
+        sdl = load_sdl()
+        while not sdl.SDL_WasInit(INIT_JOYSTICK):
+            time.sleep(0.01)
+        gamepad.plug_in()
+        for line in sys.stdin:
+            order = json.loads(line)
+            if "plug" in order:
+                (gamepad.plug_in if order["plug"] else gamepad.plug_out)()
+            elif "move" in order:
+                gamepad.move(**order["move"])
+            else:
+                gamepad.press(order["press"], order["isDown"])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
