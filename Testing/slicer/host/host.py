@@ -20,6 +20,7 @@ from Testing.slicer.host.application import Application
 from Testing.slicer.host.failures import FAILURES
 from Testing.slicer.host.home import Home
 from Testing.slicer.host.installation import Installation
+from Testing.slicer.host.lasting_none import lend_references_to_none
 from Testing.slicer.host.layout import LayoutManager
 from Testing.slicer.host.proxy import wrap
 from Testing.slicer.host.qt_module import class_named
@@ -53,6 +54,7 @@ class Host:
             connector: whether the extension SlicerOpenIGTLink is installed.
             window: False is Slicer without a main window, as in its generic tests.
         """
+        lend_references_to_none()
         appearance.application()
         ANSWERS.clear()
         FAILURES.texts.clear()
