@@ -1,0 +1,71 @@
+"""A desk at a control loop that ticks as fast as it can."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+
+import pytest
+
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.flow.desk import Desk
+from rastrainer_simulator.flow.preferences import Preferences
+from rastrainer_simulator.flow.session import Surroundings
+from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.state import Answer
+from Testing.simulator.flow.trainee import Keys, Trainee
+
+
+class Outside:
+    """What the desk is told of the process around it."""
+
+    def __init__(self, folder):
+        self.has_slicer = False
+        self.has_quit = False
+        self.settings = []
+        self.surroundings = Surroundings(
+            config=folder / "config",
+            records=folder / "records",
+            use_settings=self._use,
+            is_slicer_there=lambda: self.has_slicer,
+            quit=lambda: setattr(self, "has_quit", True),
+        )
+
+    def _use(self, settings):
+        self.settings.append(settings)
+        done = Future()
+        done.set_result(Answer(0, True))
+        return done
+
+
+@pytest.fixture(scope="session")
+def shared(setup):
+    return Simulation(setup, 3)
+
+
+@pytest.fixture
+def outside(tmp_path):
+    return Outside(tmp_path)
+
+
+@pytest.fixture
+def loop(shared, tmp_path):
+    shared.step(0.004, OperatorInput(commands=(Command("Abort"),)))
+    with ControlLoop(shared, tmp_path / "records", speed=None) as loop:
+        yield loop
+
+
+@pytest.fixture
+def desk(loop, outside):
+    desk = Desk(loop, outside.surroundings, DEFAULT_BINDINGS, Preferences())
+    yield desk
+    desk.close()
+
+
+@pytest.fixture
+def trainee(loop, desk):
+    """Return a trainee with a keyboard, at the start menu."""
+    trainee = Trainee(loop, desk, Keys)
+    trainee.until_menu("start")
+    return trainee

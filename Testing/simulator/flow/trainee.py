@@ -1,0 +1,214 @@
+"""A trainee at a desk: presses keys, reads the screen, and steers the tool by the sticks."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+import numpy as np
+
+from rastrainer.protocol import Phase
+from rastrainer_simulator.flow.screen import Screen
+from rastrainer_simulator.teleoperation.axes import camera_axes
+from rastrainer_simulator.vectors import dot
+from rastrainer_simulator.view_server.operator_desk import Control, Feedback, Hello
+
+PATIENCE_S = 40.0
+STEP_S = 0.004
+MM = 1000.0
+LIFT_M = 0.035
+"""How far the tip is taken off the skin before it is carried to the next fiducial."""
+
+
+class Hands(Protocol):
+    """What a trainee works the simulator with."""
+
+    def tap(self, control: str) -> None:
+        """Press a control and let it go."""
+
+    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
+        """Push the sticks, −1…1."""
+
+
+class Watcher:
+    """Keeps everything that a desk tells."""
+
+    def __init__(self, desk):
+        self.screens, self.feedbacks, self.controls = [], [], []
+        kept = {Screen: self.screens, Feedback: self.feedbacks, Control: self.controls}
+        desk.subscribe(lambda news: kept[type(news)].append(news))
+
+    @property
+    def kinds(self):
+        return [feedback.kind for feedback in self.feedbacks]
+
+
+class Trainee:
+    """Goes through menus by their names, and to fiducials by the sticks.
+
+    Args:
+        loop: a control loop that ticks.
+        desk: its desk.
+        hands: what the trainee has in them.
+        look: called in every step beside the desk's, such as to poll gamepads.
+    """
+
+    def __init__(self, loop, desk, make_hands, look: Callable[[], None] = lambda: None):
+        self.loop, self.desk, self._look = loop, desk, look
+        self.watcher = Watcher(desk)
+        self.hands: Hands = make_hands(self)
+
+    @property
+    def menu(self):
+        return self.desk.screen.menu
+
+    @property
+    def state(self):
+        return self.loop.latest
+
+    def step(self, count: int = 1) -> None:
+        """Let the desk go on for `count` steps, and the loop with it."""
+        for _ in range(count):
+            tick = self.state.tick
+            self._look()
+            self.desk.advance(STEP_S)
+            self.wait(lambda tick=tick: self.state.tick > tick)
+
+    def until(self, condition: Callable[[], bool], what: str = "it") -> None:
+        """Step until a condition is true."""
+        give_up = time.monotonic() + PATIENCE_S
+        while not condition():
+            assert time.monotonic() < give_up, f"{what} never came; the screen: {self.desk.screen}"
+            self.step()
+
+    def until_menu(self, name: str | None) -> None:
+        """Step until a menu of that name is open, or none."""
+        shown = lambda: None if self.menu is None else self.menu.name  # noqa: E731
+        self.until(lambda: shown() == name, f"the menu {name}")
+
+    def tap(self, *controls: str) -> None:
+        for control in controls:
+            self.hands.tap(control)
+
+    def choose(self, item: str) -> None:
+        """Move the focus to an item and accept it."""
+        self.focus(item)
+        self.tap("accept")
+
+    def focus(self, item: str) -> None:
+        names = [each.name for each in self.menu.items if each.kind != "axis"]
+        assert item in names, f"{self.menu.name} has {names}"
+        while self.menu.focus != item:
+            before = self.menu.focus
+            is_below = names.index(item) > names.index(before)
+            self.tap("down" if is_below else "up")
+            self.until(lambda before=before: self.menu.focus != before, "another focus")
+
+    def item(self, name: str):
+        return next(item for item in self.menu.items if item.name == name)
+
+    def touch(self, point: np.ndarray, center: np.ndarray) -> None:
+        """Carry the tip over the head to a point of the skin (3,) m, touch and lift off."""
+        outward = (point - center) / np.linalg.norm(point - center)
+        start = np.array(self.tip) - center
+        lifted = LIFT_M + max(np.linalg.norm(point - center), np.linalg.norm(start))
+        first = start / np.linalg.norm(start)
+        self.steer_to(center + lifted * first, 0.02)
+        for share in np.linspace(0.0, 1.0, 7)[1:]:
+            between = (1.0 - share) * first + share * outward
+            self.steer_to(center + lifted * between / np.linalg.norm(between), 0.02)
+        self.steer_to(point + 0.012 * outward, 0.004)
+        self.steer_to(point, 0.0025, fine=True)
+        self.hands.push(0.0, 0.0, 0.0, False)
+        self.step(2)
+        kept = len(self.state.training.touches)
+        self.tap("touch")
+        self.until(lambda: len(self.state.training.touches) > kept, f"touch {kept + 1}")
+
+    @property
+    def tip(self):
+        return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
+
+    def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
+        """Push the sticks toward a place (3,) World, m, until the tip is near it."""
+        view = self.loop.setup.scenario.cameras[self.state.camera]
+        line = tuple((view.focal_point - view.position).tolist())
+        axes = camera_axes(line, tuple(view.view_up.tolist()))
+        give_up = self.state.sim_time + 6.0
+        full = 0.01 if fine else 0.03
+        while True:
+            away = np.asarray(place) - self.tip
+            if np.linalg.norm(away) < near or self.state.sim_time > give_up:
+                return
+            wanted = away / max(full, float(np.linalg.norm(away)))
+            wanted *= 0.35 + 0.65 * np.linalg.norm(wanted)
+            right, forward, up = (dot(wanted, a) for a in (axes.right, axes.forward, axes.up))
+            self.hands.push(right, forward, up, fine)
+            self.step()
+
+    def play(self, task: str) -> None:
+        """Touch all points of the trial that runs, as the head stands in it."""
+        truth = self.loop.truth
+        center = truth.in_world(truth.target) / MM
+        for label in [str(number) for number in range(1, 16)]:
+            self.touch(truth.in_world(truth.fiducials[label]) / MM, center)
+        assert self.state.training.phase is Phase.COMPLETE, task
+        self.step(2)
+
+    def wait(self, condition: Callable[[], bool]) -> None:
+        give_up = time.monotonic() + PATIENCE_S
+        while not condition():
+            assert time.monotonic() < give_up
+            time.sleep(0.0)
+
+
+class Keys:
+    """A keyboard: what it types goes to the desk as a view sends it."""
+
+    CODES: Mapping[str, str] = {
+        "accept": "Enter",
+        "back": "Escape",
+        "up": "ArrowUp",
+        "down": "ArrowDown",
+        "left": "ArrowLeft",
+        "right": "ArrowRight",
+        "touch": "Space",
+        "undo": "KeyU",
+        "camera": "KeyC",
+        "pause": "KeyP",
+        "menu": "KeyM",
+    }
+    STICKS = (("KeyA", "KeyD"), ("KeyS", "KeyW"), ("KeyF", "KeyR"))
+
+    def __init__(self, trainee: Trainee, view: int = 1, kind: str = "desktop"):
+        self._trainee, self._view = trainee, view
+        self._held: set[str] = set()
+        trainee.desk.view_joined(view, Hello(kind))
+
+    def tap(self, control: str) -> None:
+        self.key(self.CODES[control])
+
+    def key(self, code: str, text: str = "") -> None:
+        desk = self._trainee.desk
+        desk.on_key(self._view, code, True, text)
+        self._trainee.step()
+        desk.on_key(self._view, code, False, "")
+        self._trainee.step()
+
+    def type(self, text: str) -> None:
+        for letter in text:
+            self.key(f"Key{letter.upper()}" if letter.isalpha() else f"Digit{letter}", letter)
+
+    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
+        """Keys know no half way: what is worth more than half the longest part is held."""
+        wanted = {"ShiftLeft"} if fine else set()
+        longest = max(abs(right), abs(forward), abs(up))
+        for value, (below, above) in zip((right, forward, up), self.STICKS, strict=True):
+            if abs(value) > 0.5 * longest > 0.0:
+                wanted.add(above if value > 0.0 else below)
+        for code in self._held - wanted:
+            self._trainee.desk.on_key(self._view, code, False, "")
+        for code in wanted - self._held:
+            self._trainee.desk.on_key(self._view, code, True, "")
+        self._held = wanted
