@@ -1,0 +1,67 @@
+"""A view server with a real control loop, and views that join it."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.simulation import Simulation
+from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.view_server.served import ServedViews, ViewClient
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_cache(tmp_path_factory):
+    """Keep the scenes of the tests out of the user's cache."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="module")
+def control_loop(tmp_path_factory, setup) -> ControlLoop:
+    simulation = Simulation(setup, seed=4)
+    with ControlLoop(simulation, tmp_path_factory.mktemp("records")) as control_loop:
+        yield control_loop
+
+
+@pytest.fixture(scope="module")
+def loop_thread():
+    thread = LoopThread()
+    yield thread
+    thread.stop()
+
+
+@pytest.fixture
+def serve(loop_thread, control_loop):
+    """Starts view servers with given limits, and ends them."""
+    started = []
+
+    def start(**limits) -> ServedViews:
+        started.append(ServedViews(loop_thread, control_loop, **limits))
+        return started[-1]
+
+    yield start
+    for served in started:
+        served.close()
+
+
+@pytest.fixture
+def served(serve) -> ServedViews:
+    return serve()
+
+
+@pytest.fixture
+def connect():
+    """Connects views to a server, each with a key of its own, and lets them go."""
+    thread = LoopThread()
+    views = []
+
+    def connect_one(served: ServedViews) -> ViewClient:
+        views.append(ViewClient(thread, served.url, served.new_key()))
+        return views[-1]
+
+    yield connect_one
+    for view in views:
+        view.__exit__()
+    thread.stop()

@@ -1,0 +1,192 @@
+"""A view server on a real socket with a real control loop, and views that join it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from contextlib import suppress
+
+import aiohttp
+
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.flow.screen import Screen
+from rastrainer_simulator.view_server.limits import ViewLimits
+from rastrainer_simulator.view_server.operator_desk import Control
+from rastrainer_simulator.view_server.view_server import ViewServer
+from Testing.simulator.igtl.servers import HOST, LoopThread
+
+SUBPROTOCOL = "rastrainer.views.1"
+HELLO = {"type": "hello", "kind": "page", "device": "Quest 2", "refreshHz": 72}
+PATIENCE_S = 20
+
+
+class RecordingDesk:
+    """An `OperatorDesk` that keeps what it is told, and tells what a test wants."""
+
+    def __init__(self):
+        self.screen = Screen()
+        self.control = Control()
+        self.calls = []
+        self._listeners = []
+
+    def subscribe(self, listener):
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener)
+
+    def tell(self, *news):
+        for one in news:
+            for listener in tuple(self._listeners):
+                listener(one)
+
+    def __getattr__(self, name):
+        if not name.startswith(("on_", "view_")):
+            raise AttributeError(name)
+        return lambda *values: self.calls.append((name, *values))
+
+
+class ServedViews:
+    """A `ViewServer` in an event loop of its own.
+
+    Attributes:
+        desk: where the views' input ends.
+        url: of the server.
+        new_codes: the pairing codes that were to be shown after the first.
+    """
+
+    def __init__(self, thread: LoopThread, control_loop: ControlLoop, **limits):
+        self.thread = thread
+        self.desk = RecordingDesk()
+        self.new_codes = []
+        self.server = thread.call(
+            ViewServer,
+            control_loop,
+            self.desk,
+            self.new_codes.append,
+            limits=ViewLimits(**limits),
+        )
+        self.port = thread.run(self.server.listen(HOST, 0))
+        self.url = f"http://{HOST}:{self.port}"
+
+    @property
+    def code(self) -> str:
+        return self.server.code.code
+
+    def new_key(self) -> str:
+        return self.thread.call(self.server.sessions.open)
+
+    def tell(self, *news):
+        """Have the desk tell several things at once."""
+        self.thread.call(self.desk.tell, *news)
+
+    def wait_for_call(self, *call):
+        """Wait until the desk has been told something; return all that it was told."""
+
+        async def wait():
+            while call not in self.desk.calls:
+                await asyncio.sleep(0.005)
+
+        self.thread.run(asyncio.wait_for(wait(), PATIENCE_S / 2))
+        return self.desk.calls
+
+    def close(self):
+        self.thread.run(self.server.close())
+
+
+class ViewClient:
+    """One view, for tests that block."""
+
+    def __init__(self, thread: LoopThread, url: str, key: str):
+        self._thread = thread
+        self._session = thread.run(_session())
+        self._socket = self._run(
+            self._session.ws_connect(
+                f"{url}/stream",
+                protocols=[SUBPROTOCOL],
+                headers={"Authorization": f"Bearer {key}"},
+            )
+        )
+
+    def __enter__(self) -> ViewClient:
+        return self
+
+    def __exit__(self, *_exception):
+        self._run(self._session.close())
+
+    def join(self, **changes) -> dict:
+        """Say hello and return the welcome."""
+        self.send({**HELLO, **changes})
+        return self.next()
+
+    def send(self, message):
+        """Send an object as JSON, a text or bytes as they are."""
+        if isinstance(message, bytes):
+            self._run(self._socket.send_bytes(message))
+        else:
+            text = message if isinstance(message, str) else json.dumps(message)
+            self._run(self._socket.send_str(text))
+
+    def next(self, kind: str | None = None) -> dict:
+        """Return the next message, or the next of a kind."""
+        while True:
+            message = self._receive()
+            assert message.type is aiohttp.WSMsgType.TEXT, message
+            decoded = json.loads(message.data)
+            if kind in (None, decoded["type"]):
+                return decoded
+
+    def all_until(self, is_last) -> list[dict]:
+        """Return the messages up to the first for which `is_last` is true."""
+        messages = []
+        while not messages or not is_last(messages[-1]):
+            messages.append(self.next())
+        return messages
+
+    def closing(self) -> tuple[int, str]:
+        """Read on until the server closes; return its code and its reason."""
+        while (message := self._receive()).type is aiohttp.WSMsgType.TEXT:
+            pass
+        return self._socket.close_code, message.extra or ""
+
+    def leave(self):
+        self._run(self._socket.close())
+
+    def _receive(self):
+        return self._run(self._socket.receive())
+
+    def _run(self, coroutine):
+        async def patient():
+            return await asyncio.wait_for(coroutine, PATIENCE_S)
+
+        return asyncio.run_coroutine_threadsafe(patient(), self._thread.loop).result()
+
+
+async def _session() -> aiohttp.ClientSession:
+    return aiohttp.ClientSession()
+
+
+def request(url: str, path: str, method: str = "GET", **arguments) -> tuple[int, dict, bytes]:
+    """Return status, headers and body of one request."""
+
+    async def ask():
+        async with (
+            aiohttp.ClientSession(cookie_jar=aiohttp.DummyCookieJar()) as session,
+            session.request(method, url + path, **arguments) as response,
+        ):
+            return response.status, response.headers, await response.read()
+
+    return asyncio.run(ask())
+
+
+def raw_request(port: int, head: str) -> bytes:
+    """Send a request as it is written, with no client to clean it; return the whole answer."""
+
+    async def ask():
+        reader, writer = await asyncio.open_connection(HOST, port)
+        writer.write(f"{head}\r\nHost: {HOST}:{port}\r\nConnection: close\r\n\r\n".encode())
+        answer = await asyncio.wait_for(reader.read(), PATIENCE_S)
+        writer.close()
+        with suppress(ConnectionError):
+            await writer.wait_closed()
+        return answer
+
+    return asyncio.run(ask())
