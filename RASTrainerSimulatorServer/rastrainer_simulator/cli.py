@@ -14,6 +14,7 @@ from rastrainer.errors import RASTrainerError
 SUBCOMMANDS = {
     "register": "rastrainer.commands.register_command",
     "score": "rastrainer.commands.score_command",
+    "report": "rastrainer.commands.report_command",
     "simulator": "rastrainer_simulator.simulator_command",
     "window": "rastrainer_simulator.window_command",
     "replay": "rastrainer_simulator.replay_command",

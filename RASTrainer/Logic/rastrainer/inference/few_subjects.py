@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rastrainer.inference.paired import PairedComparison
 from rastrainer.inference.power import ALPHA, TARGET_POWER, detectable_effect, subjects_needed
+from rastrainer.number_text import percent, significant
 
 FEW = 20
 """Below this many subjects the limits are said even where nobody asks."""
@@ -24,8 +25,9 @@ def what_it_shows(
     """
     low, high = comparison.interval
     difference = comparison.mean_difference
-    amount = f"{abs(difference):.3g} {unit}".rstrip()
-    span = f"from {low:+.3g} to {high:+.3g} {unit}".rstrip()
+    amount = f"{significant(abs(difference))} {unit}".rstrip()
+    ends = [significant(end, sign=True) for end in (low, high)]
+    span = f"from {ends[0]} to {ends[1]} {unit}".rstrip()
     direction = "higher" if difference > 0 else "lower"
     if adjusted_p < ALPHA:
         return (
@@ -49,16 +51,16 @@ def what_cannot_be_concluded(n: int) -> list[str]:
         return ["One subject allows no comparison: nothing can be said of anyone else."]
     effect = detectable_effect(n)
     sentences = [
-        f"With {n} subjects, a paired t-test at the {ALPHA:.0%} level finds a true difference in "
-        f"{TARGET_POWER:.0%} of studies only if it is at least {effect:.1f} times the standard "
-        "deviation of the subjects' differences. Smaller ones are mostly missed, and those found "
-        "are mostly exaggerated."
+        f"With {n} subjects, a paired t-test at the {percent(ALPHA)} level finds a true difference "
+        f"in {percent(TARGET_POWER)} of studies only if it is at least {effect:.1f} times the "
+        "standard deviation of the subjects' differences. Smaller ones are mostly missed, and "
+        "those found are mostly exaggerated."
     ]
     smallest = 2.0 ** (1 - n)
     if smallest > ALPHA:
         sentences.append(
-            f"Wilcoxon's signed-rank test cannot reach the {ALPHA:.0%} level with {n} subjects at "
-            f"all: its smallest possible p is {smallest:.3g}."
+            f"Wilcoxon's signed-rank test cannot reach the {percent(ALPHA)} level with {n} "
+            f"subjects at all: its smallest possible p is {smallest:.3g}."
         )
     if n < FEW:
         needed = {size: subjects_needed(size) for size in (0.2, 0.5, 0.8)}

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from rastrainer.errors import InputError
 from rastrainer.learning.cusum import check_rates
+from rastrainer.number_text import percent
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def lc_cusum_limit(
         false_discovery
     ):
         raise InputError(
-            f"{trials} trials cannot show competence at a risk of {false_discovery:.0%}: even "
+            f"{trials} trials cannot show competence at a risk of {percent(false_discovery)}: even "
             "successes alone are too likely by chance."
         )
     low, high = 0.0, trials * success

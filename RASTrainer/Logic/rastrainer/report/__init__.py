@@ -1,0 +1,1 @@
+"""A study as a printable page: tables, charts, tests, limits, methods."""

@@ -1,0 +1,59 @@
+"""All values of an outcome by mode: each trial a dot, with the quartiles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rastrainer.report.charts.svg import FAINT, INK, Axis, Sheet, axis_over, number
+
+WIDTH, LANE = 330, 74
+LEFT, RIGHT = 66, 318
+MOST_DOTS = 300
+
+
+def distributions(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]) -> str:
+    """Return the chart of lanes, each a name, a color and its values."""
+    height = 54 + LANE * len(lanes)
+    sheet = Sheet(WIDTH, height, f"Distribution of {heading}")
+    sheet.text(10, 16, heading, 12.5, INK, weight="600")
+    everything = [value for _, _, values in lanes for value in values]
+    axis = axis_over(everything, LEFT, RIGHT)
+    for tick in axis.ticks():
+        x = axis.at(tick)
+        sheet.line(x, 28, x, height - 24, "#e3e7ec")
+        sheet.text(x, height - 10, number(tick), 10, FAINT, "middle")
+    for index, (name, color, values) in enumerate(lanes):
+        y = 32 + LANE * (index + 0.5)
+        sheet.text(LEFT - 10, y + 4, name.split(" ")[0], 11, INK, "end")
+        _lane(sheet, axis, y, color, values)
+    return sheet.svg()
+
+
+def _lane(sheet: Sheet, axis: Axis, y: float, color: str, values: Sequence[float]) -> None:
+    ordered = np.sort(np.asarray(values, dtype=float))
+    shown = ordered
+    if len(ordered) > MOST_DOTS:
+        shown = np.quantile(ordered, np.linspace(0, 1, MOST_DOTS))
+    radius = 3.2 if len(shown) <= 60 else 1.8
+    for x, row in _swarm(np.array([axis.at(value) for value in shown]), 2 * radius):
+        sheet.dot(x, y + 2 - row, radius, color, 0.75)
+    low, middle, high = (axis.at(q) for q in np.quantile(ordered, [0.25, 0.5, 0.75]))
+    sheet.rect(low, y + 10, high - low, 8, color, 0.35)
+    sheet.line(middle, y + 7, middle, y + 21, color, 2.5)
+    sheet.line(axis.at(ordered[0]), y + 14, low, y + 14, color, 1.2)
+    sheet.line(high, y + 14, axis.at(ordered[-1]), y + 14, color, 1.2)
+
+
+def _swarm(xs: np.ndarray, size: float) -> list[tuple[float, float]]:
+    """Return positions of dots such that they do not hide each other, stacked up to 24 px."""
+    placed: list[tuple[float, float]] = []
+    for x in xs:
+        row = 0.0
+        while row < 24 and any(
+            abs(x - ox) < size and abs(row - orow) < size for ox, orow in placed
+        ):
+            row += size * 0.9
+        placed.append((float(x), min(row, 24.0)))
+    return placed

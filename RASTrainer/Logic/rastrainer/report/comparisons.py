@@ -1,0 +1,110 @@
+"""Modes compared on the means of the trainees who did both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.inference.paired import PairedComparison, compare_paired, holm
+from rastrainer.report.outcomes import Outcome
+from rastrainer.report.study_data import StudyData, TrialRow
+
+CONFIRMATORY = ("completion_time_s", "rmse_mm", "ctps", "score")
+"""These are corrected together for being several; the others are only described."""
+
+
+@dataclass(frozen=True)
+class ModeComparison:
+    """One outcome in two modes.
+
+    Attributes:
+        outcome: Which.
+        first: Mode that is subtracted.
+        second: Mode that it is subtracted from.
+        trainees: Who did both.
+        first_means: Mean of each of them, (n,) float.
+        second_means: The same in the second mode.
+        result: The tests; None where they cannot be computed.
+        adjusted_p: p of the t-test, adjusted by Holm's method; None for what is only described.
+        reason: Why there is no result; "" where there is.
+    """
+
+    outcome: Outcome
+    first: str
+    second: str
+    trainees: tuple[str, ...]
+    first_means: np.ndarray
+    second_means: np.ndarray
+    result: PairedComparison | None
+    adjusted_p: float | None
+    reason: str = ""
+
+
+def compare_modes(
+    data: StudyData, outcomes: Sequence[Outcome], first: str, second: str
+) -> tuple[ModeComparison, ...]:
+    """Compare two modes on every outcome that trials of both have.
+
+    A trainee counts with the mean over the tasks that he or she did in both modes, so that a
+    missing trial does not make one mode look easier.
+    """
+    found = []
+    for outcome in outcomes:
+        means = paired_means(data, outcome.name, first, second)
+        if means:
+            found.append(_compared(outcome, first, second, means))
+    tested = [
+        index
+        for index, comparison in enumerate(found)
+        if comparison.result is not None and comparison.outcome.name in CONFIRMATORY
+    ]
+    adjusted = holm([found[index].result.p for index in tested])
+    for index, p in zip(tested, adjusted, strict=True):
+        found[index] = ModeComparison(**{**vars(found[index]), "adjusted_p": p})
+    return tuple(found)
+
+
+def paired_means(
+    data: StudyData, name: str, first: str, second: str
+) -> dict[str, tuple[float, float]]:
+    """Return for each trainee the means in both modes over the tasks done in both."""
+    of_first = _task_means(data.of_mode(first), name)
+    of_second = _task_means(data.of_mode(second), name)
+    means = {}
+    for trainee in data.trainees:
+        mine, others = of_first.get(trainee, {}), of_second.get(trainee, {})
+        common = sorted(set(mine) & set(others))
+        if common:
+            pair = [float(np.mean([values[task] for task in common])) for values in (mine, others)]
+            means[trainee] = (pair[0], pair[1])
+    return means
+
+
+def _task_means(trials: Sequence[TrialRow], name: str) -> dict[str, dict[str, float]]:
+    """Return trainee → task → mean over the trainee's trials of that task."""
+    values: dict[str, dict[str, list[float]]] = {}
+    for trial in trials:
+        if name in trial.values:
+            of_trainee = values.setdefault(trial.trainee, {})
+            of_trainee.setdefault(trial.task, []).append(trial.values[name])
+    return {
+        trainee: {task: float(np.mean(found)) for task, found in tasks.items()}
+        for trainee, tasks in values.items()
+    }
+
+
+def _compared(
+    outcome: Outcome, first: str, second: str, means: Mapping[str, tuple[float, float]]
+) -> ModeComparison:
+    both = np.array(list(means.values()))
+    result, reason = None, ""
+    try:
+        result = compare_paired(both[:, 0], both[:, 1])
+    except InputError as error:
+        reason = str(error)
+    return ModeComparison(
+        outcome, first, second, tuple(means), both[:, 0], both[:, 1], result, None, reason
+    )

@@ -1,0 +1,68 @@
+"""Pieces of HTML; every text is escaped here and nowhere else."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table: its text, how many columns it spans, and its color and class."""
+
+    text: str
+    span: int = 1
+    color: str = ""
+    kind: str = ""
+
+    def html(self, tag: str) -> str:
+        """Return the cell."""
+        attributes = f' colspan="{self.span}"' if self.span > 1 else ""
+        attributes += f' class="{self.kind}"' if self.kind else ""
+        attributes += f' style="background:{self.color}"' if self.color else ""
+        return f"<{tag}{attributes}>{html.escape(self.text)}</{tag}>"
+
+
+def table(
+    headers: Sequence[Sequence[Cell | str]], rows: Sequence[Sequence[Cell | str]], kind: str = ""
+) -> str:
+    """Return a table of header lines and rows."""
+    head = "".join(f"<tr>{_cells(line, 'th')}</tr>" for line in headers)
+    body = "".join(f"<tr>{_cells(line, 'td')}</tr>" for line in rows)
+    return f'<table class="{kind}"><thead>{head}</thead><tbody>{body}</tbody></table>'
+
+
+def section(title: str, *parts: str) -> str:
+    """Return a section with its headline."""
+    return f"<section><h2>{html.escape(title)}</h2>{''.join(parts)}</section>"
+
+
+def heading(text: str) -> str:
+    """Return a headline within a section."""
+    return f"<h3>{html.escape(text)}</h3>"
+
+
+def paragraph(text: str, kind: str = "") -> str:
+    """Return a paragraph."""
+    attribute = f' class="{kind}"' if kind else ""
+    return f"<p{attribute}>{html.escape(text)}</p>"
+
+
+def bullets(texts: Sequence[str]) -> str:
+    """Return a list."""
+    return f"<ul>{''.join(f'<li>{html.escape(text)}</li>' for text in texts)}</ul>"
+
+
+def figure(charts: Sequence[str], caption: str) -> str:
+    """Return charts, which are HTML already, side by side as far as they fit."""
+    inside = "".join(f'<div class="chart">{chart}</div>' for chart in charts)
+    kind = "charts" if len(charts) > 1 else "chart-alone"
+    return (
+        f'<figure><div class="{kind}">{inside}</div>'
+        f"<figcaption>{html.escape(caption)}</figcaption></figure>"
+    )
+
+
+def _cells(line: Sequence[Cell | str], tag: str) -> str:
+    return "".join((cell if isinstance(cell, Cell) else Cell(cell)).html(tag) for cell in line)

@@ -1,0 +1,77 @@
+"""What a report compares: each outcome with its title, unit, and which way is better."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rastrainer.motion.definitions import DEFINITIONS
+from rastrainer.number_text import fixed
+
+MODE_TITLES = {"desktop": "Desktop", "hmd": "Headset (HMD)"}
+MODE_NAMES = {"desktop": "the desktop screen", "hmd": "the headset"}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One number of a trial.
+
+    Attributes:
+        name: Key in a trial's values.
+        title: For people.
+        unit: "" where it has none.
+        better: -1 where less is better, 1 where more is, 0 where neither is.
+        digits: After the point.
+    """
+
+    name: str
+    title: str
+    unit: str
+    better: int
+    digits: int
+
+    @property
+    def heading(self) -> str:
+        """Title with unit."""
+        return f"{self.title}, {self.unit}" if self.unit else self.title
+
+    def text(self, value: float) -> str:
+        """Return a value with as many digits as make sense, without its unit."""
+        return fixed(value, self.digits)
+
+
+MAIN_OUTCOMES = (
+    Outcome("completion_time_s", "Completion time", "s", -1, 1),
+    Outcome("rmse_mm", "Registration error (RMSE)", "mm", -1, 2),
+    Outcome("ctps", "CTPS as published", "", 0, 1),
+    Outcome("expected_tre_mm", "Expected target error", "mm", -1, 2),
+    Outcome("true_tre_mm", "True target error", "mm", -1, 2),
+    Outcome("score", "RASTrainer score", "", 1, 1),
+)
+MOTION_OUTCOMES = tuple(
+    Outcome(d.name, d.title, d.unit, d.better, 2 if d.unit in ("", "s", "mm") else 1)
+    for d in DEFINITIONS.values()
+    if d.name != "completion_time_s"
+)
+CLUSTER_METRICS = (
+    "completion_time_s",
+    "rmse_mm",
+    "path_between_touches_mm",
+    "sparc",
+    "idle_time_s",
+)
+"""Trainees are grouped by those of these that all have; few, as few trainees allow."""
+
+
+def mode_title(mode: str) -> str:
+    """Return how a mode is called for people."""
+    return MODE_TITLES.get(mode, mode)
+
+
+def mode_name(mode: str) -> str:
+    """Return how a mode is called within a sentence."""
+    return MODE_NAMES.get(mode, mode)
+
+
+def task_title(task: str) -> str:
+    """Return how a task is called for people: `task-1` and `1` are Task 1."""
+    return f"Task {task}" if task.isdigit() else task.replace("-", " ").capitalize()

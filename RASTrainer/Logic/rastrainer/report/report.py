@@ -1,0 +1,111 @@
+"""The report of a study: one HTML page and the numbers behind it as a CSV file."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+
+import rastrainer
+from rastrainer.errors import InputError
+from rastrainer.export.tidy_csv import trials_csv
+from rastrainer.files import write_text
+from rastrainer.inference.few_subjects import FEW
+from rastrainer.report.comparisons import ModeComparison, compare_modes
+from rastrainer.report.markup import bullets, paragraph, section
+from rastrainer.report.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
+from rastrainer.report.page import page
+from rastrainer.report.published_scores import with_ctps
+from rastrainer.report.sections.groups import groups
+from rastrainer.report.sections.learning import learning
+from rastrainer.report.sections.limits import limits
+from rastrainer.report.sections.methods import methods
+from rastrainer.report.sections.mode_comparison import mode_comparison
+from rastrainer.report.sections.motion import motion
+from rastrainer.report.sections.paired_statistics import findings, paired_statistics
+from rastrainer.report.sections.paper_notes import paper_notes
+from rastrainer.report.sections.published_tables import published_tables
+from rastrainer.report.sections.questionnaires import questionnaires
+from rastrainer.report.sections.spread import spread
+from rastrainer.report.study_data import StudyData
+
+PAGE, NUMBERS = "report.html", "trials.csv"
+
+
+@dataclass(frozen=True)
+class WrittenReport:
+    """The files of a report."""
+
+    page: Path
+    numbers: Path
+
+
+def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> WrittenReport:
+    """Write the report of a study into a folder, which is made if it is not there.
+
+    Args:
+        data: Of `read_study_data`.
+        folder: Where to; files of an earlier report there are replaced.
+        made_utc: When it was made, as the report shall say it; now by default.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+    written = WrittenReport(folder / PAGE, folder / NUMBERS)
+    write_text(written.page, report_html(data, made_utc))
+    write_text(written.numbers, trials_csv(data))
+    return written
+
+
+def report_html(data: StudyData, made_utc: str | None = None) -> str:
+    """Return the page."""
+    data = with_ctps(data)
+    pairs = list(itertools.combinations(sorted(data.modes), 2))
+    main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
+    described = [compare_modes(data, MOTION_OUTCOMES, *pair) for pair in pairs]
+    everything = [comparison for comparisons in main for comparison in comparisons]
+    made = made_utc or datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
+    modes = ", ".join(mode_title(mode) for mode in data.modes)
+    subtitle = (
+        f"{len(data.trainees)} trainees · {len(data.trials)} trials · {len(data.tasks)} tasks · "
+        f"{modes} · made {made}"
+    )
+    sections = [
+        _summary(everything),
+        published_tables(data),
+        mode_comparison(data),
+        *(paired_statistics(comparisons) for comparisons in main),
+        spread(data),
+        learning(data),
+        motion(data, described[0] if described else ()),
+        questionnaires(data),
+        groups(data),
+        limits(data, everything),
+        paper_notes(data),
+        methods(data),
+    ]
+    footer = (
+        f"RASTrainer {rastrainer.__version__}. For teaching and research; not a medical device. "
+        "Trainees are named by pseudonyms only."
+    )
+    return page(data.title, subtitle, sections, footer)
+
+
+def _summary(comparisons: list[ModeComparison]) -> str:
+    sentences = findings(comparisons)
+    n = max((len(comparison.trainees) for comparison in comparisons), default=0)
+    parts = [bullets(sentences)] if sentences else []
+    if 0 < n < FEW:
+        few = (
+            f"Only {n} trainees did both modes. What is not shown here may still be there; see "
+            "“What cannot be concluded”."
+        )
+        parts.append(paragraph(few, "warning"))
+    if not parts:
+        parts = [paragraph("No trainee did two modes; the study is described, nothing is tested.")]
+    return section("In short", *parts)

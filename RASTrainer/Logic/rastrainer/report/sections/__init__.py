@@ -1,0 +1,1 @@
+"""The sections of a report; each gives its HTML, or "" where a study has nothing for it."""

@@ -1,0 +1,64 @@
+"""Groups of trainees by performance, or why none are told."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+
+from rastrainer.clusters.trainee_clusters import (
+    NoClustersError,
+    TraineeClusters,
+    cluster_trainees,
+)
+from rastrainer.report.markup import paragraph, section, table
+from rastrainer.report.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES
+from rastrainer.report.study_data import StudyData
+
+NAMES = "ABCDE"
+MOST_NAMED = 12
+
+
+def groups(data: StudyData) -> str:
+    """Return the section."""
+    means = trainee_means(data)
+    metrics = [m for m in CLUSTER_METRICS if all(m in values for values in means.values())]
+    try:
+        found = cluster_trainees(means, metrics)
+    except NoClustersError as error:
+        return section("Groups of trainees", paragraph(f"None are told. {error}"))
+    return section("Groups of trainees", _table(found), paragraph(_words(found), "small"))
+
+
+def trainee_means(data: StudyData) -> dict[str, dict[str, float]]:
+    """Return trainee → value → mean over all trials of the trainee."""
+    values: dict[str, dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
+    for trial in data.trials:
+        for name, value in trial.values.items():
+            values[trial.trainee][name].append(value)
+    return {
+        trainee: {name: float(np.mean(found)) for name, found in own.items()}
+        for trainee, own in values.items()
+    }
+
+
+def _table(found: TraineeClusters) -> str:
+    outcomes = {outcome.name: outcome for outcome in (*MAIN_OUTCOMES, *MOTION_OUTCOMES)}
+    shown = [outcomes[metric] for metric in found.metrics]
+    rows = []
+    for index, members in enumerate(found.members):
+        center = [o.text(v) for o, v in zip(shown, found.centers[index], strict=True)]
+        names = ", ".join(members[:MOST_NAMED]) + (", …" if len(members) > MOST_NAMED else "")
+        stability = f"{found.stability[index]:.2f}"
+        rows.append([NAMES[index], str(len(members)), *center, stability, names])
+    header = ["Group", "n", *(o.heading for o in shown), "stability", "trainees"]
+    return table([header], rows)
+
+
+def _words(found: TraineeClusters) -> str:
+    return (
+        f"k-means on z-scores; mean silhouette {found.silhouette:.2f}, where 95 % of samples "
+        f"without groups stay below {found.chance_silhouette:.2f}. Stability is the mean Jaccard "
+        "similarity under resampling of trainees (Hennig 2007). A group describes these trainees; "
+        "it does not say why they differ."
+    )

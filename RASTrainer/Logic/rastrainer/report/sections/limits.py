@@ -1,0 +1,52 @@
+"""What cannot be concluded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rastrainer.inference.few_subjects import what_cannot_be_concluded
+from rastrainer.report.comparisons import ModeComparison
+from rastrainer.report.markup import bullets, heading, section
+from rastrainer.report.outcomes import task_title
+from rastrainer.report.study_data import StudyData
+
+
+def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
+    """Return the section."""
+    n = max((len(comparison.trainees) for comparison in comparisons), default=0)
+    sentences = (
+        what_cannot_be_concluded(n)
+        if comparisons
+        else ["No trainee did two modes: nothing is said about their difference."]
+    )
+    sentences += _missing(data)
+    if data.without_consent:
+        sentences.append(
+            f"{data.without_consent} trainees did not agree to research and are left out."
+        )
+    sentences.append(
+        "CTPS depends on the cohort and rises with slower completion; differences in CTPS are not "
+        "differences in skill."
+    )
+    parts = [bullets(sentences)]
+    if data.skipped:
+        parts += [
+            heading("Steps of the protocol that were left out"),
+            bullets([f"{who}, {step}: {reason}" for who, step, reason in data.skipped]),
+        ]
+    return section("What cannot be concluded", *parts)
+
+
+def _missing(data: StudyData) -> list[str]:
+    """Say which tasks some trainees lack, since means over other tasks do not compare."""
+    lacking = []
+    for mode in data.modes:
+        own = data.of_mode(mode)
+        trainees = {trial.trainee for trial in own}
+        for task in data.tasks:
+            missing = len(trainees) - len({t.trainee for t in own if t.task == task})
+            if missing:
+                lacking.append(f"{missing} of {len(trainees)} lack {task_title(task)} ({mode})")
+    if not lacking:
+        return []
+    return [f"Trials are missing: {'; '.join(lacking)}. Their trainees count with other tasks."]

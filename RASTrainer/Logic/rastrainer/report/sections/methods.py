@@ -1,0 +1,103 @@
+"""A paragraph for the methods section of a paper, the references and the versions."""
+
+from __future__ import annotations
+
+import platform
+
+import numpy as np
+
+import rastrainer
+from rastrainer.experiment.study_protocol import BALANCED
+from rastrainer.motion.definitions import FILTER
+from rastrainer.report.markup import bullets, heading, paragraph, section, table
+from rastrainer.report.study_data import StudyData
+from rastrainer.scoring import SCORE_VERSION
+
+REFERENCES = (
+    "Student 1908, The probable error of a mean. Biometrika 6",
+    "Wilcoxon 1945, Individual comparisons by ranking methods. Biometrics Bulletin 1",
+    "Hedges 1981, Distribution theory for Glass's estimator of effect size. J Educ Stat 6",
+    "Steiger and Fouladi 1997, Noncentrality interval estimation. In: What if there were no "
+    "significance tests?",
+    "Holm 1979, A simple sequentially rejective multiple test procedure. Scand J Stat 6",
+    "Fitzpatrick, West and Maurer 1998, Predicting error in rigid-body point-based registration. "
+    "IEEE Trans Med Imaging 17",
+    "Derringer and Suich 1980, Simultaneous optimization of several response variables. "
+    "J Qual Technol 12",
+    "Balasubramanian et al. 2015, On the analysis of movement smoothness. J Neuroeng Rehabil 12",
+    "Newell and Rosenbloom 1981, Mechanisms of skill acquisition and the law of practice",
+    "Hennig 2007, Cluster-wise assessment of cluster stability. Comput Stat Data Anal 52",
+)
+
+
+def methods(data: StudyData) -> str:
+    """Return the section."""
+    versions = [[name, ", ".join(found)] for name, found in data.versions.items()]
+    own = [
+        ["rastrainer (this report)", rastrainer.__version__],
+        ["score", SCORE_VERSION],
+        ["python, numpy (this report)", f"{platform.python_version()}, {np.__version__}"],
+    ]
+    return section(
+        "Methods and versions",
+        paragraph(_design(data)),
+        paragraph(_measures(data)),
+        paragraph(_analysis()),
+        heading("References"),
+        bullets(REFERENCES),
+        heading("Versions"),
+        table([["what", "version"]], [*own, *versions]),
+    )
+
+
+def _design(data: StudyData) -> str:
+    words = (
+        f"{len(data.trainees)} trainees did {len(data.trials)} trials of {len(data.tasks)} tasks "
+        f"in {len(data.modes)} mode{'s' if len(data.modes) > 1 else ''}. In each trial, fifteen "
+        "numbered fiducials on a virtual head were touched in order with a teleoperated robot, and "
+        "the touched points were registered rigidly to the fiducials in the MRI."
+    )
+    protocol = data.protocol
+    if protocol is not None:
+        mode_order = "balanced over the trainees" if protocol.mode_order == BALANCED else "fixed"
+        task_order = (
+            "a balanced Latin square (Williams 1949)"
+            if protocol.task_order == BALANCED
+            else "their fixed order"
+        )
+        words += (
+            f" The order of modes was {mode_order}; tasks came in {task_order}, "
+            f"{protocol.repetitions} time{'s' if protocol.repetitions > 1 else ''} each, after a "
+            f"trial run of {protocol.trial_run_min:g} min in each mode."
+        )
+    if data.notes is not None:
+        words += f" {data.notes.participants} {data.notes.setting}"
+    return words
+
+
+def _measures(data: StudyData) -> str:
+    words = (
+        "Completion time runs from the start to the last kept touch without pauses. RMSE is the "
+        "fiducial registration error of the rigid fit. CTPS is 100·(CT/mean CT − (RMSE − best "
+        "RMSE)/best RMSE) with mean and best over all trials of the mode."
+    )
+    found = {name for trial in data.trials for name in trial.values}
+    if "score" in found:
+        words += (
+            " The RASTrainer score (0 to 100) is the geometric mean of a time and an accuracy "
+            "desirability with references fixed in advance for each task and equal in both modes; "
+            "accuracy is the expected target error at the scenario's target (Fitzpatrick 1998)."
+        )
+    if "sparc" in found:
+        words += f" Trajectories were {FILTER}."
+    return words
+
+
+def _analysis() -> str:
+    return (
+        "Modes were compared on trainee means over common tasks by the paired t-test and the exact "
+        "Wilcoxon signed-rank test, with the mean difference and its 95 % t interval, and Hedges' "
+        "g_z with its 95 % noncentral-t interval. The p-values of the t-tests of completion time, "
+        "RMSE, CTPS and score were adjusted by Holm's method; all else is descriptive. Outliers "
+        "were not removed and missing values not filled in."
+    )

@@ -1,0 +1,52 @@
+"""What the trainees answered."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+
+from rastrainer.questionnaires.catalog import QUESTIONNAIRES
+from rastrainer.report.markup import paragraph, section, table
+from rastrainer.report.outcomes import mode_title
+from rastrainer.report.study_data import StudyData
+
+
+def questionnaires(data: StudyData) -> str:
+    """Return a table of the scores by mode and occasion; "" where nobody was asked."""
+    if not data.answers:
+        return ""
+    values: dict[tuple[str, str, str], list[float]] = defaultdict(list)
+    for answered in data.answers:
+        occasion = _occasion(answered.step.name, answered.step.mode)
+        for scale, score in answered.scores.items():
+            values[answered.step.questionnaire, scale, occasion].append(score)
+    rows, sources = [], []
+    for name, questionnaire in QUESTIONNAIRES.items():
+        for scale in questionnaire.scales:
+            for key, scores in values.items():
+                if key[:2] == (name, scale.name):
+                    rows.append(_row(scale.title, key[2], scores, (scale.lowest, scale.highest)))
+        if any(key[0] == name for key in values):
+            sources.append(f"{questionnaire.title}: {questionnaire.source}.")
+    header = [["Scale", "when", "n", "mean ± SD", "median", "range of the scale"]]
+    return section("Questionnaires", table(header, rows, "long"), paragraph(" ".join(sources)))
+
+
+def _occasion(step: str, mode: str) -> str:
+    if not mode:
+        return "before all" if step.startswith("before-all") else "after all"
+    when = "before" if "/before/" in step else "after"
+    return f"{when} {mode_title(mode)}"
+
+
+def _row(title: str, when: str, scores: list[float], ends: tuple[float, float]) -> list[str]:
+    spread = f" ± {np.std(scores, ddof=1):.1f}" if len(scores) > 1 else ""
+    return [
+        title,
+        when,
+        str(len(scores)),
+        f"{np.mean(scores):.1f}{spread}",
+        f"{np.median(scores):.1f}",
+        f"{ends[0]:g} to {ends[1]:g}",
+    ]

@@ -1,0 +1,274 @@
+"""A study's report: the paper's tables to the digit, self-contained, honest, safe."""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.experiment.study_progress import StudyProgress
+from rastrainer.experiment.study_protocol import read_study_protocol
+from rastrainer.report.comparisons import compare_modes, paired_means
+from rastrainer.report.outcomes import MAIN_OUTCOMES
+from rastrainer.report.published_scores import with_ctps
+from rastrainer.report.report import report_html, write_report
+from rastrainer.report.sections.published_tables import performance_color
+from rastrainer.report.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.scoring import score_trial, task_reference
+from rastrainer.study import Study
+from rastrainer_simulator.cli import main
+from Testing.domain.trial_records import make_record
+
+STUDIES = Path(__file__).parents[2] / "assets" / "studies"
+PUBLISHED = STUDIES / "published.csv"
+VOID = {"meta", "br", "img", "hr", "link", "input"}
+
+
+class Balanced(HTMLParser):
+    """Fails on tags that do not match."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.texts = [], []
+
+    def handle_starttag(self, tag, _attributes):
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, _tag, _attributes):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+def words_of(html):
+    parser = Balanced()
+    parser.feed(html)
+    assert parser.open == []
+    return re.sub(r"\s+", " ", " ".join(parser.texts))
+
+
+@pytest.fixture(scope="module")
+def published():
+    return read_study_data(PUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def page(published):
+    return report_html(published, "today")
+
+
+def cohort(trainees, tasks=3, seed=0, learning=0.0):
+    rng = np.random.default_rng(seed)
+    rows = []
+    for index in range(trainees):
+        for mode, shift in (("desktop", 0.0), ("hmd", 0.4)):
+            for number in range(1, tasks + 1):
+                time = 80 + 60 * number**-learning + rng.normal(0, 3)
+                values = {
+                    "completion_time_s": time,
+                    "rmse_mm": 1.5 + shift + rng.normal(0, 0.2),
+                    "score": 60.0 + rng.normal(0, 5),
+                    "sparc": -3 + rng.normal(0, 0.3),
+                }
+                rows.append(TrialRow(f"T{index:03d}", mode, f"task-{number}", number, values))
+    return StudyData("A cohort", tuple(rows), has_order=True)
+
+
+def test_both_tables_are_the_papers_to_the_printed_digit(page):
+    words = words_of(page)
+    for row in (
+        "Task 1 114.30 1.10 101.40 1.16 102.00 1.15 105.20 1.17 79.70",
+        "Task 5 127.00 2.31 133.40 1.48 156.50 1.50 144.00 1.51 56.59",
+        "User Perf. 63.76 66.31 65.12 64.09",
+        "Task 2 147.70 1.15 114.80 1.13 132.80 1.15 125.10 1.18 86.42",
+        "User Perf. 81.72 58.83 68.37 60.22 67.29",
+    ):
+        assert row in words
+    assert "67.29 ± 25.96" in words
+    assert "25.47 divided by n" in words
+    assert "r = 0.963, r² = 0.928" in words
+
+
+def test_the_marginals_are_colored_from_red_to_green():
+    values = [37.1, 56.6, 79.7]
+    assert performance_color(37.1, values) == "#f4a59e"
+    assert performance_color(79.7, values) == "#abdba5"
+    assert performance_color(5.0, [5.0, 5.0]) == "#fceaaa"
+
+
+def test_the_paired_tests_on_subject_means_are_those_of_the_shared_analysis(published):
+    results = {
+        c.outcome.name: c
+        for c in compare_modes(with_ctps(published), MAIN_OUTCOMES, "desktop", "hmd")
+    }
+    rmse = results["rmse_mm"]
+    assert len(rmse.trainees) == 4
+    assert rmse.result.mean_difference == pytest.approx(0.147, abs=6e-4)
+    assert rmse.result.p == pytest.approx(0.005, abs=5e-4)
+    assert rmse.adjusted_p == pytest.approx(3 * rmse.result.p)
+    assert rmse.result.signed_ranks.p == 0.125
+    for name in ("completion_time_s", "ctps"):
+        assert results[name].result.p > 0.5
+
+
+def test_the_report_says_what_four_subjects_cannot_show(page):
+    words = words_of(page)
+    assert "0.147 mm higher with the headset than with the desktop screen" in words
+    assert "its smallest possible p is 0.125" in words
+    assert "not evidence that there is none" in words
+    assert "None are told. Groups of trainees are not told for fewer than 12" in words
+
+
+def test_the_papers_inconsistencies_stand_beside_its_numbers(page):
+    words = words_of(page)
+    for sentence in (
+        "Equation 3 divides that by 2",
+        "64.81: cut off",
+        "speaks of five participants",
+    ):
+        assert sentence in words
+    assert "Overall CTPS, HMD 64.81 64.818" in words
+    assert "± of the overall CTPS, desktop 25.96 25.963" in words
+
+
+def test_the_page_needs_no_other_file_and_runs_nothing(page):
+    assert "<script" not in page
+    assert not re.findall(r'(?:src|href)="', page)
+    links = set(re.findall(r"https?://[^\s\"'<]+", page))
+    assert links == {"http://www.w3.org/2000/svg"}
+    assert "@page { size: A4;" in page
+
+
+def test_every_chart_is_well_formed_and_described(page):
+    charts = re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+    assert len(charts) >= 10
+    for chart in charts:
+        root = ElementTree.fromstring(chart)
+        assert root.get("aria-label")
+        width, height = map(float, root.get("viewBox").split()[2:])
+        for element in root:
+            for name, limit in (("x", width), ("cx", width), ("y", height), ("cy", height)):
+                if element.get(name) is not None:
+                    assert -1 <= float(element.get(name)) <= limit + 1
+
+
+def test_the_same_study_gives_the_same_page(published, page):
+    assert report_html(published, "today") == page
+
+
+def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
+    assert main(["report", str(PUBLISHED), "-o", str(tmp_path / "new" / "folder")]) == 0
+    folder = tmp_path / "new" / "folder"
+    assert "40 trials" in capsys.readouterr().out
+    assert (folder / "report.html").read_text().startswith("<!DOCTYPE html>")
+    lines = (folder / "trials.csv").read_text().splitlines()
+    assert lines[0] == "trainee,mode,task,number,trial_id,started_utc,completion_time_s,rmse_mm"
+    assert len(lines) == 41
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["missing.db"], "There is no file missing.db"),
+        ([str(PUBLISHED), "--mean-ct", "vr=1"], "names the mode 'vr'"),
+        ([str(STUDIES / "README.md")], "is not a study database"),
+    ],
+)
+def test_a_study_that_cannot_be_read_is_one_sentence(words, sentence, tmp_path, capsys):
+    assert main(["report", *words, "-o", str(tmp_path)]) == 2
+    printed = capsys.readouterr().err
+    assert sentence in printed
+    assert printed.count("\n") == 1
+
+
+def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
+    page = report_html(cohort(30, tasks=12, learning=0.7), "today")
+    words = words_of(page)
+    assert "30 users:" in words
+    assert "to a plateau of" in words
+    assert "Motion metrics" in words
+    assert "Smoothness, SPARC" in words
+    assert "30 trainees did 720 trials" in words
+    assert len(page) < 2_000_000
+
+
+def test_one_mode_alone_is_described_and_not_tested():
+    one = StudyData("One", tuple(t for t in cohort(3).trials if t.mode == "hmd"))
+    words = words_of(report_html(one))
+    assert "nothing is tested" in words
+    assert "No trainee did two modes" in words
+
+
+def test_trainees_count_with_the_tasks_they_did_in_both_modes():
+    def row(mode, task, time):
+        return TrialRow("a", mode, task, 1, {"completion_time_s": time})
+
+    rows = [row("desktop", "1", 10.0), row("desktop", "2", 90.0), row("hmd", "1", 12.0)]
+    data = StudyData("x", tuple(rows))
+    assert paired_means(data, "completion_time_s", "desktop", "hmd") == {"a": (10.0, 12.0)}
+    assert "1 of 1 lack Task 2 (hmd)" in words_of(report_html(data))
+
+
+def test_hostile_pseudonyms_and_titles_stay_text():
+    evil = '<script>alert("x")</script>'
+    rows = [
+        TrialRow(evil, mode, "task-1", 1, {"completion_time_s": 10.0 + i, "rmse_mm": 1.0 + i})
+        for i, mode in enumerate(("desktop", "hmd"))
+    ]
+    page = report_html(StudyData(evil, tuple(rows)))
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+
+
+def study_with_trials(path, consent=True):
+    with Study.open(path) as study:
+        progress = StudyProgress(study)
+        progress.begin(read_study_protocol(STUDIES / "published-protocol.json"))
+        for name in ("A", "B"):
+            study.create_trainee(name, consent=consent if name == "A" else True)
+            progress.enroll(name)
+        progress.finish("A", "hmd/before/ssq", {"answers": [1] * 16})
+        progress.skip("B", "desktop/trial-run", "knows the tasks from a pilot")
+        for i, (name, mode) in enumerate([("A", "hmd"), ("A", "desktop"), ("B", "hmd")]):
+            record = make_record(
+                trialId=f"00000000-0000-0000-0000-00000000000{i}",
+                mode=mode,
+                trainee=name,
+                motion={"sparc": -2.5},
+            )
+            score = score_trial(110.0, 0.5, task_reference("task-1"))
+            study.add_trial(record, score=score)
+
+
+def test_a_study_database_gives_scores_motion_questionnaires_and_what_was_skipped(tmp_path):
+    study_with_trials(tmp_path / "study.db")
+    data = read_study_data(tmp_path / "study.db")
+    assert data.trials[0].values["sparc"] == -2.5
+    words = words_of(report_html(data))
+    assert "Simulator sickness (SSQ) before Headset (HMD) 1 78.5" in words
+    assert "B, desktop/trial-run: knows the tasks from a pilot" in words
+    assert "The order of modes was balanced" in words
+    assert "simulator 0.1.0" in words
+
+
+def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
+    study_with_trials(tmp_path / "study.db", consent=False)
+    data = read_study_data(tmp_path / "study.db")
+    assert data.trainees == ("B",)
+    assert data.answers == ()
+    assert "1 trainees did not agree" in words_of(report_html(data))
+
+
+def test_a_study_of_nobody_who_consents_is_refused(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        study.add_trial(make_record())
+    with pytest.raises(InputError, match="no trials of trainees who agreed"):
+        write_report(read_study_data(tmp_path / "study.db"), tmp_path)
