@@ -19,6 +19,7 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.config_folder import config_folder
+from rastrainer_simulator.desktop_process import DesktopProcess
 from rastrainer_simulator.flow.preferences import FILE_NAME as PREFERENCES_FILE
 from rastrainer_simulator.flow.preferences import Preferences, read_preferences
 from rastrainer_simulator.igtl.limits import Limits
@@ -56,6 +57,7 @@ class ServerOptions:
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
         has_views: whether views are served at all, and a trainee can operate.
         has_gamepad: whether gamepads at this computer are read.
+        has_desktop: whether a window is opened; the simulator ends when its user closes it.
         config: folder of the user's settings; None is the usual one.
     """
 
@@ -71,6 +73,7 @@ class ServerOptions:
     view_port: int | None = None
     has_views: bool = True
     has_gamepad: bool = True
+    has_desktop: bool = False
     config: Path | None = None
 
 
@@ -115,7 +118,7 @@ class SimulatorServer:
         tasks = [loop.create_task(link.beat())]
         stop = asyncio.Event()
         desk = self._desk(link, stop) if self._options.has_views else None
-        serve_views, views = self._views_to_serve(desk), None
+        serve_views, views, window = self._views_to_serve(desk), None, None
         # What was loaded stays: no garbage collection needs to look at it between two ticks.
         gc.collect()
         gc.freeze()
@@ -126,11 +129,18 @@ class SimulatorServer:
                 if serve_views is not None:
                     views = await serve_views(on_ready)
                     tasks.append(loop.create_task(desk.run()))
+                if self._options.has_desktop and views is not None:
+                    window = DesktopProcess(
+                        f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open()
+                    )
+                    tasks.append(loop.create_task(window.run(stop.set, on_ready)))
                 await self._until(stop)
             finally:
                 for task in tasks:
                     task.cancel()
                 unsubscribe()
+                if window is not None:
+                    await window.close()
                 if views is not None:
                     await views.close()
                 if desk is not None:

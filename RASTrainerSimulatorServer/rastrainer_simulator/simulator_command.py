@@ -62,6 +62,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--robot-meshes", type=Path, metavar="DIR", help="the robot's official meshes"
     )
     parser.add_argument(
+        "--desktop",
+        action="store_true",
+        help="open the trainee's window; the simulator ends when it is closed",
+    )
+    parser.add_argument(
         "--gamepad",
         action=argparse.BooleanOptionalAction,
         default=True,
@@ -95,6 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         view_port=arguments.view_port,
         has_views=not arguments.no_views,
         has_gamepad=arguments.gamepad,
+        has_desktop=arguments.desktop,
         config=arguments.config,
         connect_to=connect_to,
         speed=arguments.speed,
@@ -113,6 +119,8 @@ def _check(arguments: argparse.Namespace) -> None:
             raise InputError(f"{name} must be a number from 0 to 65535.")
     if arguments.no_views and arguments.view_port is not None:
         raise InputError("--view-port and --no-views exclude each other.")
+    if arguments.no_views and arguments.desktop:
+        raise InputError("--desktop and --no-views exclude each other.")
     if not 0.0 < arguments.speed <= FASTEST:
         raise InputError(f"--speed must be above 0 and at most {FASTEST:g}.")
     if arguments.seed is not None and not 0 <= arguments.seed <= LARGEST_SEED:

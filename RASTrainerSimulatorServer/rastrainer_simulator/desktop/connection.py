@@ -127,9 +127,7 @@ class Connection:
                 sound = SoundEvent(str(message["sound"]), float(message.get("volume", 1.0)))
                 self._inbox.sounds.append(sound)
 
-    async def _take_scene(
-        self, session: aiohttp.ClientSession, message: Mapping[str, Any]
-    ) -> None:
+    async def _take_scene(self, session: aiohttp.ClientSession, message: Mapping[str, Any]) -> None:
         """Load a scene; the one that is shown stays until the next is there."""
         url = str(message["url"])
         async with session.get(self._url + url) as answer:

@@ -31,7 +31,7 @@ def finish_surface(target: vtkProperty, finish: Finish, is_physical: bool) -> No
     else:
         target.SetInterpolationToPhong()
         target.SetColor(*to_srgb(finish.color))
-        target.SetAmbient(0.30)
+        target.SetAmbient(0.34)
         target.SetDiffuse(0.72)
         target.SetSpecular(0.28 * (1.0 - finish.roughness))
         target.SetSpecularPower(4.0 + 40.0 * (1.0 - finish.roughness))

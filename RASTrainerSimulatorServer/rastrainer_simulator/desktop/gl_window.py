@@ -121,6 +121,8 @@ class GlWindow:
         window.SetMapped(True)
         window.SetReadyForRendering(True)
         window.OpenGLInitContext()
+        # As VTK does for windows that it makes itself; without, no panel covers another.
+        window.GetState().Initialize(window)
         window.SetMultiSamples(0)
         window.SetSize(*self.size)
         return window
@@ -137,4 +139,3 @@ def _renderer_name(window: vtkGenericOpenGLRenderWindow) -> str:
     lines = window.ReportCapabilities().splitlines()
     found = [line for line in lines if line.startswith("OpenGL renderer string:")]
     return found[0].partition(":")[2].strip() if found else ""
-

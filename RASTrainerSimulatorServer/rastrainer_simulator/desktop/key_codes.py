@@ -24,8 +24,6 @@ _IN_ORDER = (
 )
 
 CODES: Mapping[int, str] = {
-    first + index: code
-    for first, codes in _IN_ORDER
-    for index, code in enumerate(codes.split())
+    first + index: code for first, codes in _IN_ORDER for index, code in enumerate(codes.split())
 }
 """SDL scancode → W3C code."""

@@ -46,10 +46,7 @@ class Overlay:
     """The panels of one window."""
 
     def __init__(self, renderer: vtkRenderer):
-        self._slots = {
-            name: _Slot(Sprite(renderer, order))
-            for order, name in enumerate(_SLOTS)
-        }
+        self._slots = {name: _Slot(Sprite(renderer, order)) for order, name in enumerate(_SLOTS)}
         self._size = (0, 0)
         self._brush = Brush(1.0)
         self._menu: tuple[MenuPicture, Box] | None = None

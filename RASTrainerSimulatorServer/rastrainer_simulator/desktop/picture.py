@@ -51,6 +51,8 @@ class Picture:
         self._window.fit()
         self._take_scene()
         self._take_state(now)
+        screen = self._inbox.screen
+        self.stage.wants_inset = screen is None or screen.menu is None
         self.stage.prepare(now)
         if self._overlay.show(self._content(), self._window.size):
             self._must_draw = True

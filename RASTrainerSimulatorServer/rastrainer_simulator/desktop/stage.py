@@ -15,8 +15,8 @@ from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.views.lighting import light_room
 
 BACKGROUND = (0.62, 0.65, 0.68)
-KEY_LIGHT = ((-0.25, -0.5, 0.85), 0.66)
-FILL_LIGHT = ((0.7, -0.6, 0.15), 0.22)
+KEY_LIGHT = ((-0.25, -0.55, 0.80), 0.86)
+FILL_LIGHT = ((0.75, -0.60, 0.25), 0.30)
 
 
 class Stage:
@@ -25,6 +25,7 @@ class Stage:
     Attributes:
         main: renderer of the chosen camera.
         overlay: renderer for two-dimensional actors.
+        wants_inset: whether a second view is shown.
     """
 
     def __init__(self, window: GlWindow, quality: Quality):
@@ -43,6 +44,7 @@ class Stage:
         self._camera = ""
         self._flight: Flight | None = None
         self.quality = quality
+        self.wants_inset = True
         self._light()
 
     def show(self, scene: ShownScene, cameras: Mapping[str, Viewpoint]) -> None:
@@ -87,8 +89,8 @@ class Stage:
 
     @property
     def has_inset(self) -> bool:
-        """Whether there is another camera to look through."""
-        return self._flight is not None and len(self._cameras) > 1
+        """Whether the second view is to be seen."""
+        return self.wants_inset and self._flight is not None and len(self._cameras) > 1
 
     def prepare(self, now: float) -> None:
         """Set cameras and viewports for the picture at `now` (s)."""

@@ -40,6 +40,7 @@ class ViewServer:
     Attributes:
         code: pairs a view; to be shown to people.
         sessions: keys of the views that may look.
+        port: where it listens; 0 before it does.
     """
 
     def __init__(
@@ -64,6 +65,7 @@ class ViewServer:
         self._limits = limits or ViewLimits()
         self.code = PairingCode(asyncio.get_running_loop().time, on_new_code)
         self.sessions = Sessions(self._limits.sessions)
+        self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
         self._views = Views(control_loop, desk, self._scenes, self._limits)
         self._streams = 0
@@ -88,7 +90,8 @@ class ViewServer:
         await self._runner.setup()
         feed = StateFeed(self._views.is_due, self._views.tell, loop)
         self._unsubscribe = self._control_loop.subscribe(feed)
-        return self._server.sockets[0].getsockname()[1]
+        self.port = self._server.sockets[0].getsockname()[1]
+        return self.port
 
     async def close(self) -> None:
         """Send the views away and stop listening."""

@@ -25,7 +25,8 @@ def frame(width: int, height: int, thickness: int, color: Color) -> np.ndarray:
 def glow(thickness: int, color: Color) -> np.ndarray:
     """Return a column that is full above and fades away below, to be stretched."""
     fade = np.linspace(1.0, 0.0, thickness) ** 1.5
-    pixels = np.empty((thickness, 1, 4), np.uint8)
+    # Two pixels wide: VTK takes a picture of one for a row.
+    pixels = np.empty((thickness, 2, 4), np.uint8)
     pixels[..., :3] = np.round(255.0 * np.array(color[:3]))
-    pixels[:, 0, 3] = np.round(255.0 * color[3] * fade)
+    pixels[..., 3] = np.round(255.0 * color[3] * fade)[:, None]
     return pixels
