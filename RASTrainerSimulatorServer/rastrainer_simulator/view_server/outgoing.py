@@ -108,6 +108,6 @@ def _pose(matrix: np.ndarray) -> list[float]:
     return [round(value, DECIMALS) for value in (*place, *quaternion(rows))]
 
 
-def _text(kind: str, **members: Any) -> str:
+def _text(kind: str, /, **members: Any) -> str:
     message: Mapping[str, Any] = {"type": kind, **members}
     return json.dumps(message, ensure_ascii=False, allow_nan=False, separators=(",", ":"))

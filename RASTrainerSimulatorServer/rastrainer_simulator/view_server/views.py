@@ -28,6 +28,7 @@ from rastrainer_simulator.view_server.view import View
 _log = logging.getLogger(__name__)
 
 _WATCH_PERIOD_S = 0.05
+_BEFORE_BUILDING_AHEAD_S = 3.0
 ENDING = "The simulator has been stopped."
 
 
@@ -132,6 +133,8 @@ class Views:
             self._scene = outgoing.scene(file.sha256, setup.scenario, task)
             for view in self._views.values():
                 view.outbox.put_latest(outgoing.SCENE, self._scene)
+            # The views that have just got this scene need the processor first.
+            await asyncio.sleep(_BEFORE_BUILDING_AHEAD_S)
             await self._scenes.build_all(setup)
         except InputError as error:
             _log.error("%s", error)

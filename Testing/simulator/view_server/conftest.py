@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
 from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.scene.cache_folder import cache_folder
+from rastrainer_simulator.scene.scene_files import NO_TASK, SceneFiles
 from rastrainer_simulator.simulation import Simulation
 from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ServedViews, ViewClient
 
 
 @pytest.fixture(scope="session", autouse=True)
-def own_cache(tmp_path_factory):
-    """Keep the scenes of the tests out of the user's cache."""
+def own_cache(tmp_path_factory, setup):
+    """Keep the scenes of the tests out of the user's cache; the one without a task is there."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        asyncio.run(SceneFiles(cache_folder()).scene(setup, NO_TASK))
         yield
 
 

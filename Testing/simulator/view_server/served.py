@@ -57,6 +57,7 @@ class ServedViews:
         self.thread = thread
         self.desk = RecordingDesk()
         self.new_codes = []
+        self._is_closed = False
         self.server = thread.call(
             ViewServer,
             control_loop,
@@ -89,7 +90,10 @@ class ServedViews:
         return self.desk.calls
 
     def close(self):
-        self.thread.run(self.server.close())
+        """End the server; a second time does nothing."""
+        if not self._is_closed:
+            self._is_closed = True
+            self.thread.run(self.server.close())
 
 
 class ViewClient:
@@ -98,13 +102,15 @@ class ViewClient:
     def __init__(self, thread: LoopThread, url: str, key: str):
         self._thread = thread
         self._session = thread.run(_session())
-        self._socket = self._run(
-            self._session.ws_connect(
-                f"{url}/stream",
-                protocols=[SUBPROTOCOL],
-                headers={"Authorization": f"Bearer {key}"},
-            )
+        headers = {"Authorization": f"Bearer {key}"}
+        connecting = self._session.ws_connect(
+            f"{url}/stream", protocols=[SUBPROTOCOL], headers=headers
         )
+        try:
+            self._socket = self._run(connecting)
+        except aiohttp.ClientError:
+            self.__exit__()
+            raise
 
     def __enter__(self) -> ViewClient:
         return self
@@ -145,7 +151,8 @@ class ViewClient:
         """Read on until the server closes; return its code and its reason."""
         while (message := self._receive()).type is aiohttp.WSMsgType.TEXT:
             pass
-        return self._socket.close_code, message.extra or ""
+        assert message.type is aiohttp.WSMsgType.CLOSE, message
+        return message.data, message.extra
 
     def leave(self):
         self._run(self._socket.close())

@@ -1,0 +1,112 @@
+import json
+
+import aiohttp
+import pytest
+
+from Testing.simulator.view_server.served import HELLO
+
+KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
+
+
+def changed(message: dict, **changes) -> str:
+    return json.dumps({**message, **changes})
+
+
+STICKS = {"type": "sticks", "translation": [0, 0, 0], "rotation": [0, 0], "fine": False}
+GARBAGE = {
+    "no JSON": "{",
+    "no object": "[]",
+    "binary": b"\x00\x01",
+    "deep": "[" * 8000,
+    "long number": '{"type":' + "1" * 8000 + "}",
+    "lone surrogate": '{"type":"\\ud800"}',
+    "no type": "{}",
+    "unknown type": '{"type":"quit"}',
+    "type is a list": '{"type":["key"]}',
+    "second hello": json.dumps(HELLO),
+    "member missing": '{"type":"key","code":"KeyW"}',
+    "member too many": changed(KEY, more=1),
+    "NaN": '{"type":"pad","axes":[NaN],"buttons":[]}',
+    "infinite": '{"type":"pad","axes":[1e999],"buttons":[]}',
+    "axis far out": '{"type":"pad","axes":[1000],"buttons":[]}',
+    "too many axes": json.dumps({"type": "pad", "axes": [0] * 17, "buttons": []}),
+    "axes are a text": '{"type":"pad","axes":"0000","buttons":[]}',
+    "stick out of range": changed(STICKS, translation=[0, 0, 1.1]),
+    "stick is true": changed(STICKS, rotation=[True, 0]),
+    "flag is a number": changed(STICKS, fine=1),
+    "code is a number": changed(KEY, code=7),
+    "code is long": changed(KEY, code="K" * 33),
+    "text has a line feed": changed(KEY, text="\n"),
+    "text is long": json.dumps({"type": "text", "name": "trainee", "value": "x" * 201}),
+    "frames below zero": '{"type":"frames","shown":-1,"dropped":0,"refreshHz":60}',
+    "frames in halves": '{"type":"frames","shown":1.5,"dropped":0,"refreshHz":60}',
+}
+
+
+@pytest.mark.parametrize("message", GARBAGE.values(), ids=GARBAGE.keys())
+def test_what_is_no_message_closes_only_that_view(served, connect, message):
+    good, bad = connect(served), connect(served)
+    good.join()
+    number = bad.join()["view"]
+    bad.send(message)
+    code, reason = bad.closing()
+    assert (code, reason.startswith(("A ", "The ", "Messages "))) == (1008, True)
+    served.wait_for_call("view_left", number)
+    assert good.next("state")["type"] == "state"
+    assert not any(call[0].startswith("on_") for call in served.desk.calls)
+
+
+def test_an_oversized_message_closes_only_that_view(served, connect):
+    good, bad = connect(served), connect(served)
+    good.join()
+    bad.join()
+    bad.send("x" * 20_000)
+    assert bad.closing()[0] == 1009
+    assert good.next("state")["type"] == "state"
+
+
+def test_a_flood_closes_only_that_view(serve, connect):
+    served = serve(messages_per_s=10.0)
+    good, bad = connect(served), connect(served)
+    good.join()
+    bad.join()
+    for _ in range(100):
+        try:
+            bad.send({"type": "alive"})
+        except ConnectionError:
+            break
+    assert bad.closing()[0] == 1008
+    assert good.next("state")["type"] == "state"
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "{",
+        b"hello",
+        '{"type":"alive"}',
+        json.dumps({**HELLO, "kind": "hologram"}),
+        json.dumps({**HELLO, "device": "x" * 81}),
+        json.dumps({**HELLO, "refreshHz": -1}),
+    ],
+)
+def test_a_view_that_does_not_begin_with_hello_is_told_nothing(served, connect, message):
+    view = connect(served)
+    view.send(message)
+    code, _ = view.closing()
+    assert code == 1008
+    assert served.desk.calls == []
+
+
+def test_a_view_that_never_says_hello_is_closed(serve, connect):
+    view = connect(serve(first_message_s=0.05))
+    assert view.closing() == (1008, "The first message of a view must be a hello.")
+
+
+def test_connections_beyond_the_limit_are_closed(serve, connect):
+    served = serve(connections=1)
+    view = connect(served)
+    view.join()
+    with pytest.raises(aiohttp.ClientError):
+        connect(served)
+    assert view.next("state")["type"] == "state"
