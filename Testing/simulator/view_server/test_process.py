@@ -1,0 +1,110 @@
+"""The view server as a user starts it: in the simulator's process, by the command."""
+
+import os
+import re
+import secrets
+import socket
+
+import pytest
+
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.simulator.igtl.servers import HOST, LoopThread
+from Testing.simulator.view_server.served import ViewClient, request
+
+LINE = re.compile(
+    r"RASTrainer simulator serves views on (http://127\.0\.0\.1:(\d+)), pairing code (\d{6})\n"
+)
+
+
+class ViewedSimulator(SimulatorProcess):
+    """A simulator whose views a test can join.
+
+    Attributes:
+        url, view_port, code: as it prints them.
+    """
+
+    def __init__(self, records, *arguments, key=None):
+        environment = dict(os.environ)
+        if key is not None:
+            environment["RASTRAINER_VIEW_KEY"] = key
+        super().__init__(records, "--no-gamepad", *arguments, env=environment)
+        line = LINE.fullmatch(self._process.stdout.readline())
+        self.url, self.view_port, self.code = line[1], int(line[2]), line[3]
+
+
+@pytest.fixture
+def thread():
+    thread = LoopThread()
+    yield thread
+    thread.stop()
+
+
+def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, thread):
+    with ViewedSimulator(tmp_path / "records", "--view-port", "0") as simulator:
+        status, headers, _ = request(simulator.url, "/pair", "POST", json={"code": simulator.code})
+        assert status == 200
+        key = headers["Set-Cookie"].split(";")[0].partition("=")[2]
+        with ViewClient(thread, simulator.url, key) as view:
+            assert view.join()["protocol"] == 1
+            assert view.next("screen")["screen"]["menu"]["name"] == "start"
+            first, second = view.next("state"), view.next("state")
+            assert second["tick"] > first["tick"]
+            view.send("{")
+            assert view.closing()[0] == 1008
+        with ViewClient(thread, simulator.url, key) as again:
+            assert again.join()["view"] == 2
+            scene = again.next("scene")["url"]
+            headers = {"Authorization": f"Bearer {key}"}
+            assert request(simulator.url, scene, headers=headers)[2][:4] == b"glTF"
+        status, errors = simulator.stop()
+        assert status == 0
+        assert key not in errors
+        assert simulator.code not in errors
+
+
+def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, thread):
+    key = secrets.token_urlsafe()
+    with ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator:
+        with ViewClient(thread, simulator.url, key) as view:
+            view.join()
+            view.next("state")
+            assert simulator.stop()[0] == 0
+            assert view.closing() == (1001, "The simulator has been stopped.")
+
+
+def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):
+    with socket.create_server((HOST, 0)) as other:
+        taken = other.getsockname()[1]
+        with pytest.raises(AssertionError, match=f"Views cannot be served on 127.0.0.1:{taken}"):
+            _opened(tmp_path, "--view-port", str(taken))
+    with _usual_port_taken(), ViewedSimulator(tmp_path / "others") as simulator:
+        assert simulator.view_port != 18945
+
+
+def _opened(tmp_path, *arguments):
+    """Start a simulator that should say on stderr why it cannot serve views."""
+    process = SimulatorProcess(tmp_path / "records", "--no-gamepad", *arguments)
+    status, errors = process._process.wait(20), process._process.stderr.read()
+    process.kill()
+    assert status == 2
+    raise AssertionError(errors)
+
+
+def _usual_port_taken():
+    try:
+        return socket.create_server((HOST, 18945))
+    except OSError:
+        return socket.create_server((HOST, 0))  # Somebody else has it already.
+
+
+def test_without_views_there_are_none(tmp_path):
+    with SimulatorProcess(tmp_path / "records", "--no-views") as simulator:
+        assert simulator.stop()[0] == 0
+
+
+@pytest.mark.parametrize(
+    "arguments", [("--view-port", "65536"), ("--view-port", "1", "--no-views")]
+)
+def test_unusable_ports_are_refused_in_one_sentence(tmp_path, arguments):
+    with pytest.raises(AssertionError, match=r"rastrainer: .*--view-port"):
+        SimulatorProcess(tmp_path / "records", *arguments)
