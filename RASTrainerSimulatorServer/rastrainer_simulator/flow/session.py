@@ -215,10 +215,6 @@ class Session:
             return self.texts.say(key)
         return name.removeprefix("Key").removeprefix("Digit")
 
-    def number(self, value: float, digits: int) -> str:
-        """Return a number as it is written in the chosen language."""
-        return f"{value:.{digits}f}".replace(".", self.texts.say("decimal sign"))
-
     def duration(self, seconds: float) -> str:
         """Return minutes and seconds, such as 03:21."""
         whole = int(seconds)

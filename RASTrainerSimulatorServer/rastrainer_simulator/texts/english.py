@@ -143,6 +143,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "result.expected tre": "Expected error at the target (TRE)",
         "result.true tre": "True error at the target (TRE)",
         "result.ctps": "CTPS",
+        "result.of 100": "{score:.0f} / 100",
+        "result.mm": "{error:.2f} mm",
+        "result.points": "{points:.1f}",
         "result.time": "Time",
         "result.refused": "Touches that did not count",
         "result.undone": "Touches taken back",
@@ -181,6 +184,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.direction.clear": "Free, clear of the head",
         "settings.direction.held": "Steered by you",
         "settings.direction.normal": "Straight onto the skin",
+        "settings.direction.pose": "Steered by you, without roll",
         # Controls: what they do, and what they are called.
         "bindings.title": "Change the controls",
         "bindings.device": "Device",

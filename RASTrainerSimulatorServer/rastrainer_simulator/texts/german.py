@@ -151,6 +151,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "result.expected tre": "Erwarteter Fehler am Ziel (TRE)",
         "result.true tre": "Wahrer Fehler am Ziel (TRE)",
         "result.ctps": "CTPS",
+        "result.of 100": "{score:.0f} / 100",
+        "result.mm": "{error:.2f} mm",
+        "result.points": "{points:.1f}",
         "result.time": "Zeit",
         "result.refused": "Berührungen, die nicht zählten",
         "result.undone": "Zurückgenommene Berührungen",
@@ -191,6 +194,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.direction.clear": "Frei, ohne den Kopf zu streifen",
         "settings.direction.held": "Von dir gelenkt",
         "settings.direction.normal": "Senkrecht auf die Haut",
+        "settings.direction.pose": "Von dir gelenkt, ohne Rollen",
         # Controls: what they do, and what they are called.
         "bindings.title": "Steuerung ändern",
         "bindings.device": "Gerät",
@@ -317,6 +321,14 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "warning.no SDL": "Auf diesem Rechner lassen sich keine Gamepads lesen ({reason}): Nimm "
         "die Tastatur.",
         "warning.settings": "{reason} Es gelten die Voreinstellungen.",
+        "window.title": "RASTrainer",
+        "window.connecting": "Das Fenster verbindet sich mit dem Simulator.",
+        "window.lost": "Die Verbindung zum Simulator ist verloren. Sie wird wiederhergestellt, "
+        "sobald der Simulator antwortet.",
+        "window.unknown": "Der Simulator kennt dieses Fenster nicht: Schließ es und öffne eines "
+        "mit dem Kopplungscode, den der Simulator jetzt zeigt.",
+        "window.refused": "Der Simulator bedient so viele Ansichten, wie er kann: Schließ eine "
+        "andere.",
         "status.points": "{kept} von {count} Punkten",
         "status.left": "noch {time}",
         "status.toward": "Punkt {point}: {distance} mm {direction}",

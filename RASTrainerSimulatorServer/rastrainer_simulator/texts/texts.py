@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from string import Formatter
 
 from rastrainer_simulator.texts.english import ENGLISH
 from rastrainer_simulator.texts.german import GERMAN
@@ -34,18 +35,31 @@ class Said(str):
         return self
 
 
+class _Formatter(Formatter):
+    """Fills in values; the fractions of numbers follow the language's decimal sign."""
+
+    def __init__(self, decimal_sign: str) -> None:
+        self._decimal_sign = decimal_sign
+
+    def format_field(self, value: object, format_spec: str) -> str:
+        """Return one value as text."""
+        text = format(value, format_spec)
+        return text.replace(".", self._decimal_sign) if isinstance(value, float) else text
+
+
 class Texts:
     """Says the sentences, in the language of its table."""
 
     def __init__(self, table: Mapping[str, str] = ENGLISH) -> None:
         self._table = {**ENGLISH, **table}
+        self._formatter = _Formatter(self._table["decimal sign"])
 
     def __contains__(self, key: str) -> bool:
         return key in self._table
 
     def say(self, key: str, **values: object) -> Said:
         """Return the sentence with its values filled in."""
-        return Said(self._table[key].format(**values), key, values)
+        return Said(self._formatter.vformat(self._table[key], (), values), key, values)
 
     def again(self, sentence: str) -> str:
         """Return a sentence in this language; one that is not ours stays as it is."""

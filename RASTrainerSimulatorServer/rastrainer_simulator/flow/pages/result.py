@@ -90,7 +90,7 @@ class ResultPage(FinishedPage):
         )
 
     def _facts_of_result(self, result: TrialResult) -> list[Fact]:
-        score = f"{result.score:.0f} / 100"
+        score = self.say("result.of 100", score=result.score)
         facts = [
             Fact(self.say("result.score"), score, _tone_of_score(result.score)),
             self._error("result.fre", result.fre_mm),
@@ -99,13 +99,15 @@ class ResultPage(FinishedPage):
         ]
         ctps = result.details.get("ctps")
         if _is_number(ctps):
-            facts.append(Fact(self.say("result.ctps"), self.session.number(ctps, 1)))
+            facts.append(
+                Fact(self.say("result.ctps"), self.say("result.points", points=float(ctps)))
+            )
         return facts
 
     def _error(self, key: str, error_mm: float) -> Fact:
         tone = Tone.GOOD if error_mm <= GOOD_MM else Tone.PLAIN
         tone = Tone.WARNING if error_mm >= POOR_MM else tone
-        return Fact(self.say(key), f"{self.session.number(error_mm, 2)} mm", tone)
+        return Fact(self.say(key), self.say("result.mm", error=error_mm), tone)
 
 
 def _tone_of_score(score: float) -> Tone:

@@ -1,0 +1,52 @@
+"""Every sentence is there in every language, and can be said again in another."""
+
+from __future__ import annotations
+
+from string import Formatter
+
+import pytest
+
+from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.controls.control_name import ControlName
+from rastrainer_simulator.controls.inputs import GAMEPAD_INPUTS, Device
+from rastrainer_simulator.controls.source import SourceKind
+from rastrainer_simulator.flow.preferences import OPTIONS
+from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+
+
+def fields(sentence):
+    return {(name, spec) for _, name, spec, _ in Formatter().parse(sentence) if name}
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_a_language_has_every_sentence_with_the_same_values(language):
+    table = LANGUAGES[language]
+    assert set(table) == set(ENGLISH)
+    assert [key for key in ENGLISH if fields(table[key]) != fields(ENGLISH[key])] == []
+    assert [key for key in table if not table[key].strip()] == []
+
+
+def test_every_key_that_the_code_makes_of_a_name_has_its_sentence():
+    made = [f"control.{control.value}" for control in ControlName]
+    made += [f"gamepad.{name}" for name in GAMEPAD_INPUTS]
+    made += [f"source.{kind.value}" for kind in SourceKind]
+    made += [f"device.{device.value}" for device in Device]
+    made += [f"settings.{name}{end}" for name in OPTIONS for end in ("", " help")]
+    for name, options in OPTIONS.items():
+        made += [f"settings.{name}.{option}" for option in options if isinstance(option, str)]
+    keys = (name for inputs in DEFAULT_BINDINGS.table(Device.KEYBOARD).values() for name in inputs)
+    made += [f"keyboard.{name}" for name in keys if not name.startswith(("Key", "F1"))]
+    assert [key for key in made if key not in ENGLISH] == []
+
+
+def test_a_sentence_of_the_simulation_is_said_again_in_another_language():
+    english, german = Texts(), Texts(LANGUAGES["de"])
+    said = english.say("too far", point="5", distance=12.34, radius=10.0)
+    assert said == "Too far from point 5: 12.3 mm; a touch counts within 10 mm."
+    assert german.again(said).startswith("Zu weit von Punkt 5: 12,3 mm")
+    assert german.again("what others say") == "what others say"
+
+
+def test_a_value_with_braces_is_filled_in_as_it_is():
+    assert Texts().say("start", trainee="{point} {0}", point="1") == "{point} {0}, touch point 1."
