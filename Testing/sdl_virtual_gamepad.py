@@ -79,6 +79,11 @@ class VirtualGamepad:
 
         self._rumble = _Rumble(rumble)
 
+    @property
+    def is_plugged_in(self) -> bool:
+        """Whether it is there."""
+        return self._joystick is not None
+
     def plug_in(self) -> None:
         """Appear, with nothing pressed."""
         description = _Description(
