@@ -6,6 +6,7 @@ from typing import Annotated
 import qt
 
 import slicer
+from slicer import vtkMRMLMarkupsFiducialNode, vtkMRMLMarkupsNode
 from slicer.i18n import tr as _
 from slicer.i18n import translate
 from slicer.ScriptedLoadableModule import *
@@ -58,10 +59,18 @@ class RASTrainerParameterNode:
 
     host - computer on which the simulator runs
     port - its OpenIGTLink port
+    movingPoints - points in the robot's World that are registered; the touches where none
+    fixedPoints - the same points on the MRI; the task's fiducials where none
+    target - its first point is where the target error is told; the scenario's where none
+    plan - a planned target or trajectory
     """
 
     host: str = "127.0.0.1"
     port: Annotated[int, WithinRange(1, 65535)] = 18944
+    movingPoints: vtkMRMLMarkupsFiducialNode
+    fixedPoints: vtkMRMLMarkupsFiducialNode
+    target: vtkMRMLMarkupsFiducialNode
+    plan: vtkMRMLMarkupsNode
 
 
 #
@@ -78,37 +87,33 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self.logic = None
         self._parameterNode = None
         self._parameterNodeGuiTag = None
-        self._panels = []
+        self._panels = None
         self._timer = None
 
     def setup(self) -> None:
-        from rastrainer.panels.connection_panel import ConnectionPanel
-        from rastrainer.panels.last_trial_panel import LastTrialPanel
+        from rastrainer.panels.panel_stack import PanelStack
 
         ScriptedLoadableModuleWidget.setup(self)
         uiWidget = slicer.util.loadUI(self.resourcePath("UI/RASTrainer.ui"))
         self.layout.addWidget(uiWidget)
-        self.ui = slicer.util.childWidgetVariables(uiWidget)
-        uiWidget.setMRMLScene(slicer.mrmlScene)
         self.logic = RASTrainerLogic()
-        self._panels = [
-            ConnectionPanel(self.ui, self.logic.link),
-            LastTrialPanel(self.ui, self.logic.desk),
-        ]
+        self._panels = PanelStack(uiWidget, self.resourcePath, self.logic.session)
+        self.ui = self._panels.ui
+        uiWidget.setMRMLScene(slicer.mrmlScene)
         self.addObserver(slicer.mrmlScene, slicer.mrmlScene.StartCloseEvent, self.onSceneStartClose)
         self.addObserver(slicer.mrmlScene, slicer.mrmlScene.EndCloseEvent, self.onSceneEndClose)
         self.initializeParameterNode()
         # Trials arrive whether or not this module is shown.
         self._timer = qt.QTimer()
         self._timer.setInterval(100)
-        self._timer.connect("timeout()", self.logic.process)
+        self._timer.connect("timeout()", self.onTimeout)
         self._timer.start()
 
     def cleanup(self) -> None:
         if self._timer is not None:
             self._timer.stop()
-        for panel in self._panels:
-            panel.close()
+        if self._panels is not None:
+            self._panels.close()
         if self.logic is not None:
             self.logic.close()
         self.setParameterNode(None)
@@ -120,10 +125,15 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     def exit(self) -> None:
         self.setParameterNode(None)
 
+    def onTimeout(self) -> None:
+        self.logic.process()
+        self._panels.showState()
+
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
 
     def onSceneEndClose(self, caller=None, event=None) -> None:
+        self.logic.session.sceneWasCleared()
         if self.parent.isEntered:
             self.initializeParameterNode()
 
@@ -148,45 +158,38 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
 
     def __init__(self) -> None:
         from rastrainer.slicer.connector_kit import desktopKit
-        from rastrainer.slicer.link import Link
-        from rastrainer.slicer.scenario_shelf import ScenarioShelf
-        from rastrainer.slicer.trial_desk import TrialDesk
-        from rastrainer.trial_files import read_trials
+        from rastrainer.slicer.session import Places, Session
+        from rastrainer.slicer.simulator_place import defaultPackage, pythonSlicer
 
         ScriptedLoadableModuleLogic.__init__(self)
-        assets = self.assetsFolder()
-        self.link = Link(slicer.mrmlScene, desktopKit)
-        self.desk = TrialDesk(
-            slicer.mrmlScene,
-            self.link,
-            ScenarioShelf.below(assets / "scenarios").find,
-            self.openStudy,
-            read_trials(assets / "studies" / "published.csv"),
+        paths = qt.QStandardPaths
+        documents = paths.writableLocation(paths.DocumentsLocation)
+        data = paths.writableLocation(paths.GenericDataLocation)
+        study = slicer.util.settingsValue("RASTrainer/Study", "")
+        places = Places(
+            assets=self.assetsFolder(),
+            python=pythonSlicer(Path(slicer.app.slicerHome)),
+            simulator=Path(data, "RASTrainer", "simulator"),
+            study=Path(study) if study else Path(documents, "RASTrainer", "study.db"),
+            package=defaultPackage(Path(__file__).parent),
         )
+        self.session = Session(slicer.mrmlScene, places, desktopKit)
 
     def getParameterNode(self):
         return RASTrainerParameterNode(super().getParameterNode())
 
     def process(self) -> None:
         """Do what is due; called about ten times a second."""
-        self.link.process()
+        self.session.process()
 
     def close(self) -> None:
-        """Disconnect and close the study."""
-        self.link.disconnect()
-        self.desk.close()
+        """Disconnect, close the study, end the simulator that was started from here."""
+        self.session.close()
 
     def assetsFolder(self) -> Path:
         """Return where scenarios and studies are: installed with the module, or in a checkout."""
         installed = Path(__file__).parent / "Resources" / "RASTrainer"
         return installed if installed.is_dir() else Path(__file__).parents[1] / "assets"
-
-    def openStudy(self):
-        """Open the study in which trainees and trials are kept, in the user's documents."""
-        from rastrainer.slicer.study_place import openStudyIn
-
-        documents = qt.QStandardPaths.writableLocation(qt.QStandardPaths.DocumentsLocation)
-        return openStudyIn(Path(documents) / "RASTrainer")
 
 
 #
@@ -220,13 +223,14 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         from rastrainer.slicer.heartbeat import LinkState
 
         logic = RASTrainerLogic()
-        logic.link.connectTo("127.0.0.1", 1)
+        link = logic.session.link
+        link.connectTo("127.0.0.1", 1)
         slicer.mrmlScene.Clear()
         logic.process()
         allowed = (LinkState.ABSENT, LinkState.NOT_INSTALLED)
-        self.assertIn(logic.link.status.state, allowed)
+        self.assertIn(link.status.state, allowed)
         logic.close()
-        self.assertEqual(logic.link.status.state, LinkState.OFF)
+        self.assertEqual(link.status.state, LinkState.OFF)
 
     def test_theBuiltInScenarioIsShown(self):
         from rastrainer.scenario import load_scenario

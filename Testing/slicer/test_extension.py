@@ -37,9 +37,12 @@ def imported_packages(path):
             yield node.module.partition(".")[0]
 
 
+UI_FILES = sorted((MODULE / "Resources" / "UI").glob("*.ui"))
+
+
 def widgets():
-    tree = ElementTree.parse(MODULE / "Resources" / "UI" / "RASTrainer.ui")
-    return {widget.get("name"): widget for widget in tree.iter("widget")}
+    trees = [ElementTree.parse(path) for path in UI_FILES]
+    return {widget.get("name"): widget for tree in trees for widget in tree.iter("widget")}
 
 
 def test_every_python_file_is_listed_in_cmake():
@@ -91,6 +94,18 @@ def test_the_panels_use_only_widgets_that_the_ui_file_has():
     assert used <= set(widgets())
 
 
+def test_no_two_widgets_share_a_name():
+    trees = [ElementTree.parse(path) for path in UI_FILES]
+    names = [widget.get("name") for tree in trees for widget in tree.iter("widget")]
+    assert len(names) == len(set(names))
+
+
+def test_every_panel_has_a_ui_file_of_its_name():
+    source = (MODULE / "Logic" / "rastrainer" / "panels" / "panel_stack.py").read_text()
+    panels = re.findall(r"^    (\w+Panel),$", source, re.MULTILINE)
+    assert sorted(panels) == sorted(p.stem for p in UI_FILES if p.stem != "RASTrainer")
+
+
 def test_widgets_bound_to_parameters_name_parameters_that_exist():
     module = ast.parse((MODULE / "RASTrainer.py").read_text())
     (parameters,) = (
@@ -108,8 +123,8 @@ def test_widgets_bound_to_parameters_name_parameters_that_exist():
 
 
 def test_the_top_widget_hands_on_the_scene():
-    tree = ElementTree.parse(MODULE / "Resources" / "UI" / "RASTrainer.ui")
-    assert tree.find("widget").get("class") == "qMRMLWidget"
+    for path in UI_FILES:
+        assert ElementTree.parse(path).find("widget").get("class") == "qMRMLWidget"
 
 
 def test_the_icon_is_a_square_png_of_128_pixels():

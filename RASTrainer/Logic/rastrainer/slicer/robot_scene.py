@@ -51,6 +51,7 @@ def showRobot(scene: Any, folder: Path) -> None:
         node.SetSelectable(False)
         node.CreateDefaultDisplayNodes()
         display = node.GetDisplayNode()
+        display.SetSaveWithScene(False)
         display.SetActiveScalar("color", vtk.vtkAssignAttribute.POINT_DATA)
         display.SetScalarRangeFlag(display.UseDirectMapping)
         display.SetScalarVisibility(True)

@@ -7,29 +7,16 @@ import sys
 from pathlib import Path
 
 from rastrainer import __version__
-from rastrainer.errors import InputError
-from rastrainer.slicer.translation import _
 
 PYTHON_SLICER = "PythonSlicer"
-FOLDER = "simulator"
 
 
 def pythonSlicer(slicerHome: Path) -> Path:
-    """Return Slicer's own Python for programs beside it.
-
-    Raises:
-        InputError: it is not where Slicer has it.
-    """
+    """Return Slicer's own Python for programs beside it, where Slicer has it or on the PATH."""
     suffix = ".exe" if sys.platform == "win32" else ""
     inside = slicerHome / "bin" / f"{PYTHON_SLICER}{suffix}"
-    found = inside if inside.is_file() else shutil.which(PYTHON_SLICER)
-    if found is None:
-        raise InputError(
-            _("{path} is missing; reinstall Slicer, or start the simulator elsewhere.").format(
-                path=inside
-            )
-        )
-    return Path(found)
+    found = None if inside.is_file() else shutil.which(PYTHON_SLICER)
+    return Path(found) if found else inside
 
 
 def defaultPackage(moduleFolder: Path) -> str:

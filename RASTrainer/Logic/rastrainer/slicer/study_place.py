@@ -1,4 +1,4 @@
-"""Where the study lies: a file of a fixed name in a folder that is made where it is missing."""
+"""Where the study lies: a file whose folder is made where it is missing."""
 
 from __future__ import annotations
 
@@ -11,13 +11,22 @@ STUDY_FILE = "study.db"
 
 
 def openStudyIn(folder: Path) -> Study:
-    """Open the study in a folder, or begin one there.
+    """Open the study of the usual name in a folder, or begin one there.
 
     Raises:
         InputError: the folder cannot be made, or holds no study that can be used.
     """
+    return openStudyFile(folder / STUDY_FILE)
+
+
+def openStudyFile(path: Path) -> Study:
+    """Open the study in a file, or begin one there.
+
+    Raises:
+        InputError: the folder cannot be made, or the file is no study that can be used.
+    """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
-    return Study.open(folder / STUDY_FILE)
+        raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
+    return Study.open(path)

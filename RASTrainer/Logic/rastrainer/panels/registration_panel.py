@@ -1,0 +1,201 @@
+"""The section Registration: three fits side by side, residuals, target error, and remedies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import qt
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.panels.widgets import (
+    chosenData,
+    fillComboBox,
+    fillTable,
+    millimeters,
+    setChecked,
+    setSentence,
+    setUsable,
+)
+from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration
+from rastrainer.slicer.placing import jumpTo
+from rastrainer.slicer.registration_desk import Comparison
+from rastrainer.slicer.registration_nodes import isApplied, setApplied
+from rastrainer.slicer.registration_remedies import Remedy
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.translation import _
+
+TITLES = {RIGID: _("Rigid"), SIMILARITY: _("Similarity"), AFFINE: _("Affine")}
+
+
+class RegistrationPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: Session) -> None:
+        self._ui = ui
+        self._desk = session.registration
+        self._remedyWidgets: list[Any] = []
+        entries = [(title, kind) for kind, title in TITLES.items()]
+        fillComboBox(ui.kindComboBox, entries, RIGID)
+        ui.kindComboBox.connect("activated(int)", self._chooseKind)
+        for combo in (ui.movingComboBox, ui.fixedComboBox):
+            combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
+        ui.targetComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseTarget)
+        ui.residualsTable.connect("itemSelectionChanged()", self._chooseFiducial)
+        ui.excludeButton.connect("clicked()", self.excludeChosen)
+        ui.undoButton.connect("clicked()", self.undo)
+        ui.appliedCheckBox.connect("toggled(bool)", self._apply)
+        ui.headColoredCheckBox.connect("toggled(bool)", self._desk.setHeadColored)
+        self._desk.changed.connect(self._show)
+        self._show()
+
+    def close(self) -> None:
+        """Listen to the session no more."""
+        self._desk.changed.disconnect(self._show)
+
+    def excludeChosen(self) -> None:
+        """Register again without the chosen fiducial."""
+        with slicer.util.tryWithErrorDisplay(_("The fiducial was not left out.")):
+            row = self._ui.residualsTable.currentRow()
+            if row >= 0 and self._desk.shown is not None:
+                self._desk.exclude(self._desk.shown.labels[row])
+
+    def undo(self) -> None:
+        """Take the last change of the pairs back."""
+        with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
+            self._desk.undo()
+
+    def showState(self) -> None:
+        """Show what may have changed in the scene meanwhile."""
+        transform = self._desk.transform()
+        setChecked(self._ui.appliedCheckBox, transform is not None and isApplied(transform))
+        self._ui.appliedCheckBox.enabled = transform is not None
+
+    def _chooseLists(self, _node: Any = None) -> None:
+        ui = self._ui
+        self._desk.chooseLists(ui.movingComboBox.currentNode(), ui.fixedComboBox.currentNode())
+
+    def _chooseTarget(self, node: Any = None) -> None:
+        self._desk.chooseTarget(node)
+
+    def _chooseKind(self, _index: int = 0) -> None:
+        with slicer.util.tryWithErrorDisplay(_("The fit cannot be shown.")):
+            self._desk.chooseKind(chosenData(self._ui.kindComboBox))
+
+    def _apply(self, applied: bool) -> None:
+        transform = self._desk.transform()
+        if transform is not None:
+            setApplied(transform, applied)
+
+    def _chooseFiducial(self) -> None:
+        """Bring the chosen fiducial into the slices."""
+        row, shown = self._ui.residualsTable.currentRow(), self._desk.shown
+        hasRow = shown is not None and 0 <= row < len(shown.labels)
+        if hasRow:
+            jumpTo(slicer.mrmlScene, shown.fixed_mm[row])
+        self._showButtons()
+
+    def _show(self) -> None:
+        ui, comparison = self._ui, self._desk.comparison
+        setSentence(ui.registrationText, _told(comparison) if comparison else self._desk.problem)
+        setSentence(ui.treText, _treText(comparison) if comparison else "")
+        fillTable(ui.fitsTable, [] if comparison is None else _fitRows(comparison))
+        shown = self._desk.shown
+        fillTable(ui.residualsTable, [] if shown is None else _residualRows(shown))
+        self._showRemedies(() if comparison is None else comparison.remedies)
+        self._showButtons()
+        self.showState()
+
+    def _showButtons(self) -> None:
+        ui = self._ui
+        hasRow = self._desk.shown is not None and ui.residualsTable.currentRow() >= 0
+        setUsable(
+            ui.excludeButton,
+            hasRow,
+            _("Register again without the chosen fiducial."),
+            _("Choose a row of the table first."),
+        )
+        setUsable(
+            ui.undoButton,
+            self._desk.canUndo,
+            _("Take the last change of the pairs back."),
+            _("No pair was changed."),
+        )
+
+    def _showRemedies(self, remedies: tuple[Remedy, ...]) -> None:
+        """Show each warning with its button, in place of those before."""
+        layout = self._ui.warningsWidget.layout()
+        for widget in self._remedyWidgets:
+            layout.removeWidget(widget)
+            widget.setParent(None)
+            widget.deleteLater()
+        self._remedyWidgets = []
+        for number, remedy in enumerate(remedies):
+            text = qt.QLabel("⚠ " + remedy.warning.message)
+            text.setObjectName(f"warning{number}Text")
+            text.wordWrap = True
+            self._add(layout, text)
+            if remedy.title:
+                button = qt.QPushButton(remedy.title)
+                button.setObjectName(f"remedy{number}Button")
+                button.toolTip = _("Change the pairs so and register again; Undo takes it back.")
+                button.connect("clicked()", self._applying(remedy))
+                self._add(layout, button)
+
+    def _add(self, layout: Any, widget: Any) -> None:
+        layout.addWidget(widget)
+        self._remedyWidgets.append(widget)
+
+    def _applying(self, remedy: Remedy) -> Callable[[], None]:
+        def apply() -> None:
+            with slicer.util.tryWithErrorDisplay(_("The pairs were not changed.")):
+                self._desk.change(remedy.choices)
+
+        return apply
+
+
+def _told(comparison: Comparison) -> str:
+    pairs = comparison.pairs
+    sentence = _("{count} pairs are registered.").format(count=len(pairs.labels))
+    if pairs.missing:
+        sentence += " " + _("Not touched yet: {labels}.").format(labels=", ".join(pairs.missing))
+    if pairs.excluded:
+        sentence += " " + _(
+            "Left out: {labels}; the score of the trial stays that of all pairs."
+        ).format(labels=", ".join(pairs.excluded))
+    return sentence
+
+
+def _treText(comparison: Comparison) -> str:
+    error = comparison.errors.get(RIGID)
+    if error is None:
+        return _("Place or choose a target to be told the error to expect there.")
+    low, high = error.interval_mm
+    return _(
+        "At the target, the rigid fit lets expect {expected:.2f} mm (TRE; 95 %: {low:.2f} to "
+        "{high:.2f} mm). A small FRE does not promise a small TRE."
+    ).format(expected=error.expected_mm, low=low, high=high)
+
+
+def _fitRows(comparison: Comparison) -> list[tuple[str, ...]]:
+    rows = []
+    for kind, title in TITLES.items():
+        fit, error = comparison.fits.get(kind), comparison.errors.get(kind)
+        if fit is None:
+            rows.append((title, "–", "–", "–", "–"))
+            continue
+        interval = "–" if error is None else "{:.2f}–{:.2f}".format(*error.interval_mm)
+        expected = "–" if error is None else f"{error.expected_mm:.2f}"
+        largest = f"{fit.residuals_mm.max():.2f}"
+        rows.append((title, f"{fit.fre_mm:.2f}", largest, expected, interval))
+    return rows
+
+
+def _residualRows(shown: Registration) -> list[tuple[str, ...]]:
+    try:
+        without = [f"{value:.2f}" for value in shown.leave_one_out_mm()]
+    except InputError:
+        without = ["–"] * len(shown.labels)
+    residuals = [millimeters(value).removesuffix(" mm") for value in shown.residuals_mm]
+    return list(zip(shown.labels, residuals, without, strict=True))

@@ -1,0 +1,149 @@
+"""The section Score: a trial's scores and their parts, its motion, and how it stands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import qt
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.panels.widgets import chosenData, fillComboBox, fillTable, setUsable
+from rastrainer.slicer.score_board import (
+    Standing,
+    motionRows,
+    scoreRows,
+    showMotion,
+    showScore,
+    showStandings,
+    standings,
+)
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.translation import _
+from rastrainer.slicer.trial_desk import ScoredTrial
+from rastrainer.study import StoredTrial
+
+
+class ScorePanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: Session) -> None:
+        self._ui = ui
+        self._session = session
+        self._trainees = session.trainees
+        ui.trialComboBox.connect("activated(int)", self._showTrial)
+        ui.showTablesButton.connect("clicked()", self.showTables)
+        ui.exportScoresButton.connect("clicked()", self.exportScores)
+        self._trainees.changed.connect(self._show)
+        session.trials.trialScored.connect(self._showNewTrial)
+        self._show()
+
+    def close(self) -> None:
+        """Listen to the session no more."""
+        self._trainees.changed.disconnect(self._show)
+        self._session.trials.trialScored.disconnect(self._showNewTrial)
+
+    def showTables(self) -> None:
+        """Put what is shown here into table nodes of the scene."""
+        with slicer.util.tryWithErrorDisplay(_("The tables cannot be shown.")):
+            trial = self._trial()
+            if trial is None:
+                return
+            showScore(slicer.mrmlScene, scoreRows(trial, self._session.cohort))
+            showStandings(slicer.mrmlScene, self._standings(trial))
+            showMotion(slicer.mrmlScene, motionRows(trial))
+            self._ui.scoreMessageText.text = _(
+                "Score, Comparison and Motion metrics are tables of the scene now."
+            )
+
+    def exportScores(self) -> None:
+        """Write all trials of the study as a table."""
+        caption = _("Export all trials")
+        path = qt.QFileDialog.getSaveFileName(
+            slicer.util.mainWindow(), caption, "trials.csv", "CSV (*.csv)"
+        )
+        if path:
+            with slicer.util.tryWithErrorDisplay(_("The trials were not exported.")):
+                count = self._trainees.exportHistory(Path(path), everybody=True)
+                self._ui.scoreMessageText.text = _("{count} trials are written to {path}.").format(
+                    count=count, path=path
+                )
+
+    def _showNewTrial(self, trial: ScoredTrial) -> None:
+        """Show a trial that has just been scored, if its trainee is the chosen one."""
+        record = trial.analysis.record
+        if record.trainee == self._trainees.chosen:
+            self._show(record.trial_id)
+
+    def _show(self, chosen: str = "") -> None:
+        try:
+            history = self._trainees.history()
+        except InputError as error:
+            self._ui.scoreMessageText.text = str(error)
+            return
+        entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
+        entries.reverse()
+        known = [trialId for _title, trialId in entries]
+        wanted = chosen or chosenData(self._ui.trialComboBox)
+        fillComboBox(
+            self._ui.trialComboBox,
+            entries,
+            wanted if wanted in known else known[0] if known else "",
+        )
+        self._showTrial()
+
+    def _showTrial(self, _index: int = 0) -> None:
+        ui = self._ui
+        try:
+            trial = self._trial()
+            beside = [] if trial is None else self._standings(trial)
+        except InputError as error:
+            ui.scoreMessageText.text = str(error)
+            return
+        scores = [] if trial is None else scoreRows(trial, self._session.cohort)
+        motion = [] if trial is None else motionRows(trial)
+        fillTable(ui.scoreTable, ((row.title, row.text, row.note) for row in scores))
+        fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
+        fillTable(ui.motionTable, ((row.title, row.text, row.note) for row in motion))
+        ui.scoreMessageText.text = (
+            _("Choose a trainee with a scored trial.")
+            if trial is None
+            else _("{trainee}, {task}, {mode}").format(
+                trainee=trial.record.trainee, task=trial.record.task, mode=trial.record.mode
+            )
+        )
+        setUsable(
+            ui.showTablesButton,
+            trial is not None,
+            _("Put score, comparison and motion metrics into table nodes of the scene."),
+            _("Choose a trial first."),
+        )
+
+    def _trial(self) -> StoredTrial | None:
+        trialId = chosenData(self._ui.trialComboBox)
+        return self._trainees.study.trial(trialId) if trialId else None
+
+    def _standings(self, trial: StoredTrial) -> list[Standing]:
+        return standings(self._trainees.study, trial, self._session.cohort)
+
+
+def _entry(number: int, trial: StoredTrial) -> str:
+    return _("{number}: {task}, {day}").format(
+        number=number,
+        task=trial.record.task,
+        day=trial.record.started_utc[:16].replace("T", " "),
+    )
+
+
+def _standingRow(standing: Standing) -> tuple[str, ...]:
+    unit = standing.unit
+    hasOthers = standing.count > 0
+    return (
+        standing.title,
+        f"{standing.value:.2f} {unit}",
+        standing.group,
+        str(standing.count),
+        f"{standing.median:.2f} {unit}" if hasOthers else "–",
+        f"{100 * standing.betterThan:.0f} %" if hasOthers else "–",
+    )

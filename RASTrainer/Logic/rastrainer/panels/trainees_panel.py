@@ -1,0 +1,190 @@
+"""The section Trainees: create, choose, archive, export and delete, and what they have done."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import qt
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.panels.plot_view import showChart
+from rastrainer.panels.widgets import (
+    chosenData,
+    fillComboBox,
+    fillTable,
+    millimeters,
+    setChecked,
+    setUsable,
+)
+from rastrainer.slicer.history_nodes import showLearningCurve
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.translation import _
+from rastrainer.study import StoredTrial, Trainee
+
+STUDY_SETTING = "RASTrainer/Study"
+
+
+class TraineesPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: Session) -> None:
+        self._ui = ui
+        self._session = session
+        self._desk = session.trainees
+        ui.studyPathLineEdit.currentPath = str(session.studyPath)
+        ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
+        ui.traineeComboBox.connect("activated(int)", self.chooseTrainee)
+        ui.archivedCheckBox.connect("toggled(bool)", self._show)
+        ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
+        ui.archiveButton.connect("clicked()", self.archive)
+        ui.exportTraineeButton.connect("clicked()", self.exportTrainee)
+        ui.deleteTraineeButton.connect("clicked()", self.deleteTrainee)
+        ui.createTraineeButton.connect("clicked()", self.createTrainee)
+        ui.learningCurveButton.connect("clicked()", self.showLearningCurve)
+        ui.exportHistoryButton.connect("clicked()", self.exportHistory)
+        self._desk.changed.connect(self._show)
+        self._show()
+
+    def close(self) -> None:
+        """Listen to the session no more."""
+        self._desk.changed.disconnect(self._show)
+
+    def chooseStudy(self, path: str) -> None:
+        """Go on with the study of another file, once its whole name is there."""
+        if not path.endswith(".db") or Path(path) == self._session.studyPath:
+            return
+        with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
+            try:
+                self._session.chooseStudy(Path(path))
+            finally:
+                self._ui.studyPathLineEdit.currentPath = str(self._session.studyPath)
+            slicer.app.settings().setValue(STUDY_SETTING, path)
+
+    def chooseTrainee(self, _index: int = 0) -> None:
+        """Choose the trainee of the list."""
+        self._desk.choose(chosenData(self._ui.traineeComboBox))
+
+    def createTrainee(self) -> None:
+        """Add a trainee and choose them."""
+        ui = self._ui
+        with slicer.util.tryWithErrorDisplay(_("The trainee was not created.")):
+            self._desk.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
+            ui.pseudonymLineEdit.text = ""
+            ui.newConsentCheckBox.checked = False
+
+    def setConsent(self, consent: bool) -> None:
+        """Note whether the chosen trainee agrees to research."""
+        with slicer.util.tryWithErrorDisplay(_("The consent was not noted.")):
+            self._desk.setConsent(consent)
+
+    def archive(self) -> None:
+        """Archive the chosen trainee, or bring them back."""
+        with slicer.util.tryWithErrorDisplay(_("The trainee was not archived.")):
+            trainee = self._desk.chosenTrainee()
+            if trainee is None:
+                return
+            if not trainee.archived:
+                self._ui.archivedCheckBox.checked = True
+            self._desk.setArchived(not trainee.archived)
+
+    def exportTrainee(self) -> None:
+        """Write everything about the chosen trainee into a file."""
+        name = f"{self._desk.chosen}.json"
+        path = self._askForFile(_("Export the trainee"), name, "JSON (*.json)")
+        if path:
+            with slicer.util.tryWithErrorDisplay(_("The trainee was not exported.")):
+                count = self._desk.export(Path(path))
+                self._say(_("{count} trials are written to {path}."), count=count, path=path)
+
+    def exportHistory(self) -> None:
+        """Write the trials of the chosen trainee as a table."""
+        name = f"{self._desk.chosen}.csv"
+        path = self._askForFile(_("Export the history"), name, "CSV (*.csv)")
+        if path:
+            with slicer.util.tryWithErrorDisplay(_("The history was not exported.")):
+                count = self._desk.exportHistory(Path(path))
+                self._say(_("{count} trials are written to {path}."), count=count, path=path)
+
+    def deleteTrainee(self) -> None:
+        """Delete the chosen trainee for good, after asking."""
+        with slicer.util.tryWithErrorDisplay(_("The trainee was not deleted.")):
+            name, trials = self._desk.chosen, len(self._desk.history())
+            question = _(
+                "Delete {name} with {trials} trials from the study, for good? This cannot be "
+                "undone; export the trainee first if the data may be needed."
+            ).format(name=name, trials=trials)
+            if slicer.util.confirmYesNoDisplay(question, _("Delete the trainee")):
+                self._desk.delete()
+                self._say(_("{name} is deleted with {count} trials."), name=name, count=trials)
+
+    def showLearningCurve(self) -> None:
+        """Show score and time over the trials, as a table and a plot."""
+        with slicer.util.tryWithErrorDisplay(_("The learning curve cannot be shown.")):
+            trials = self._desk.history()
+            chart = showLearningCurve(slicer.mrmlScene, self._desk.chosen, trials)
+            showChart(chart)
+
+    def _show(self, *_arguments: Any) -> None:
+        ui = self._ui
+        try:
+            trainees = self._desk.trainees(archived=ui.archivedCheckBox.checked)
+            trainee, history = self._desk.chosenTrainee(), self._desk.history()
+        except InputError as error:
+            self._say("{error}", error=error)
+            return
+        entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
+        fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
+        setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
+        hasTrainee = trainee is not None
+        reason = _("Choose a trainee first.")
+        ui.consentCheckBox.enabled = hasTrainee
+        ui.archiveButton.text = _("Bring back") if trainee and trainee.archived else _("Archive")
+        for button, tip in (
+            (ui.archiveButton, _("Hide the trainee from the list, or show again.")),
+            (ui.exportTraineeButton, _("Write all that is known about the trainee to a file.")),
+            (ui.deleteTraineeButton, _("Delete the trainee with all trials, for good.")),
+        ):
+            setUsable(button, hasTrainee, tip, reason)
+        hasTrials = _("The trainee has no trials yet.") if hasTrainee else reason
+        for button, tip in (
+            (ui.learningCurveButton, _("Show score and time over the trials.")),
+            (ui.exportHistoryButton, _("Write the trainee's trials into a CSV file.")),
+        ):
+            setUsable(button, bool(history), tip, hasTrials)
+        if hasTrainee:
+            self._say(
+                _("{name}: {count} trials, since {day}."),
+                name=trainee.pseudonym,
+                count=len(history),
+                day=trainee.created_utc[:10],
+            )
+        elif not ui.traineeText.text:
+            self._say(_("Choose who trains, or create a new trainee."))
+        fillTable(ui.historyTable, (_historyRow(n, t) for n, t in enumerate(history, start=1)))
+
+    def _say(self, sentence: str, **values: Any) -> None:
+        self._ui.traineeText.text = sentence.format(**values)
+
+    def _askForFile(self, caption: str, name: str, kind: str) -> str:
+        return qt.QFileDialog.getSaveFileName(slicer.util.mainWindow(), caption, name, kind)
+
+
+def _entry(trainee: Trainee) -> str:
+    if trainee.archived:
+        return _("{name} (archived)").format(name=trainee.pseudonym)
+    return trainee.pseudonym
+
+
+def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
+    record = trial.record
+    return (
+        str(number),
+        record.started_utc[:16].replace("T", " "),
+        record.task,
+        record.mode,
+        f"{record.completion_time_s:.1f}",
+        millimeters(trial.true_tre_mm).removesuffix(" mm"),
+        "–" if trial.score is None else f"{trial.score.score:.1f}",
+    )

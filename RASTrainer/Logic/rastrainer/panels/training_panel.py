@@ -1,0 +1,167 @@
+"""The section Training: start and steer a trial, and follow it touch by touch."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import slicer
+
+from rastrainer.panels.widgets import (
+    GREEN,
+    RED,
+    YELLOW,
+    chosenData,
+    fillComboBox,
+    light,
+    setSentence,
+    setUsable,
+)
+from rastrainer.protocol import TRIAL_RUN, Mode, Phase, Proximity
+from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.training_desk import Progress
+from rastrainer.slicer.translation import _
+
+PHASES = {
+    Phase.IDLE.value: _("No trial is open."),
+    Phase.RUNNING.value: _("A trial is running."),
+    Phase.PAUSED.value: _("The trial is paused."),
+    Phase.COMPLETE.value: _("All points are touched; the trainee registers them now."),
+    Phase.REGISTERED.value: _("The trial is registered; it is being scored."),
+    Phase.SCORED.value: _("The trial is scored."),
+}
+NEARNESS = {
+    Proximity.FREE.value: (GREEN, _("free")),
+    Proximity.PROXIMITY.value: (YELLOW, _("near the head")),
+    Proximity.CONTACT.value: (RED, _("touching the head")),
+}
+
+
+class TrainingPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: Session) -> None:
+        self._ui = ui
+        self._session = session
+        self._desk = session.training
+        modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
+        fillComboBox(ui.modeComboBox, modes, Mode.DESKTOP.value)
+        ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
+        ui.startTaskButton.connect("clicked()", self.startTask)
+        ui.pauseButton.connect("clicked()", self.pauseOrResume)
+        ui.abortButton.connect("clicked()", self.abort)
+        self._listening = (
+            (self._desk.changed, self.showState),
+            (self._desk.answered, self._tell),
+            (session.trials.problemFound, self._tell),
+            (session.trainees.changed, self.showState),
+            (session.taskChosen, self.showState),
+            (session.link.statusChanged, self.showState),
+        )
+        for signal, slot in self._listening:
+            signal.connect(slot)
+        self._tell("")
+        self.showState()
+
+    def close(self) -> None:
+        """Listen to the session no more."""
+        for signal, slot in self._listening:
+            signal.disconnect(slot)
+
+    def startTrialRun(self) -> None:
+        """Start the trial run, which does not count."""
+        self._start(TRIAL_RUN)
+
+    def startTask(self) -> None:
+        """Start the chosen task."""
+        self._start(self._session.task)
+
+    def pauseOrResume(self) -> None:
+        """Pause the trial, or go on with it."""
+        with slicer.util.tryWithErrorDisplay(_("The trial was not paused.")):
+            self._desk.pauseOrResume()
+
+    def abort(self) -> None:
+        """End the trial without registering it, after asking."""
+        with slicer.util.tryWithErrorDisplay(_("The trial was not aborted.")):
+            question = _("Abort the trial of {name}? Its touches will not be registered.").format(
+                name=self._desk.progress.trainee
+            )
+            if slicer.util.confirmYesNoDisplay(question, _("Abort the trial")):
+                self._desk.abort()
+
+    def showState(self, *_arguments: Any) -> None:
+        """Show where the trial stands; called about ten times a second."""
+        ui, progress, session = self._ui, self._desk.progress, self._session
+        ui.trainingTraineeText.text = session.trainees.chosen or _(
+            "None: choose one in the section Trainees."
+        )
+        ui.startTaskButton.text = _("Start {task}").format(task=session.taskTitle)
+        isConnected = session.link.status.state is LinkState.CONNECTED
+        self._showButtons(progress, isConnected)
+        received = len(session.trials.received)
+        ui.receivedText.text = (
+            _("{count}, all kept in the study").format(count=received) if received else _("none")
+        )
+        if not isConnected:
+            ui.phaseText.text = _("Not connected; no touch is lost meanwhile.")
+            for label in (ui.nextPointText, ui.elapsedText, ui.clearanceText, ui.instructionText):
+                label.text = "–"
+            return
+        ui.phaseText.text = PHASES.get(progress.phase, progress.phase)
+        if progress.isOpen:
+            ui.phaseText.text += " " + _("({trainee}, {task})").format(
+                trainee=progress.trainee, task=progress.task
+            )
+        ui.pointsProgressBar.value = min(progress.touched, progress.total)
+        ui.nextPointText.text = progress.nextPoint or "–"
+        ui.elapsedText.text = _clock(progress.elapsedS)
+        ui.clearanceText.text = _clearance(progress)
+        ui.instructionText.text = progress.instruction
+
+    def _start(self, task: str) -> None:
+        with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
+            mode = chosenData(self._ui.modeComboBox)
+            self._desk.start(self._session.trainees.chosen, task, mode)
+
+    def _showButtons(self, progress: Progress, isConnected: bool) -> None:
+        ui = self._ui
+        reason = _("Connect to the simulator first.")
+        if isConnected:
+            reason = (
+                _("A trial is open: abort it or let it be registered first.")
+                if progress.isOpen
+                else _("Choose a trainee in the section Trainees first.")
+            )
+        mayStart = isConnected and not progress.isOpen and bool(self._session.trainees.chosen)
+        for button, tip in (
+            (ui.startTrialRunButton, _("Start the trial run, which does not count.")),
+            (ui.startTaskButton, _("Start the task that is chosen in the section Scenario.")),
+        ):
+            setUsable(button, mayStart, tip, reason)
+        isPaused = progress.phase == Phase.PAUSED.value
+        ui.pauseButton.text = _("Resume") if isPaused else _("Pause")
+        mayPause = isConnected and (isPaused or progress.phase == Phase.RUNNING.value)
+        noTrial = _("No trial is running.")
+        setUsable(ui.pauseButton, mayPause, _("Let the trial and its time stand still."), noTrial)
+        setUsable(
+            ui.abortButton,
+            isConnected and progress.isOpen,
+            _("End the trial without registering it."),
+            noTrial,
+        )
+
+    def _tell(self, sentence: str) -> None:
+        setSentence(self._ui.trainingMessageText, sentence)
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(int(seconds), 60)
+    return f"{minutes}:{rest:02d} min"
+
+
+def _clearance(progress: Progress) -> str:
+    if progress.clearanceMm is None:
+        return "–"
+    color, words = NEARNESS.get(progress.proximity, (GREEN, progress.proximity))
+    return f"{light(color)} {progress.clearanceMm:.1f} mm, {words}"
