@@ -10,6 +10,11 @@ FAR = 0.1
 """Clearances of links, self and table are exact up to here, m; what is farther counts as FAR."""
 
 
+LOOK = 0.2
+"""What is nearer than this, m, by a rough bound is looked at exactly: then it is known to be far
+for as long as the arm has not moved much."""
+
+
 class Nearest(NamedTuple):
     """The place of the head's surface that is nearest to the tip or to the shaft.
 

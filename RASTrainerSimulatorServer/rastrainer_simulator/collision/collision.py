@@ -49,10 +49,10 @@ class Collision:
         surroundings = surroundings or Surroundings()
         self.table_height = surroundings.table_height
         self._table = TableClearance(self._arm, surroundings)
-        # Where the arm was when it was last found to be far from itself and all around, and how
-        # far each part of it can have moved since without coming near.
-        self._far_at = np.zeros((len(self._arm.capsules), 2, 3))
-        self._room = 0.0
+        # For the head, the arm itself and the table: where the arm was when last asked about, and
+        # how far each capsule may have moved since without coming near.
+        self._far_at = np.zeros((3, len(self._arm.capsules), 2, 3))
+        self._room = np.zeros((3, len(self._arm.capsules)))
         self.set_head_pose(np.eye(4))
 
     def set_head_pose(self, head_to_world: np.ndarray) -> None:
@@ -63,7 +63,7 @@ class Collision:
         """
         self._head.set_pose(head_to_world)
         self._table.put_stand_under(self._head.base)
-        self._room = 0.0
+        self._room[:] = 0.0
 
     def check(self, link_to_world: Mapping[str, np.ndarray]) -> Clearance:
         """Return the clearances of a posture.
@@ -72,30 +72,33 @@ class Collision:
         them, as `Kinematics.links` gives them.
         """
         posed = self._arm.pose(link_to_world)
-        shaft, links_m, links_worst = self._head.nearest_to_arm(posed)
-        self_m, self_worst, table_m, table_worst = self._beside_the_head(posed)
         return Clearance(
-            tip=self._head.nearest_to_point(posed.tip),
-            shaft=shaft,
-            links_m=links_m,
-            links_worst=links_worst,
-            self_m=self_m,
-            self_worst=self_worst,
-            table_m=table_m,
-            table_worst=table_worst,
+            self._head.nearest_to_point(posed.tip),
+            self._head.nearest_to_shaft(posed),
+            *self._links(posed),
         )
 
-    def _beside_the_head(self, posed: PosedArm) -> tuple[float, tuple[str, ...], float, str]:
-        """Return what is nearest to the arm of itself, and of table and stand; at most FAR."""
-        moved = _SPACE_DIAGONAL * float(np.abs(posed.ends - self._far_at).max())
-        if moved < self._room:
-            return FAR, (), FAR, ""
-        self_m, self_worst = self._self.nearest(posed)
-        table_m, table_worst = self._table.nearest(posed)
-        # Two parts of the arm may have moved toward each other.
-        self._room = min((self_m - FAR) / 2.0, table_m - FAR)
-        self._far_at = posed.ends
-        return min(self_m, FAR), self_worst, min(table_m, FAR), table_worst
+    def _links(self, posed: PosedArm) -> tuple[float, str, float, tuple[str, ...], float, str]:
+        """Return what is nearest to the links of the head, of the arm, and of table and stand."""
+        moved = _SPACE_DIAGONAL * np.abs(posed.ends - self._far_at).max(axis=(2, 3))
+        of_head, of_itself, of_table = (moved >= self._room).any(axis=1).tolist()
+        links, itself, table = (FAR, ""), (FAR, ()), (FAR, "")
+        if of_head:
+            *links, bounds = self._head.nearest_to_links(posed)
+            self._keep(0, posed, bounds - FAR)
+        if of_itself:
+            *itself, bounds = self._self.nearest(posed)
+            # Two parts of the arm may move toward each other.
+            self._keep(1, posed, (bounds - FAR) / 2.0)
+        # The tip is no part of a capsule.
+        if of_table or posed.tip[2] - self.table_height < FAR:
+            *table, bounds = self._table.nearest(posed)
+            self._keep(2, posed, bounds - FAR)
+        return (*links, *itself, *table)
+
+    def _keep(self, part: int, posed: PosedArm, room: np.ndarray) -> None:
+        self._far_at[part] = posed.ends
+        self._room[part] = room
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from math import dist
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.collision.clearance import FAR, Nearest
+from rastrainer_simulator.collision.clearance import FAR, LOOK, Nearest
 from rastrainer_simulator.collision.head_surface import HeadSurface
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.thin_segment import thin_segment
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import ZERO, Vector
 
 _RIGID = 1e-6
 _ROUNDING = 1e-9
@@ -30,9 +31,6 @@ class HeadClearance:
         self._arm = arm
         self._segments = [thin_segment(c.start, c.end) for c in arm.capsules]
         self._bodies = arm.body.tolist()
-        # What each capsule's clearance was when it was last queried, and where its axis was then.
-        self._known = np.zeros(len(arm.capsules))
-        self._known_at = np.zeros((len(arm.capsules), 2, 3))
         self.set_pose(np.eye(4))
 
     def set_pose(self, head_to_world: np.ndarray) -> None:
@@ -55,31 +53,51 @@ class HeadClearance:
         """(3,) float: the middle of the head's base, World, m."""
         self._head_to_world_rows = pose[:3].tolist()
         self._world_to_head_rows = self._world_to_head[:3].tolist()
-        self._known[:] = -math.inf
+        # What each capsule's clearance was when it was last queried, and where its axis was then.
+        self._known = [(-math.inf, ZERO, ZERO)] * len(self._arm.capsules)
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""
         return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
 
-    def nearest_to_arm(self, posed: PosedArm) -> tuple[Nearest, float, str]:
-        """Return what is nearest to the shaft; the links' clearance, m, and the nearest of them."""
-        moved = posed.ends - self._known_at
-        motion = np.sqrt(np.einsum("nki,nki->kn", moved, moved))
-        bounds = (self._known - np.maximum(motion[0], motion[1])).tolist()
-        count = self._arm.link_count
-        shaft, _ = self._nearest(posed, bounds, range(count, len(bounds)), math.inf)
-        links, row = self._nearest(posed, bounds, range(count), FAR)
-        if links is None:
-            return self._in_world(shaft), FAR, ""
-        return self._in_world(shaft), links.distance_m, self._arm.names[row]
+    def nearest_to_shaft(self, posed: PosedArm) -> Nearest:
+        """Return the place of the head nearest to the tool behind its tip, World, m."""
+        rows = range(self._arm.link_count, len(self._known))
+        found, _ = self._nearest(posed, rows, self._bounds(posed, rows), math.inf)
+        return self._in_world(found)
+
+    def nearest_to_links(self, posed: PosedArm) -> tuple[float, str, np.ndarray]:
+        """Return the clearance of the links, m, the nearest of them, and a bound for each capsule.
+
+        The clearance is at most FAR, and then no link is named. The bounds, (n,) float, are what
+        the clearance of each of the arm's capsules is at least; they are infinite for the tool's.
+        """
+        rows = range(self._arm.link_count)
+        found, row = self._nearest(posed, rows, self._bounds(posed, rows), LOOK)
+        bounds = np.full(len(self._known), math.inf)
+        bounds[: len(rows)] = self._bounds(posed, rows)
+        if found is None or found.distance_m >= FAR:
+            return FAR, "", bounds
+        return found.distance_m, self._arm.names[row], bounds
+
+    def _bounds(self, posed: PosedArm, rows: range) -> list[float]:
+        """Return below what the clearance of each capsule cannot be, m."""
+        part = slice(rows.start, rows.stop)
+        ends = posed.ends[part].tolist()
+        return [
+            known - max(dist(start, start_then), dist(end, end_then))
+            for (start, end), (known, start_then, end_then) in zip(
+                ends, self._known[part], strict=True
+            )
+        ]
 
     def _nearest(
-        self, posed: PosedArm, bounds: list[float], rows: range, limit: float
+        self, posed: PosedArm, rows: range, bounds: list[float], limit: float
     ) -> tuple[Nearest | None, int]:
         """Return what is nearest to some of the capsules, and to which, if nearer than `limit`."""
         best, best_row = None, -1
-        for row in sorted([row for row in rows if bounds[row] < limit], key=bounds.__getitem__):
-            if bounds[row] >= limit:
+        for bound, row in sorted(zip(bounds, rows, strict=True)):
+            if bound >= limit:
                 break
             found = self._query(posed, row)
             distance = found.distance_m
@@ -93,10 +111,12 @@ class HeadClearance:
         pose = self._world_to_head @ posed.poses[self._bodies[row]]
         segment.setRotation(pose[:3, :3])
         segment.setTranslation(pose[:3, 3])
-        start, end = (_moved(self._world_to_head_rows, point) for point in posed.axis(row))
-        found = self._head.nearest_to_segment(segment, start, end, radius)
-        self._known[row] = found.distance_m - _ROUNDING
-        self._known_at[row] = posed.ends[row]
+        start, end = posed.axis(row)
+        rows = self._world_to_head_rows
+        found = self._head.nearest_to_segment(
+            segment, _moved(rows, start), _moved(rows, end), radius
+        )
+        self._known[row] = (found.distance_m - _ROUNDING, start, end)
         return found
 
     def _in_world(self, nearest: Nearest) -> Nearest:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.clearance import FAR, LOOK
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -27,20 +27,23 @@ class SelfClearance:
         self._radii = (arm.radii[self._first] + arm.radii[self._second]).tolist()
         self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
 
-    def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...]]:
-        """Return the least signed distance, m, and the two links it is between.
+    def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...], np.ndarray]:
+        """Return the least signed distance, m, the two links, and a bound for each capsule.
 
-        Where that is FAR or more, a lower bound of it and no links.
+        The distance is at most FAR, and then no links are named. The bounds, (n,) float, are what
+        each of the arm's capsules is at least away from the others.
         """
         middles = posed.middles
         between = middles.take(self._first, 0) - middles.take(self._second, 0)
         bounds = np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
-        is_near = bounds < FAR
-        best, names = float(bounds.min(initial=math.inf, where=~is_near)), ()
-        for pair in np.flatnonzero(is_near).tolist():
+        for pair in np.flatnonzero(bounds < LOOK).tolist():
             first, second = self._pairs[pair]
             axes = segment_distance(*posed.axis(first), *posed.axis(second))
-            distance = axes - self._radii[pair]
-            if distance < best:
-                best, names = distance, self._names[pair] if distance < FAR else ()
-        return best, names
+            bounds[pair] = axes - self._radii[pair]
+        of_capsules = np.full(len(posed.ends), math.inf)
+        np.minimum.at(of_capsules, self._first, bounds)
+        np.minimum.at(of_capsules, self._second, bounds)
+        if bounds.min(initial=math.inf) >= FAR:
+            return FAR, (), of_capsules
+        best = int(bounds.argmin())
+        return float(bounds[best]), self._names[best], of_capsules

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.clearance import FAR, LOOK
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -44,31 +44,29 @@ class TableClearance:
         upright = self._stand_radius > 0.0 and top > self._table
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
 
-    def nearest(self, posed: PosedArm) -> tuple[float, str]:
-        """Return the least signed distance, m, and the link that is nearest.
+    def nearest(self, posed: PosedArm) -> tuple[float, str, np.ndarray]:
+        """Return the least signed distance, m, the link that is nearest, and a bound for each.
 
-        Where that is FAR or more, a lower bound of it and "".
+        The distance is at most FAR, and then no link is named. The bounds, (n,) float, are what
+        each of the arm's capsules is at least away.
         """
-        heights = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
-        row = int(heights.argmin())
-        best, name = float(heights[row]), self._arm.names[row]
-        tip = posed.tip[2] - self._table
-        if tip < best:
-            best, name = tip, self._arm.names[-1]
+        bounds = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
+        # The tip is the tool's, which is last.
+        bounds[-1] = min(bounds[-1], posed.tip[2] - self._table)
         if self._stand is not None:
-            best, name = self._nearest_to_stand(posed, best, name)
-        return best, name if best < FAR else ""
+            bounds = np.minimum(bounds, self._to_stand(posed))
+        best = int(bounds.argmin())
+        if bounds[best] >= FAR:
+            return FAR, "", bounds
+        return float(bounds[best]), self._arm.names[best], bounds
 
-    def _nearest_to_stand(self, posed: PosedArm, best: float, name: str) -> tuple[float, str]:
+    def _to_stand(self, posed: PosedArm) -> np.ndarray:
+        """Return the distance of each capsule to the stand, (n,) float; of far ones a bound."""
         start, end = self._stand
         away = posed.middles - end
         np.maximum(away[:, 2], 0.0, out=away[:, 2])
         bounds = np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around
-        is_near = bounds < FAR
-        best = min(best, float(bounds.min(initial=math.inf, where=~is_near)))
-        for row in np.flatnonzero(is_near).tolist():
+        for row in np.flatnonzero(bounds < LOOK).tolist():
             axes = segment_distance(*posed.axis(row), start, end)
-            distance = axes - self._arm.capsules[row].radius - self._stand_radius
-            if distance < best:
-                best, name = distance, self._arm.names[row]
-        return best, name
+            bounds[row] = axes - self._arm.capsules[row].radius - self._stand_radius
+        return bounds

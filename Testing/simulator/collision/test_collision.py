@@ -207,12 +207,14 @@ def test_head_and_arm_moved_together_keep_their_clearance(head):
 
 
 def test_what_was_asked_before_changes_no_bit_of_an_answer(head, head_to_world, collision):
-    path = list(wander(150, seed=24, step=0.01)) + list(wander(30, seed=25, step=0.3))
-    for index, q in enumerate(path):
-        links = KINEMATICS.links(q)
-        found = collision.check(links)
-        if index % 40 == 0:
-            assert placed(head, head_to_world).check(links) == found
+    steps = (0.003, 0.01, 0.3)
+    path = [q for step in steps for q in wander(100, seed=24, step=step)]
+    poses = [KINEMATICS.links(q) for q in path]
+    there = [collision.check(links) for links in poses]
+    fresh = placed(head, head_to_world)
+    back = [fresh.check(links) for links in reversed(poses)]
+    assert back[::-1] == there
+    assert {clearance.self_m < FAR for clearance in there} == {True, False}
 
 
 def test_a_head_that_is_moved_is_measured_anew(head, head_to_world, collision):
