@@ -171,6 +171,7 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
             python=pythonSlicer(Path(slicer.app.slicerHome)),
             simulator=Path(data, "RASTrainer", "simulator"),
             study=Path(study) if study else Path(documents, "RASTrainer", "study.db"),
+            records=Path.home() / "RASTrainer" / "trials",
             package=defaultPackage(Path(__file__).parent),
         )
         self.session = Session(slicer.mrmlScene, places, desktopKit)

@@ -173,8 +173,8 @@ def _treText(comparison: Comparison) -> str:
         return _("Place or choose a target to be told the error to expect there.")
     low, high = error.interval_mm
     return _(
-        "At the target, the rigid fit lets expect {expected:.2f} mm (TRE; 95 %: {low:.2f} to "
-        "{high:.2f} mm). A small FRE does not promise a small TRE."
+        "Expected TRE at the target, rigid: {expected:.2f} mm (95 %: {low:.2f} to {high:.2f} mm). "
+        "A small FRE does not promise a small TRE."
     ).format(expected=error.expected_mm, low=low, high=high)
 
 

@@ -8,8 +8,11 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.ctps import CTPS_WARNING
 from rastrainer.errors import InputError
-from rastrainer.panels.widgets import chosenData, fillComboBox, fillTable, setUsable
+from rastrainer.panels.widgets import chosenData, fillComboBox, fillTable, setSentence, setUsable
+from rastrainer.report.report import write_report
+from rastrainer.report.study_data import read_study_data
 from rastrainer.slicer.score_board import (
     Standing,
     motionRows,
@@ -35,6 +38,7 @@ class ScorePanel:
         ui.trialComboBox.connect("activated(int)", self._showTrial)
         ui.showTablesButton.connect("clicked()", self.showTables)
         ui.exportScoresButton.connect("clicked()", self.exportScores)
+        ui.reportButton.connect("clicked()", self.writeReport)
         self._trainees.changed.connect(self._show)
         session.trials.trialScored.connect(self._showNewTrial)
         self._show()
@@ -70,6 +74,17 @@ class ScorePanel:
                     count=count, path=path
                 )
 
+    def writeReport(self) -> None:
+        """Write the report of the whole study into a folder, and open it."""
+        caption = _("Folder for the report")
+        folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
+        if folder:
+            with slicer.util.tryWithErrorDisplay(_("The report was not written."), waitCursor=True):
+                data = read_study_data(self._session.studyPath)
+                page = write_report(data, Path(folder)).page
+                self._ui.scoreMessageText.text = _("The report is {path}.").format(path=page)
+                qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
+
     def _showNewTrial(self, trial: ScoredTrial) -> None:
         """Show a trial that has just been scored, if its trainee is the chosen one."""
         record = trial.analysis.record
@@ -103,9 +118,19 @@ class ScorePanel:
             return
         scores = [] if trial is None else scoreRows(trial, self._session.cohort)
         motion = [] if trial is None else motionRows(trial)
-        fillTable(ui.scoreTable, ((row.title, row.text, row.note) for row in scores))
+        fillTable(
+            ui.scoreTable,
+            ((row.title, row.text, _shortened(row.note)) for row in scores),
+            [row.note for row in scores],
+        )
         fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
-        fillTable(ui.motionTable, ((row.title, row.text, row.note) for row in motion))
+        fillTable(
+            ui.motionTable,
+            ((row.title, row.text) for row in motion),
+            [row.note for row in motion],
+        )
+        hasCtps = any(row.note == CTPS_WARNING for row in scores)
+        setSentence(ui.ctpsText, CTPS_WARNING if hasCtps else "")
         ui.scoreMessageText.text = (
             _("Choose a trainee with a scored trial.")
             if trial is None
@@ -136,14 +161,16 @@ def _entry(number: int, trial: StoredTrial) -> str:
     )
 
 
+def _shortened(note: str) -> str:
+    return _("see below") if note == CTPS_WARNING else note
+
+
 def _standingRow(standing: Standing) -> tuple[str, ...]:
-    unit = standing.unit
-    hasOthers = standing.count > 0
     return (
-        standing.title,
-        f"{standing.value:.2f} {unit}",
+        f"{standing.title} ({standing.unit})" if standing.unit else standing.title,
+        f"{standing.value:.2f}",
         standing.group,
         str(standing.count),
-        f"{standing.median:.2f} {unit}" if hasOthers else "–",
-        f"{100 * standing.betterThan:.0f} %" if hasOthers else "–",
+        f"{standing.median:.2f}",
+        f"{100 * standing.betterThan:.0f} %",
     )

@@ -80,7 +80,8 @@ class SimulatorPanel:
         """Start the simulator on this computer."""
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be started.")):
             program = self._ui.programPathLineEdit.currentPath
-            self._simulator.start(self._ui.portSpinBox.value, program)
+            hasWindow = self._ui.windowCheckBox.checked
+            self._simulator.start(self._ui.portSpinBox.value, program, hasWindow)
 
     def stopSimulator(self) -> None:
         """End the simulator that was started here."""

@@ -18,6 +18,7 @@ from rastrainer.panels.widgets import (
     setChecked,
     setUsable,
 )
+from rastrainer.protocol import Mode
 from rastrainer.slicer.history_nodes import showLearningCurve
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
@@ -112,12 +113,18 @@ class TraineesPanel:
         with slicer.util.tryWithErrorDisplay(_("The trainee was not deleted.")):
             name, trials = self._desk.chosen, len(self._desk.history())
             question = _(
-                "Delete {name} with {trials} trials from the study, for good? This cannot be "
-                "undone; export the trainee first if the data may be needed."
+                "Delete {name} with {trials} trials from the study and from the journals on this "
+                "computer, for good? This cannot be undone; export the trainee first if the data "
+                "may be needed. Earlier exports and backups are yours to delete."
             ).format(name=name, trials=trials)
             if slicer.util.confirmYesNoDisplay(question, _("Delete the trainee")):
-                self._desk.delete()
-                self._say(_("{name} is deleted with {count} trials."), name=name, count=trials)
+                erased = self._desk.delete()
+                self._say(
+                    _("{name} is deleted with {trials} trials and {journals} journals."),
+                    name=name,
+                    trials=erased.trials,
+                    journals=erased.journals,
+                )
 
     def showLearningCurve(self) -> None:
         """Show score and time over the trials, as a table and a plot."""
@@ -182,8 +189,7 @@ def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
     return (
         str(number),
         record.started_utc[:16].replace("T", " "),
-        record.task,
-        record.mode,
+        record.task if record.mode == Mode.DESKTOP.value else f"{record.task}, {record.mode}",
         f"{record.completion_time_s:.1f}",
         millimeters(trial.true_tre_mm).removesuffix(" mm"),
         "–" if trial.score is None else f"{trial.score.score:.1f}",

@@ -23,12 +23,12 @@ from rastrainer.slicer.training_desk import Progress
 from rastrainer.slicer.translation import _
 
 PHASES = {
-    Phase.IDLE.value: _("No trial is open."),
-    Phase.RUNNING.value: _("A trial is running."),
-    Phase.PAUSED.value: _("The trial is paused."),
-    Phase.COMPLETE.value: _("All points are touched; the trainee registers them now."),
-    Phase.REGISTERED.value: _("The trial is registered; it is being scored."),
-    Phase.SCORED.value: _("The trial is scored."),
+    Phase.IDLE.value: _("no trial is open."),
+    Phase.RUNNING.value: _("running."),
+    Phase.PAUSED.value: _("paused."),
+    Phase.COMPLETE.value: _("all points are touched, to be registered."),
+    Phase.REGISTERED.value: _("registered, being scored."),
+    Phase.SCORED.value: _("scored."),
 }
 NEARNESS = {
     Proximity.FREE.value: (GREEN, _("free")),
@@ -108,11 +108,12 @@ class TrainingPanel:
             for label in (ui.nextPointText, ui.elapsedText, ui.clearanceText, ui.instructionText):
                 label.text = "–"
             return
-        ui.phaseText.text = PHASES.get(progress.phase, progress.phase)
-        if progress.isOpen:
-            ui.phaseText.text += " " + _("({trainee}, {task})").format(
-                trainee=progress.trainee, task=progress.task
+        phase = PHASES.get(progress.phase, progress.phase)
+        if progress.trainee:
+            phase = _("{trainee}, {task}: {phase}").format(
+                trainee=progress.trainee, task=progress.task, phase=phase
             )
+        ui.phaseText.text = phase
         ui.pointsProgressBar.value = min(progress.touched, progress.total)
         ui.nextPointText.text = progress.nextPoint or "–"
         ui.elapsedText.text = _clock(progress.elapsedS)

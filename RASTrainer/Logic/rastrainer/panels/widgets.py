@@ -25,13 +25,15 @@ def setUsable(button: Any, usable: bool, tip: str, reason: str = "") -> None:
     button.toolTip = tip if usable or not reason else reason
 
 
-def fillTable(table: Any, rows: Iterable[Sequence[str]]) -> None:
-    """Replace the rows of a `QTableWidget`; texts stay within their columns by word wrap."""
+def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = ()) -> None:
+    """Replace the rows of a `QTableWidget`; each text, or the row's tip, is its tool tip."""
     rows = list(rows)
     table.setRowCount(len(rows))
     for number, texts in enumerate(rows):
         for column, text in enumerate(texts):
-            table.setItem(number, column, qt.QTableWidgetItem(text))
+            item = qt.QTableWidgetItem(text)
+            item.setToolTip(tips[number] if tips else text)
+            table.setItem(number, column, item)
     table.resizeColumnsToContents()
     table.resizeRowsToContents()
     _fitHeight(table)

@@ -9,16 +9,13 @@ SELECTION = "vtkMRMLSelectionNodeSingleton"
 INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
 
-def startPlacing(scene: Any, node: Any) -> bool:
-    """Let the next clicks in the views place points of a markup; False where there are no views."""
+def startPlacing(scene: Any, node: Any) -> None:
+    """Let the next clicks in the views place points of a markup."""
     selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
-    if selection is None or interaction is None:
-        return False
     selection.SetReferenceActivePlaceNodeClassName(node.GetClassName())
     selection.SetActivePlaceNodeID(node.GetID())
     interaction.SetPlaceModePersistence(False)
     interaction.SetCurrentInteractionMode(interaction.Place)
-    return True
 
 
 def jumpTo(scene: Any, position: Sequence[float]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.registration import KINDS, RIGID, Registration, register
+from rastrainer.slicer.control_points import localPoints
 from rastrainer.slicer.head_colors import colorHead, uncolorHead
 from rastrainer.slicer.registration_input import Choices, Pairs, readPairs, snapshot
 from rastrainer.slicer.registration_nodes import fixedNode, movingNode, showRegistration
@@ -148,7 +149,7 @@ class RegistrationDesk:
     def process(self) -> None:
         """Register again if a list or the target has changed."""
         moving, fixed, target = self.moving(), self.fixed(), self.target()
-        seen = snapshot(moving), snapshot(fixed), snapshot(target)
+        seen = snapshot(moving, localPoints), snapshot(fixed), snapshot(target)
         if seen == self._seen:
             return
         self._seen = seen

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,11 +92,11 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
     )
 
 
-def snapshot(node: Any) -> tuple:
+def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> tuple:
     """Return what tells whether a list has changed: its labels and where its points are."""
     if node is None:
         return ()
-    return node.GetID(), labelsOf(node), worldPoints(node).tobytes()
+    return node.GetID(), labelsOf(node), pointsOf(node).tobytes()
 
 
 def _renamed(labels: tuple[str, ...], choices: Choices) -> tuple[str, ...]:

@@ -42,10 +42,11 @@ def showRobot(scene: Any, folder: Path) -> None:
         return
     prepareNodes(scene)
     shells = _readShells(folder)
-    for number in missing:
+    surfaces = {number: _merged(shells[number]) for number in missing}
+    for number, surface in surfaces.items():
         node = scene.AddNewNodeByClass("vtkMRMLModelNode", f"Robot link {number}")
         node.SetAttribute(ROLE_ATTRIBUTE, _role(number))
-        node.SetAndObservePolyData(_merged(shells[number]))
+        node.SetAndObservePolyData(surface)
         # It is made anew from the module's files; a saved scene need not carry it.
         node.SetSaveWithScene(False)
         node.SetSelectable(False)

@@ -45,9 +45,9 @@ class Standing:
         unit: of the value.
         value: of the trial.
         group: of whom the others are.
-        count: how many others there are.
-        median: of the others; None without any.
-        betterThan: share of the others that the trial is better than, 0 to 1; None without any.
+        count: how many others there are, at least one.
+        median: of the others.
+        betterThan: share of the others that the trial is better than, 0 to 1.
     """
 
     title: str
@@ -55,8 +55,8 @@ class Standing:
     value: float
     group: str
     count: int
-    median: float | None
-    betterThan: float | None
+    median: float
+    betterThan: float
 
 
 def scoreRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
@@ -83,7 +83,7 @@ def scoreRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
         ]
     rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s"))
     if rigid is not None:
-        fre = _("does not predict the TRE of a single case")
+        fre = _("does not predict TRE")
         rows += [
             Row(_("FRE (RMSE)"), rigid.fre_mm, "mm", fre),
             Row(_("Expected TRE"), rigid.expected_tre_mm, "mm", _interval(rigid.tre_interval_mm)),
@@ -127,7 +127,7 @@ def standings(study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()) ->
         for title, unit, better, read in _COMPARED:
             value = read(trial)
             values = [v for v in map(read, trials) if v is not None]
-            if value is not None:
+            if value is not None and values:
                 found.append(_standing(title, unit, value, group, values, better))
     return found + _besideCohort(trial, cohort)
 
@@ -190,7 +190,7 @@ def _ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
             _("CTPS by equation 3"),
             equation_3_ctps(time, rmse, reference),
             "",
-            _("The paper's equation 3 as printed: half of it."),
+            _("half of it, as printed"),
         ),
     ]
 
@@ -202,8 +202,6 @@ def _interval(ends: tuple[float, float] | None) -> str:
 def _standing(
     title: str, unit: str, value: float, group: str, values: Sequence[float], better: int
 ) -> Standing:
-    if not values:
-        return Standing(title, unit, value, group, 0, None, None)
     share = float(np.mean([better * value > better * other for other in values]))
     return Standing(title, unit, value, group, len(values), float(np.median(values)), share)
 
@@ -240,7 +238,7 @@ def _trueTre(trial: StoredTrial) -> float | None:
 
 
 _COMPARED = (
-    (_("Score"), "/ 100", 1, _score),
+    (_("Score"), "", 1, _score),
     (_("Completion time"), "s", -1, _time),
     (_("True TRE"), "mm", -1, _trueTre),
 )

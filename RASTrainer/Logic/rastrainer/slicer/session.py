@@ -38,6 +38,7 @@ class Places:
         python: that sets the simulator up and runs it.
         simulator: private folder of the simulator.
         study: file of the study, until another is chosen.
+        records: folder of the journals of the simulator that is started from here.
         package: what pip installs, unless the user says otherwise.
     """
 
@@ -45,6 +46,7 @@ class Places:
     python: Path
     simulator: Path
     study: Path
+    records: Path
     package: str
 
 
@@ -76,8 +78,9 @@ class Session:
         shelf = ScenarioShelf.below(places.assets / "scenarios")
         self.cohort = read_trials(places.assets / PUBLISHED_STUDY)
         self.link = Link(scene, findKit)
-        self.simulator = SimulatorDesk(self.link, SimulatorSetup(places.python, places.simulator))
-        self.trainees = TraineeDesk(self.openStudy)
+        setup = SimulatorSetup(places.python, places.simulator)
+        self.simulator = SimulatorDesk(self.link, setup, places.records)
+        self.trainees = TraineeDesk(self.openStudy, places.records)
         self.scenario = ScenarioDesk(scene, shelf, places.assets / ROBOT)
         self.training = TrainingDesk(scene, self.link, shelf.find)
         self.trials = TrialDesk(scene, self.link, shelf.find, self.openStudy, self.cohort)

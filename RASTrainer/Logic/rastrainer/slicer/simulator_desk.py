@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -22,10 +21,12 @@ class SimulatorDesk:
         setup: the private folder and its pip.
     """
 
-    def __init__(self, link: Link, setup: SimulatorSetup) -> None:
+    def __init__(self, link: Link, setup: SimulatorSetup, records: Path) -> None:
+        """`records` is the folder into which the simulator writes its journals."""
         self.program = SimulatorProgram()
         self.setup = setup
         self._link = link
+        self._records = records
         self.program.changed.connect(self._followProgram)
 
     @property
@@ -33,18 +34,19 @@ class SimulatorDesk:
         """Whether the simulator has to be set up before it can be started."""
         return not self.setup.isCurrent
 
-    def start(self, port: int, ownProgram: str = "", options: Sequence[str] = ()) -> None:
+    def start(self, port: int, ownProgram: str = "", hasWindow: bool = False) -> None:
         """Start the simulator on this computer.
 
         Args:
             port: to listen on; 0 takes any free one.
             ownProgram: a `rastrainer` installed elsewhere; the private folder's where empty.
-            options: further ones of `rastrainer simulator`.
+            hasWindow: open the trainee's window on this computer, too.
 
         Raises:
             InputError: it is not set up, or cannot be started.
         """
-        arguments = ["simulator", "--port", str(port), *options]
+        arguments = ["simulator", "--port", str(port), "--records", str(self._records)]
+        arguments += ["--desktop"] if hasWindow else []
         if ownProgram:
             if not Path(ownProgram).is_file():
                 raise InputError(_("There is no program {path}.").format(path=ownProgram))

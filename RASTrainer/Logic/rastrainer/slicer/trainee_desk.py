@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.export.erasure import Erasure, erase_trainee
 from rastrainer.slicer.signal import Signal
 from rastrainer.study import StoredTrial, Study, Trainee
 from rastrainer.study_export import export_history, export_trainee
@@ -19,10 +20,12 @@ class TraineeDesk:
         chosen: pseudonym of the chosen trainee, empty where none is.
     """
 
-    def __init__(self, openStudy: Callable[[], Study]) -> None:
+    def __init__(self, openStudy: Callable[[], Study], records: Path) -> None:
+        """`records` is the folder of the simulator's journals, if it is on this computer."""
         self.changed = Signal()
         self.chosen = ""
         self._openStudy = openStudy
+        self._records = records
         self._study: Study | None = None
 
     @property
@@ -89,12 +92,13 @@ class TraineeDesk:
         self.study.set_archived(self.chosen, archived)
         self.changed.emit()
 
-    def delete(self) -> int:
-        """Delete the chosen trainee with all trials, for good; return the number of trials."""
-        trials = self.study.delete_trainee(self.chosen)
+    def delete(self) -> Erasure:
+        """Delete the chosen trainee with all trials and journals, for good; return how many."""
+        records = self._records if self._records.is_dir() else None
+        erased = erase_trainee(self.study, self.chosen, records)
         self.chosen = ""
         self.changed.emit()
-        return trials
+        return erased
 
     def export(self, path: Path) -> int:
         """Write everything about the chosen trainee into a JSON file; return the trials' number."""

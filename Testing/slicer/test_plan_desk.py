@@ -1,0 +1,161 @@
+"""A plan on the MRI reaches the robot, and its true error is told once the head is known."""
+
+import uuid
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.slicer.placing import jumpTo, startPlacing
+from rastrainer.slicer.plan_desk import PlanDesk
+from rastrainer.slicer.registration_desk import RegistrationDesk
+from rastrainer.slicer.scenario import showScenario, showTask
+from rastrainer.target_error import target_error
+from rastrainer.tasks import LABELS
+from rastrainer.trial_results import RevealedTruth
+from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+
+TUMOR = np.array([20.0, -30.0, 40.0])
+ENTRY = np.array([60.0, -40.0, 70.0])
+TRIAL = str(uuid.UUID(int=9))
+
+
+class Room:
+    def __init__(self, scene, scenario):
+        self.scene, self.head_to_world = scene, scenario.perturbed_head_to_world(4)
+        self.reply = {"reachable": True, "reason": ""}
+        self.simulator = SimulatorDouble(lambda name, _a: {} if name == "Hello" else self.reply)
+        self.link = Link(scene, headlessKit)
+        showScenario(scene, scenario)
+        showTask(scene, scenario, "task-1")
+        fiducials = scenario.task("task-1").fiducials
+        noise = np.random.default_rng(8).normal(0.0, 0.5, (15, 3))
+        self.touched = transforms.apply(self.head_to_world, fiducials + noise)
+        self.registration = RegistrationDesk(scene)
+        self.desk = PlanDesk(scene, self.link, self.registration)
+
+    def register(self):
+        setPoints(capturedPointsNode(self.scene), LABELS, self.touched)
+        self.registration.process()
+
+    def connect(self):
+        opened = []
+        self.link.opened.connect(lambda: opened.append(True))
+        self.link.connectTo(port=self.simulator.port)
+        self.run_until(lambda: opened)
+
+    def run_until(self, condition):
+        def process():
+            self.link.connector.PeriodicProcess()
+            self.link.process()
+
+        wait_until(condition, process)
+
+    def target(self, *points):
+        node = self.desk.newTarget() if len(points) == 1 else self.desk.newTrajectory()
+        for point in points:
+            node.AddControlPoint(*point)
+        return node
+
+    def reveal(self):
+        truth = RevealedTruth(tuple(self.head_to_world.ravel()), 0.4)
+        self.desk.takeTruth(SimpleNamespace(truth=truth))
+
+
+@pytest.fixture
+def room(scene, scenario):
+    room = Room(scene, scenario)
+    yield room
+    room.link.disconnect()
+    room.simulator.close()
+
+
+def test_a_target_is_mapped_into_world_with_the_error_to_expect_there(room):
+    room.register()
+    plan = room.desk.read(room.target(TUMOR))
+    shown = room.registration.shown
+    np.testing.assert_allclose(transforms.apply(shown.matrix, plan.targetWorld[None])[0], TUMOR)
+    there = transforms.apply(room.head_to_world, TUMOR[None])[0]
+    assert np.linalg.norm(plan.targetWorld - there) < 1.5
+    assert plan.expected.expected_mm == target_error(shown, TUMOR).expected_mm
+    assert plan.entry is None
+
+
+def test_a_trajectory_goes_from_its_entry_to_the_target(room):
+    room.register()
+    plan = room.desk.read(room.target(ENTRY, TUMOR))
+    np.testing.assert_allclose(plan.target, TUMOR)
+    np.testing.assert_allclose(plan.entry, ENTRY)
+    length = np.linalg.norm(plan.entryWorld - plan.targetWorld)
+    assert length == pytest.approx(np.linalg.norm(ENTRY - TUMOR))
+
+
+def test_the_plan_is_shown_to_the_trainee_and_its_reachability_told(room):
+    room.register()
+    room.connect()
+    room.desk.send(room.target(ENTRY, TUMOR))
+    room.run_until(lambda: room.desk.isReachable is not None)
+    ((name, arguments),) = [c for c in room.simulator.commands if c[0] != "Hello"]
+    assert (name, arguments["name"]) == ("PlanTarget", "Planned trajectory")
+    assert len(arguments["positionMm"]) == len(arguments["entryMm"]) == 3
+    assert room.desk.isReachable is True
+    assert "can carry it out" in room.desk.sentence
+
+
+def test_what_is_out_of_reach_or_refused_is_told_in_the_simulators_words(room):
+    room.register()
+    room.connect()
+    room.reply = {"reachable": False, "reason": "The target is out of the robot's reach."}
+    room.desk.send(room.target(TUMOR))
+    room.run_until(lambda: room.desk.isReachable is False)
+    assert room.desk.sentence.endswith("out of the robot's reach.")
+    room.reply = "The trial is not registered yet."
+    room.desk.send(room.target(TUMOR))
+    room.run_until(lambda: room.desk.sentence == room.reply)
+    assert room.desk.isReachable is None
+
+
+@pytest.mark.parametrize("is_sent_first", [True, False])
+def test_the_true_error_at_the_target_is_told_once_the_head_is_known(is_sent_first, room):
+    room.register()
+    room.connect()
+    if not is_sent_first:
+        room.reveal()
+    room.desk.send(room.target(TUMOR))
+    room.run_until(lambda: room.desk.isReachable is not None)
+    if is_sent_first:
+        assert room.desk.trueErrorMm is None
+        room.reveal()
+    found = room.registration.shown.matrix @ room.head_to_world
+    error = np.linalg.norm(transforms.apply(found, TUMOR[None])[0] - TUMOR)
+    assert room.desk.trueErrorMm == pytest.approx(error)
+    room.desk.forgetTruth()
+    assert room.desk.trueErrorMm is None
+
+
+def test_without_a_point_or_a_registration_it_is_said_what_is_missing(room):
+    with pytest.raises(InputError, match="Place a target or a trajectory"):
+        room.desk.read(None)
+    with pytest.raises(InputError, match="has no point yet"):
+        room.desk.read(room.desk.newTarget())
+    with pytest.raises(InputError, match="no registration to map the plan"):
+        room.desk.read(room.target(TUMOR))
+
+
+def test_clicks_place_the_plan_and_slices_jump_to_it(room):
+    node = room.desk.newTarget()
+    startPlacing(room.scene, node)
+    selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
+    interaction = room.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
+    assert selection.GetActivePlaceNodeID() == node.GetID()
+    assert interaction.GetCurrentInteractionMode() == interaction.Place
+    view = room.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Red")
+    jumpTo(room.scene, TUMOR)
+    place = view.GetSliceToRAS()
+    assert [place.GetElement(row, 3) for row in range(3)] == pytest.approx(TUMOR)

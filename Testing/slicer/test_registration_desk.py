@@ -1,0 +1,228 @@
+"""The registration that the user looks at follows its lists, and every change can be undone."""
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer import transforms
+from rastrainer.registration import AFFINE, KINDS, RIGID, register
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.head_colors import SCALARS
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.slicer.registration_desk import RegistrationDesk, rememberedLists
+from rastrainer.slicer.registration_nodes import isApplied, matrixOf, setApplied
+from rastrainer.slicer.scenario import showScenario, showTask
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.target_error import expected_tre, target_error
+from rastrainer.tasks import LABELS
+
+
+class Table:
+    """The scene of a played trial, and the desk that looks at it."""
+
+    def __init__(self, scene, scenario):
+        self.scene, self.scenario = scene, scenario
+        showScenario(scene, scenario)
+        self.fixed = showTask(scene, scenario, "task-1")
+        self.touched = transforms.apply(
+            scenario.perturbed_head_to_world(3),
+            scenario.task("task-1").fiducials + np.random.default_rng(3).normal(0.0, 0.6, (15, 3)),
+        )
+        self.desk = RegistrationDesk(scene)
+        self.changes = []
+        self.desk.changed.connect(lambda: self.changes.append(self.desk.comparison))
+
+    def touch(self, points=None, labels=LABELS):
+        points = self.touched if points is None else points
+        setPoints(capturedPointsNode(self.scene), labels[: len(points)], points)
+        self.desk.process()
+
+    def node(self, role, class_name="vtkMRMLTableNode"):
+        return findNode(self.scene, class_name, role)
+
+    def warn(self, code):
+        (remedy,) = [r for r in self.desk.comparison.remedies if r.warning.code == code]
+        return remedy
+
+
+@pytest.fixture
+def table(scene, scenario):
+    return Table(scene, scenario)
+
+
+def test_three_fits_stand_side_by_side_with_the_error_to_expect(table):
+    table.touch()
+    fits = table.desk.comparison.fits
+    assert list(fits) == list(KINDS)
+    for kind, fit in fits.items():
+        again = register(table.touched, table.scenario.task("task-1").fiducials, kind, LABELS)
+        assert fit.fre_mm == pytest.approx(again.fre_mm, abs=1e-5)
+        error = target_error(again, table.scenario.target_position)
+        assert table.desk.comparison.errors[kind].expected_mm == pytest.approx(
+            error.expected_mm, abs=1e-5
+        )
+    assert table.node(Role.FITS).GetNumberOfRows() == 3
+    assert table.node(Role.RESIDUALS).GetNumberOfRows() == 15
+
+
+def test_touches_are_registered_while_the_trial_runs_from_the_third_on(table):
+    table.touch(table.touched[:2])
+    assert table.desk.comparison is None
+    assert "at least 3" in table.desk.problem
+    table.touch(table.touched[:5])
+    assert table.desk.comparison.pairs.missing == LABELS[5:]
+    assert len(table.desk.shown.labels) == 5
+    assert AFFINE in table.desk.comparison.fits
+
+
+def test_nothing_is_computed_again_while_nothing_changes(table):
+    table.touch()
+    count = len(table.changes)
+    for _ in range(5):
+        table.desk.process()
+    assert len(table.changes) == count
+
+
+def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
+    table.touch()
+    table.desk.chooseKind(AFFINE)
+    transform = table.desk.transform()
+    np.testing.assert_allclose(matrixOf(transform), table.desk.comparison.fits[AFFINE].matrix)
+    assert rememberedLists(transform) == (capturedPointsNode(table.scene), table.fixed)
+    assert isApplied(transform)
+    setApplied(transform, False)
+    table.touch(table.touched + 0.1)
+    assert not isApplied(transform)
+
+
+def test_a_bad_touch_is_named_left_out_by_one_click_and_brought_back(table):
+    bad = table.touched.copy()
+    bad[6] += [9.0, -6.0, 5.0]
+    table.touch(bad)
+    before = table.desk.shown.fre_mm
+    remedy = table.warn("outlier")
+    assert (remedy.warning.points, remedy.title) == (("7",), "Leave out 7")
+    table.desk.change(remedy.choices)
+    assert table.desk.comparison.pairs.excluded == ("7",)
+    assert table.desk.shown.fre_mm < 0.5 * before
+    assert table.desk.comparison.remedies == ()
+    assert table.node(Role.RESIDUALS).GetNumberOfRows() == 14
+    table.desk.undo()
+    assert table.desk.shown.fre_mm == before
+    assert not table.desk.canUndo
+
+
+def test_exchanged_touches_are_put_in_order_by_one_click(table):
+    order = [0, 1, 3, 2, *range(4, 15)]
+    table.touch(table.touched[order])
+    remedy = table.warn("order")
+    assert remedy.title == "Put in order"
+    table.desk.change(remedy.choices)
+    assert table.desk.comparison.remedies == ()
+    assert table.desk.shown.fre_mm < 2.0
+    table.desk.undo()
+    assert table.desk.shown.fre_mm > 5.0
+
+
+def test_of_two_touches_at_one_place_the_later_is_left_out(table):
+    twice = table.touched.copy()
+    twice[9] = twice[4]
+    table.touch(twice)
+    remedy = table.warn("duplicate")
+    assert remedy.warning.points == ("5", "10")
+    assert remedy.title == "Leave out 10"
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda points: points * [1.0, 1.0, -1.0], "mirrored"),
+        (lambda points: points / 1000.0, "scale"),
+    ],
+)
+def test_what_only_the_points_themselves_can_mend_has_a_sentence_and_no_button(change, code, table):
+    table.touch(change(table.touched))
+    remedy = table.warn(code)
+    assert remedy.title == ""
+    assert len(remedy.warning.message) > 40
+
+
+def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
+    table.touch()
+    for label in LABELS[:12]:
+        table.desk.exclude(label)
+    assert len(table.desk.shown.labels) == 3
+    table.desk.exclude(LABELS[12])
+    assert table.desk.comparison is None
+    assert "at least 3" in table.desk.problem
+    table.desk.undo()
+    assert len(table.desk.shown.labels) == 3
+
+
+def test_another_trial_begins_without_the_changes_of_the_one_before(table):
+    table.touch()
+    table.desk.exclude("3")
+    setPoints(capturedPointsNode(table.scene), (), np.zeros((0, 3)))
+    table.desk.process()
+    table.touch()
+    assert table.desk.comparison.pairs.excluded == ()
+    assert not table.desk.canUndo
+
+
+def test_the_target_may_be_any_point_and_is_followed(table):
+    table.touch()
+    target = table.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
+    target.AddControlPoint(20.0, -30.0, 40.0)
+    table.desk.chooseTarget(target)
+    table.desk.process()
+    here = table.desk.comparison.errors[RIGID].target_mm
+    assert here == (20.0, -30.0, 40.0)
+    target.SetNthControlPointPosition(0, 0.0, 0.0, 0.0)
+    table.desk.process()
+    assert table.desk.comparison.errors[RIGID].target_mm == (0.0, 0.0, 0.0)
+
+
+def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
+    table.touch()
+    table.desk.setHeadColored(True)
+    head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
+    values = slicer.util.arrayFromModelPointData(head, SCALARS)
+    points = slicer.util.arrayFromModelPoints(head)
+    np.testing.assert_allclose(values, expected_tre(table.desk.shown, points), atol=1e-9)
+    display = head.GetDisplayNode()
+    assert display.GetScalarVisibility()
+    low, high = display.GetScalarRange()
+    assert low <= values.min() < values.max() <= high
+    table.desk.setHeadColored(False)
+    assert not display.GetScalarVisibility()
+
+
+def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
+    table.touch()
+    mine = table.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
+    setPoints(mine, LABELS, table.touched + [10.0, 0.0, 0.0])
+    table.desk.chooseLists(mine, table.fixed)
+    table.desk.process()
+    np.testing.assert_allclose(table.desk.shown.moving_mm, table.touched + [10.0, 0.0, 0.0])
+    table.scene.RemoveNode(mine)
+    table.desk.process()
+    np.testing.assert_allclose(table.desk.shown.moving_mm, table.touched, atol=1e-9)
+    for role, class_name in (
+        (Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"),
+        (Role.RESIDUAL_ARROWS, "vtkMRMLModelNode"),
+        (Role.HEAD_MODEL, "vtkMRMLModelNode"),
+        (Role.TARGET, "vtkMRMLMarkupsFiducialNode"),
+        (Role.FIXED_FIDUCIALS, "vtkMRMLMarkupsFiducialNode"),
+    ):
+        table.scene.RemoveNode(table.node(role, class_name))
+        table.desk.process()
+    assert table.desk.comparison is None
+    assert table.desk.problem == "Choose the list of fixed points."
+
+
+def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
+    table.touch()
+    arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
+    assert arrows.GetPolyData().GetNumberOfPoints() > 0
+    table.touch(table.touched[:2])
+    assert arrows.GetPolyData().GetNumberOfPoints() == 0

@@ -1,0 +1,97 @@
+"""The robot stands in the 3D view and follows the poses that the link brings."""
+
+import shutil
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.slicer.registration_nodes import setApplied
+from rastrainer.slicer.robot_scene import robotNode, setRobotVisible, showRobot
+from rastrainer.slicer.scenario import showTask
+from rastrainer.slicer.world_placement import followPlacement, showPlannedPlace
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import load_robot
+
+ROBOT = asset_path("robots", "iiwa7")
+
+
+def bounds(node):
+    values = [0.0] * 6
+    node.GetRASBounds(values)
+    return np.array(values)
+
+
+@pytest.fixture
+def robot(scene):
+    showRobot(scene, ROBOT)
+    followPlacement(scene)
+    return [robotNode(scene, number) for number in range(8)]
+
+
+def test_each_link_is_one_colored_model_that_is_not_saved_with_the_scene(scene, robot):
+    for node in robot:
+        assert node.GetPolyData().GetNumberOfCells() > 1000
+        colors = slicer.util.arrayFromModelPointData(node, "color")
+        assert len(np.unique(colors, axis=0)) > 1
+        assert not node.GetSaveWithScene()
+    count = scene.GetNumberOfNodes()
+    showRobot(scene, ROBOT)
+    assert scene.GetNumberOfNodes() == count
+
+
+def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
+    model = load_robot()
+    poses = make_kinematics(model).links(model.home)
+    for number in range(8):
+        pose = np.array(poses[f"iiwa_link_{number}"])
+        pose[:3, 3] *= 1000.0
+        node = scene.GetFirstNode(f"Link{number}ToWorld", "vtkMRMLLinearTransformNode")
+        node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
+    tip = 1000.0 * np.array(poses["iiwa_tool_tip_ee"])[:3, 3]
+    hand = bounds(robot[7])
+    # The tool belongs to link 7: its lowest point is the tip, which points down at home.
+    assert hand[4] == pytest.approx(tip[2], abs=1.0)
+    assert hand[0] - 1 <= tip[0] <= hand[1] + 1
+    np.testing.assert_allclose(bounds(robot[0])[4], 0.0, atol=1.0)
+
+
+def test_the_robot_stands_where_its_touches_are_shown(scene, robot, scenario):
+    fixed = showTask(scene, scenario, "task-1")
+    transform = showPlannedPlace(scene, scenario, capturedPointsNode(scene), fixed)
+    inWorld = bounds(robot[0])
+    followPlacement(scene)
+    onHead = bounds(robot[0])
+    # The scenario turns the head by half a turn and puts it at x = 500, z = 300.
+    np.testing.assert_allclose(onHead[[0, 1]], 500.0 - inWorld[[1, 0]], atol=1e-3)
+    np.testing.assert_allclose(onHead[[4, 5]], inWorld[[4, 5]] - 300.0, atol=1e-3)
+    setApplied(transform, False)
+    followPlacement(scene)
+    np.testing.assert_allclose(bounds(robot[0]), inWorld)
+
+
+def test_what_is_deleted_is_made_again_when_the_robot_is_shown_again(scene, robot):
+    scene.RemoveNode(robot[3])
+    scene.RemoveNode(scene.GetFirstNode("Link5ToWorld", "vtkMRMLLinearTransformNode"))
+    followPlacement(scene)
+    showRobot(scene, ROBOT)
+    followPlacement(scene)
+    assert robotNode(scene, 3).GetParentTransformNode().GetName() == "Link3ToWorld"
+    assert robotNode(scene, 5).GetParentTransformNode().GetName() == "Link5ToWorld"
+
+
+def test_the_robot_can_be_hidden(scene, robot):
+    setRobotVisible(scene, False)
+    assert not any(node.GetDisplayVisibility() for node in robot)
+
+
+def test_a_folder_without_a_robot_is_told(scene, tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        showRobot(scene, tmp_path)
+    shutil.copy(ROBOT / "iiwa7.urdf", tmp_path)
+    with pytest.raises(InputError, match=r"mesh .*stl is missing"):
+        showRobot(scene, tmp_path)
+    assert robotNode(scene, 0) is None

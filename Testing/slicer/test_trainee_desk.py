@@ -1,0 +1,161 @@
+"""Trainees are created, archived, exported and deleted; their history is a table and a plot."""
+
+import json
+import uuid
+
+import pytest
+import slicer
+
+from rastrainer.ctps import CTPS_WARNING, Trial
+from rastrainer.errors import InputError
+from rastrainer.slicer.history_nodes import showHistory, showLearningCurve
+from rastrainer.slicer.score_board import (
+    motionRows,
+    scoreRows,
+    showMotion,
+    showScore,
+    showStandings,
+    standings,
+)
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.slicer.trainee_desk import TraineeDesk
+from rastrainer.study import Study
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_record import TrialRecord
+
+COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
+
+
+@pytest.fixture
+def desk(tmp_path):
+    desk = TraineeDesk(lambda: Study.open(tmp_path / "study.db"), tmp_path / "journals")
+    yield desk
+    desk.close()
+
+
+@pytest.fixture
+def add_trial(desk, make_record, scenario):
+    """Returns a function that stores a scored trial."""
+
+    def add(number, **changes):
+        record = make_record(
+            str(uuid.UUID(int=number)),
+            seed=number,
+            startedUtc=f"2026-03-02T09:{number:02d}:00Z",
+            **changes,
+        )
+        analysis = analyze_trial(TrialRecord.from_json(record), scenario)
+        fits, errors = analysis.fits.values(), analysis.target_errors
+        desk.study.add_trial(record, fits, errors, analysis.score)
+        desk.study.set_truth(record["trialId"], 0.2 * number, [0.0] * 16)
+        return desk.study.trial(record["trialId"])
+
+    return add
+
+
+def test_a_new_trainee_is_chosen_and_everyone_is_told(desk):
+    told = []
+    desk.changed.connect(lambda: told.append(desk.chosen))
+    assert desk.create("", consent=True).pseudonym == "T001"
+    assert desk.create(" Blue ", consent=False).pseudonym == "Blue"
+    assert (told, desk.chosen) == (["T001", "Blue"], "Blue")
+    with pytest.raises(InputError, match="taken"):
+        desk.create("Blue", consent=False)
+
+
+def test_an_archived_trainee_is_listed_only_when_asked_for(desk):
+    desk.create("a", consent=False)
+    desk.setArchived(True)
+    assert desk.trainees() == ()
+    assert [t.pseudonym for t in desk.trainees(archived=True)] == ["a"]
+    desk.setConsent(True)
+    assert desk.chosenTrainee().consent
+
+
+def test_a_deleted_trainee_is_gone_from_study_and_journals(desk, add_trial, tmp_path):
+    add_trial(1, trainee="gone")
+    desk.choose("gone")
+    (tmp_path / "journals").mkdir()
+    erased = desk.delete()
+    assert (erased.trials, erased.journals) == (1, 0)
+    assert (desk.chosen, desk.history(), desk.chosenTrainee()) == ("", (), None)
+
+
+def test_a_trainee_that_another_slicer_has_deleted_is_chosen_no_more(desk, tmp_path):
+    desk.create("a", consent=False)
+    with Study.open(tmp_path / "study.db") as other:
+        other.delete_trainee("a")
+    assert desk.chosenTrainee() is None
+    assert desk.history() == ()
+
+
+def test_one_trainee_is_exported_as_json_and_everyone_as_a_table(desk, add_trial, tmp_path):
+    add_trial(1, trainee="a")
+    add_trial(2, trainee="b")
+    desk.choose("a")
+    assert desk.export(tmp_path / "a.json") == 1
+    assert json.loads((tmp_path / "a.json").read_text())["trainee"]["pseudonym"] == "a"
+    assert desk.exportHistory(tmp_path / "a.csv") == 1
+    assert desk.exportHistory(tmp_path / "all.csv", everybody=True) == 2
+
+
+def test_the_history_is_a_table_and_two_learning_curves(scene, desk, add_trial):
+    trials = [add_trial(number, trainee="a") for number in (1, 2, 3)]
+    chart = showLearningCurve(scene, "a", trials)
+    assert showLearningCurve(scene, "a", trials) is chart
+    assert chart.GetNumberOfPlotSeriesNodes() == 2
+    table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
+    scores = slicer.util.arrayFromTableColumn(table, "score")
+    assert scores.tolist() == [trial.score.score for trial in trials]
+    for index in range(2):
+        series = chart.GetNthPlotSeriesNode(index)
+        assert series.GetTableNodeID() == table.GetID()
+        assert table.GetColumnIndex(series.GetYColumnName()) >= 0
+
+
+def test_a_trial_without_results_has_empty_cells(scene, desk, make_record):
+    desk.study.add_trial(make_record(str(uuid.UUID(int=1))))
+    table = showHistory(scene, "T-001", desk.study.history("T-001"))
+    assert table.GetCellText(0, table.GetColumnIndex("score")) == "nan"
+
+
+def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(desk, add_trial):
+    trial = add_trial(1)
+    rows = {row.title: row for row in scoreRows(trial, COHORT)}
+    assert rows["Score"].value == trial.score.score
+    assert rows["… its part for time"].value == 100 * trial.score.time_desirability
+    assert rows["CTPS as published"].note == CTPS_WARNING
+    assert rows["CTPS by equation 3"].value == rows["CTPS as published"].value / 2
+    assert rows["True TRE"].text == "0.20 mm"
+    assert "CTPS as published" not in {row.title for row in scoreRows(trial, [])}
+
+
+def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(desk, add_trial):
+    add_trial(1, trainee="a", completionTimeS=120.0)
+    add_trial(2, trainee="b", completionTimeS=60.0)
+    add_trial(3, trainee="b", task="task-2", completionTimeS=10.0)
+    trial = add_trial(4, trainee="a", completionTimeS=90.0)
+    found = {(s.group, s.title): s for s in standings(desk.study, trial, COHORT)}
+    own = found["own trials", "Completion time"]
+    assert (own.count, own.median, own.betterThan) == (1, 120.0, 1.0)
+    others = found["other trainees", "Completion time"]
+    assert (others.count, others.median, others.betterThan) == (1, 60.0, 0.0)
+    reference = found["reference group", "Completion time"]
+    assert (reference.count, reference.median, reference.betterThan) == (4, 95.0, 0.5)
+
+
+def test_motion_metrics_come_with_their_definitions(desk, add_trial):
+    trial = add_trial(1, motion={"path_length_mm": 2500.0, "sparc": -1.9})
+    rows = motionRows(trial)
+    assert [row.title for row in rows] == ["Path length", "Smoothness, SPARC"]
+    assert rows[0].text == "2500.00 mm"
+    assert all(len(row.note) > 20 for row in rows)
+
+
+def test_score_comparison_and_motion_become_tables_of_the_scene(scene, desk, add_trial):
+    trial = add_trial(1, motion={"sparc": -1.9})
+    showScore(scene, scoreRows(trial, COHORT))
+    showStandings(scene, standings(desk.study, trial, COHORT))
+    showMotion(scene, motionRows(trial))
+    for role, rows in ((Role.SCORE, 9), (Role.COMPARISON, 2), (Role.MOTION, 1)):
+        assert findNode(scene, "vtkMRMLTableNode", role).GetNumberOfRows() == rows
