@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,12 +16,20 @@ from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
 from rastrainer.head_pose import Perturbation, perturbed_pose
 from rastrainer.protocol import WORLD_LIMIT_MM
+from rastrainer.scenario_plan import (
+    PlannedTarget,
+    PlannedTrajectory,
+    read_targets,
+    read_trajectory,
+)
 from rastrainer.tasks import LIMIT_MM, Task, is_task_name, read_task
 
 FILE_NAME = "scenario.json"
+PREVIEW_NAME = "preview.png"
 FORMAT_VERSION = 1
 CAMERAS = ("close-up", "far")
 MOST_TASKS = 20
+SKULL_KINDS = ("bone", "approximation")
 
 
 @dataclass(frozen=True)
@@ -84,6 +93,11 @@ class Scenario:
         perturbation: how far a trial's pose may be from it.
         tasks: in the order of their difficulty.
         cameras: by the names of the protocol, "close-up" (the default view) and "far".
+        furniture, provenance: see there.
+        skull_mesh: path of the skull's mesh, like the head's; None where there is none.
+        is_skull_approximate: whether it is only estimated from the skin, as it is of MRI.
+        targets: further points that are planned to be reached.
+        trajectory: the way that is planned into the head.
     """
 
     folder: Path
@@ -98,6 +112,16 @@ class Scenario:
     cameras: Mapping[str, Camera]
     furniture: Furniture
     provenance: Provenance
+    skull_mesh: Path | None = None
+    is_skull_approximate: bool = False
+    targets: tuple[PlannedTarget, ...] = ()
+    trajectory: PlannedTrajectory | None = None
+
+    @property
+    def preview(self) -> Path | None:
+        """The picture that lists show; None where the folder has none."""
+        path = self.folder / PREVIEW_NAME
+        return path if path.is_file() and not path.is_symlink() else None
 
     def task(self, name: str) -> Task:
         """Return the task of that name.
@@ -154,7 +178,18 @@ def _load(folder: Path) -> Scenario:
         cameras={name: _camera(fields.fields("cameras").fields(name)) for name in CAMERAS},
         furniture=_furniture(fields),
         provenance=_provenance(fields.fields("provenance")),
+        **_skull(fields),
+        targets=read_targets(fields),
+        trajectory=read_trajectory(fields),
     )
+
+
+def _skull(fields: Fields) -> dict[str, Any]:
+    if "skull" not in fields.names():
+        return {}
+    skull = fields.fields("skull")
+    kind = skull.one_of("kind", SKULL_KINDS)
+    return {"skull_mesh": skull.file("file"), "is_skull_approximate": kind == SKULL_KINDS[1]}
 
 
 def _tasks(fields: Fields) -> tuple[Task, ...]:
