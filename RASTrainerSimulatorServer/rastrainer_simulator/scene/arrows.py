@@ -12,7 +12,9 @@ from rastrainer_simulator.scene.skin import Shape, Skin
 STEP = 2.0
 """The ribbon is laid onto the skin anew after every 2 mm."""
 GAP = 1.3
-LONGEST, SHORTEST = 26.0, 6.0
+LENGTHS = (26.0, 16.0, 10.0)
+"""How long arrows are at most; shorter where else numbers would find no room."""
+SHORTEST = 6.0
 SHAFT_WIDTH = 2.0
 HEAD_WIDTH, HEAD_LENGTH = 5.4, 5.5
 APART = 1.5
@@ -57,8 +59,8 @@ class Arrow:
         return _at(self.way, along), self.half_width(along)
 
 
-def arrows(skin: Skin, points: np.ndarray) -> list[Arrow]:
-    """Return the arrows between consecutive `points` (n, 3) float on the skin.
+def arrows(skin: Skin, points: np.ndarray, longest: float = LENGTHS[0]) -> list[Arrow]:
+    """Return the arrows between consecutive `points` (n, 3) float on the skin, to `longest` mm.
 
     They keep away from all fiducials and from each other, and are shortened where need be.
     """
@@ -66,7 +68,7 @@ def arrows(skin: Skin, points: np.ndarray) -> list[Arrow]:
     for index in range(len(points) - 1):
         start, goal = points[index], points[index + 1]
         others = np.delete(points, (index, index + 1), axis=0)
-        made.append(_between(skin, start, goal, others))
+        made.append(_between(skin, start, goal, others, longest))
     return _kept_apart(made)
 
 
@@ -78,19 +80,21 @@ def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
     along = np.concatenate([shaft, head])
     widths = np.concatenate([np.full(len(shaft), SHAFT_WIDTH / 2.0), arrow.half_width(head)])
     middle, outward = _at(arrow.way, along), _unit(_at(arrow.outward, along))
-    side = _unit(np.cross(outward, _tangents(arrow.way, along)))
+    to_left = _unit(np.cross(outward, _tangents(arrow.way, along)))
     rows = []
-    for place, normal, right, width in zip(middle, outward, side, widths, strict=True):
-        rows.append([skin.onto(place + width * share * right, normal) for share in _ACROSS])
+    for place, normal, left, width in zip(middle, outward, to_left, widths, strict=True):
+        rows.append([skin.onto(place + width * share * left, normal) for share in _ACROSS])
     points = np.array(rows).reshape(-1, 3)
     return Shape(points, _grid(len(along), len(_ACROSS)), np.repeat(outward, len(_ACROSS), axis=0))
 
 
-def _between(skin: Skin, start: np.ndarray, goal: np.ndarray, others: np.ndarray) -> Arrow:
+def _between(
+    skin: Skin, start: np.ndarray, goal: np.ndarray, others: np.ndarray, longest: float
+) -> Arrow:
     """Return the arrow from one fiducial toward the next, around any of the `others` (k, 3)."""
     best: Arrow | None = None
     for turn in TURNS:
-        arrow, is_whole = _turned(skin, start, goal, others, turn)
+        arrow, is_whole = _turned(skin, start, goal, others, turn, longest)
         if is_whole:
             return arrow
         if best is None or arrow.end > best.end + STEP:
@@ -99,7 +103,12 @@ def _between(skin: Skin, start: np.ndarray, goal: np.ndarray, others: np.ndarray
 
 
 def _turned(
-    skin: Skin, start: np.ndarray, goal: np.ndarray, others: np.ndarray, turn: float
+    skin: Skin,
+    start: np.ndarray,
+    goal: np.ndarray,
+    others: np.ndarray,
+    turn: float,
+    longest: float,
 ) -> tuple[Arrow, bool]:
     """Return the arrow that sets out at `turn` (rad) from the straight way, and if it is whole.
 
@@ -107,8 +116,8 @@ def _turned(
     lead to.
     """
     first = RIM_RADIUS + GAP
-    way, outward = _walk(skin, start, goal, turn, first + LONGEST)
-    along = np.arange(first, min(first + LONGEST, STEP * (len(way) - 1)), 0.5)
+    way, outward = _walk(skin, start, goal, turn, first + longest)
+    along = np.arange(first, min(first + longest, STEP * (len(way) - 1)), 0.5)
     places = _at(way, along)[:, None]
     is_foreign = (np.linalg.norm(places - others, axis=2) < RIM_RADIUS + BERTH).any(axis=1)
     is_over = is_foreign | (np.linalg.norm(places[:, 0] - goal, axis=1) < RIM_RADIUS + GAP)
@@ -185,8 +194,8 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 
 
 def _grid(rows: int, columns: int) -> np.ndarray:
-    """Return the triangles (m, 3) of a grid of points, counterclockwise seen from outside."""
+    """Return the triangles (m, 3) of rows that follow each other, each from right to left."""
     corner = (columns * np.arange(rows - 1)[:, None] + np.arange(columns - 1)).reshape(-1)
-    right, ahead = corner + 1, corner + columns
-    halves = [np.column_stack([corner, right, ahead]), np.column_stack([right, ahead + 1, ahead])]
+    left, ahead = corner + 1, corner + columns
+    halves = [np.column_stack([corner, ahead, left]), np.column_stack([left, ahead, ahead + 1])]
     return np.concatenate(halves)

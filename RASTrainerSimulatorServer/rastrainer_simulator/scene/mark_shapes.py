@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vtkmodules.vtkFiltersModeling import vtkAdaptiveSubdivisionFilter
 from vtkmodules.vtkFiltersSources import vtkDiskSource
@@ -43,8 +44,7 @@ def number(label: str) -> Flat:
     pieces.SetInputData(surface(upright, triangles))
     pieces.SetMaximumEdgeLength(LONGEST_EDGE)
     pieces.Update()
-    made = pieces.GetOutput()
-    return vtk_to_numpy(made.GetPoints().GetData())[:, :2].astype(float), triangles_of(made)
+    return _counterclockwise(pieces.GetOutput())
 
 
 def _disk(inner: float, outer: float) -> Flat:
@@ -60,5 +60,14 @@ def _flat(source: vtkDiskSource | vtkVectorText) -> Flat:
     triangles = vtkTriangleFilter()
     triangles.SetInputConnection(source.GetOutputPort())
     triangles.Update()
-    made = triangles.GetOutput()
-    return vtk_to_numpy(made.GetPoints().GetData())[:, :2].astype(float), triangles_of(made)
+    return _counterclockwise(triangles.GetOutput())
+
+
+def _counterclockwise(made: vtkPolyData) -> Flat:
+    """Return VTK's flat shape with all triangles turned to the viewer: text has some of each."""
+    points = vtk_to_numpy(made.GetPoints().GetData())[:, :2].astype(float)
+    triangles = triangles_of(made)
+    (ax, ay), (bx, by) = ((points[triangles[:, i]] - points[triangles[:, 0]]).T for i in (1, 2))
+    is_turned_away = ax * by - ay * bx < 0.0
+    triangles[is_turned_away] = triangles[is_turned_away][:, ::-1]
+    return points, triangles

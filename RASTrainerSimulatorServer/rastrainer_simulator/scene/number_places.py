@@ -13,7 +13,7 @@ from rastrainer_simulator.scene.skin import Skin
 
 DISTANCES = (11.5, 13.0, 15.0, 17.5, 20.5, 24.0)
 ANGLES = np.radians(np.arange(0, 360, 20))
-MARGINS = (2.5, 1.5, 0.8)
+MARGINS = (2.5, 1.5)
 """How far a number keeps from everything else, mm: the most that is possible for all."""
 NUMBERS_APART = 3.0
 """Two numbers keep so many times as far from each other: 5 beside 2 must not read as 52."""
@@ -44,25 +44,28 @@ class Place:
 
 def number_places(
     skin: Skin, points: np.ndarray, sizes: Sequence[np.ndarray], arrows: Sequence[Arrow]
-) -> list[np.ndarray]:
-    """Return the middle (3,) of each number.
+) -> tuple[list[np.ndarray], bool]:
+    """Return the middle (3,) of each number, and whether all keep at least the least margin.
 
     `points` (n, 3) float are the fiducials; `sizes` the width and height (2,) of each number, mm.
-    Numbers that cannot all keep the least margin stand where each has the most room.
+    Numbers that cannot all keep the margin stand where each has the most room.
     """
     samples = [arrow.samples() for arrow in arrows]
-    lines = np.concatenate([np.empty((0, 3)), *(place for place, _ in samples)])
-    widths = np.concatenate([np.empty(0), *(width for _, width in samples)])
-    obstacles = np.concatenate([points, lines])
-    radii = np.concatenate([np.full(len(points), RIM_RADIUS), widths])
+    obstacles = np.concatenate([points, *(places for places, _ in samples)])
+    radii = np.concatenate([np.full(len(points), RIM_RADIUS), *(widths for _, widths in samples)])
     choices = [
         _choices(skin, points, index, size, obstacles, radii) for index, size in enumerate(sizes)
     ]
     for margin in MARGINS:
         chosen = _chosen(choices, margin)
         if chosen is not None:
-            return [place.middle for place in chosen]
-    return [max(places, key=lambda place: place.clearance).middle for places in choices]
+            return [place.middle for place in chosen], True
+    return [_roomiest(places, point) for places, point in zip(choices, points, strict=True)], False
+
+
+def _roomiest(places: list[Place], point: np.ndarray) -> np.ndarray:
+    """Return the middle of the place with the most room; the fiducial itself if there is none."""
+    return max(places, key=lambda place: place.clearance).middle if places else point
 
 
 def _choices(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.head_mesh import HeadMesh
-from rastrainer_simulator.scene.arrows import arrow_shape, arrows
+from rastrainer_simulator.scene.arrows import LENGTHS, arrow_shape, arrows
 from rastrainer_simulator.scene.mark_shapes import dot, number, rim
 from rastrainer_simulator.scene.number_places import number_places
 from rastrainer_simulator.scene.skin import Shape, Skin
@@ -32,9 +32,12 @@ def skin_marks(head: HeadMesh, points: np.ndarray, labels: Sequence[str]) -> lis
     """Return the marks of fiducials at `points` (n, 3) float, RAS mm, in the order to touch."""
     skin = Skin(head)
     numbers = [number(label) for label in labels]
-    ways = arrows(skin, points)
     sizes = [np.ptp(flat, axis=0) for flat, _ in numbers]
-    places = number_places(skin, points, sizes, ways)
+    for longest in LENGTHS:
+        ways = arrows(skin, points, longest)
+        places, has_room = number_places(skin, points, sizes, ways)
+        if has_room:
+            break
     ribbons = [
         _lifted(arrow_shape(skin, way), ARROW_LIFT) if way.is_drawn else None for way in ways
     ]

@@ -1,0 +1,177 @@
+import io
+
+import numpy as np
+import pytest
+import trimesh
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the importer makes actors)
+from vtkmodules.vtkIOImport import vtkGLTFImporter
+
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.meshes import load_meshes
+from rastrainer_simulator.scene.materials import Material
+from rastrainer_simulator.scene.scene_glb import scene_glb
+from Testing.simulator.scene.glb_reader import Glb
+
+MOVED = [*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand"]
+STANDING = ["table", "floor", "room"]
+
+
+@pytest.fixture(scope="module")
+def content(setup) -> bytes:
+    return scene_glb(setup.scenario, setup.robot, setup.scenario.task("task-3"))
+
+
+@pytest.fixture(scope="module")
+def glb(content) -> Glb:
+    return Glb(content)
+
+
+def test_it_is_small_enough_for_a_headset(content, glb):
+    primitives = glb.primitives("world")
+    assert len(content) <= 5_000_000
+    assert sum(len(triangles) for _, _, triangles, _ in primitives) <= 150_000
+    assert len(primitives) <= 100, "each is a draw call"
+
+
+def test_what_the_stream_moves_hangs_at_the_root_which_turns_z_up_into_y_up(glb):
+    assert glb.children("world") == [*MOVED, *STANDING]
+    assert glb.parent("world") is None
+    turned = glb.matrix("world")
+    assert turned @ [0, 0, 1, 1] == pytest.approx([0, 1, 0, 1]), "up"
+    assert turned @ [1, 0, 0, 1] == pytest.approx([1, 0, 0, 1]), "forward"
+    assert np.linalg.det(turned[:3, :3]) == pytest.approx(1.0)
+    for name in glb.children("world"):
+        assert glb.matrix(name) == pytest.approx(np.eye(4))
+
+
+def test_the_head_carries_skin_and_all_marks_and_the_last_fiducial_no_arrow(glb):
+    labels = [str(number) for number in range(1, 16)]
+    marks = {f"{kind}_{label}" for kind in ("fiducial", "number", "arrow") for label in labels}
+    assert set(glb.children("head")) == {"skin", "rims"} | marks - {"arrow_15"}
+    assert glb.children("tool")[0] == "tip_marker" or "tip_marker" in glb.children("tool")
+
+
+def test_without_a_task_the_head_is_bare(setup):
+    bare = Glb(scene_glb(setup.scenario, setup.robot, None))
+    assert bare.children("head") == ["skin"]
+
+
+def test_the_skin_is_the_scenarios_head_in_meters(glb, scenario):
+    head = read_head_mesh(scenario.head_mesh)
+    assert glb.vertices("skin") == pytest.approx(head.vertices / 1000, abs=1e-6)
+
+
+def test_fiducials_lie_around_their_places_on_the_skin(glb, scenario):
+    task = scenario.task("task-3")
+    for label, place in zip(task.labels, task.fiducials, strict=True):
+        disk = glb.vertices(f"fiducial_{label}") * 1000
+        assert disk.mean(axis=0) == pytest.approx(place, abs=1.5)
+
+
+def test_the_links_stand_where_the_robots_meshes_are(glb, setup):
+    """Posed by the stream, each node covers what the URDF's meshes cover."""
+    links = make_kinematics(setup.robot).links(np.array(setup.robot.home))
+    expected: dict[str, list[np.ndarray]] = {}
+    poses = {}
+    for link in setup.robot.links:
+        name = f"link_{link.joint}" if link.name[-1].isdigit() else "tool"
+        poses[name] = links[setup.robot.tip.name] if name == "tool" else links[link.name]
+        for mesh, _ in load_meshes(setup.robot).get(link.name, ()):
+            vertices = mesh.vertices @ links[link.name][:3, :3].T + links[link.name][:3, 3]
+            expected.setdefault(name, []).append(vertices)
+    assert set(expected) == {*MOVED} - {"head", "stand"}
+    for name, parts in expected.items():
+        posed = glb.vertices(name) @ poses[name][:3, :3].T + poses[name][:3, 3]
+        whole = np.concatenate(parts)
+        assert posed.min(axis=0) == pytest.approx(whole.min(axis=0), abs=1e-5)
+        assert posed.max(axis=0) == pytest.approx(whole.max(axis=0), abs=1e-5)
+
+
+def test_the_tools_tip_is_its_origin(glb):
+    marker = glb.vertices("tip_marker")
+    assert np.linalg.norm(marker, axis=1).min() < 0.002
+    assert marker[:, 2].max() < 0.001, "nothing of the tool is beyond its tip"
+
+
+def test_the_table_top_is_the_plane_on_which_the_robot_stands(glb, scenario):
+    center, size = scenario.furniture.table_center / 1000, scenario.furniture.table_size / 1000
+    table = glb.vertices("table")
+    assert table[:, :2].min(axis=0) == pytest.approx(center - size[:2] / 2, abs=1e-6)
+    assert table[:, :2].max(axis=0) == pytest.approx(center + size[:2] / 2, abs=1e-6)
+    assert np.any(np.isclose(table[:, 2], 0.0, atol=1e-6))
+    assert glb.vertices("link_0")[:, 2].min() == pytest.approx(0.0, abs=1e-3)
+    floor = glb.vertices("floor")[:, 2].max()
+    assert table[:, 2].min() == pytest.approx(floor)
+
+
+def test_the_stand_reaches_from_the_table_to_the_head_in_every_trial(glb, scenario):
+    stand = glb.vertices("stand")
+    head = read_head_mesh(scenario.head_mesh)
+    assert stand[:, 2].max() <= 0.0
+    for seed in range(50):
+        pose = scenario.perturbed_head_to_world(seed)
+        top = (pose[:3, :3] @ head.base + pose[:3, 3])[2] / 1000
+        assert -0.04 < top + stand[:, 2].min() < 0.0, "its end is hidden in the table top"
+
+
+def test_nothing_of_the_room_is_within_reach_of_the_robot(glb, setup):
+    reach = sum(np.linalg.norm(joint.origin[:3, 3]) for joint in setup.robot.joints)
+    reach += np.linalg.norm(setup.robot.tip.offset[:3, 3])
+    room = glb.vertices("room")
+    shoulder = np.array([0.0, 0.0, 0.34])
+    assert np.linalg.norm(room - shoulder, axis=1).min() > reach - 0.34
+
+
+def test_triangles_turn_outward_as_their_normals_say(glb):
+    for vertices, normals, triangles, _ in glb.primitives("world"):
+        assert np.isfinite(vertices).all()
+        assert np.linalg.norm(normals, axis=1) == pytest.approx(1.0, abs=1e-3)
+        a, b, c = (vertices[triangles[:, corner]].astype(float) for corner in range(3))
+        facing = np.cross(b - a, c - a)
+        size = np.linalg.norm(facing, axis=1)
+        meant = normals[triangles].sum(axis=1)
+        agreeing = np.einsum("ij,ij->i", facing, meant) > 0
+        assert size[agreeing].sum() > 0.999 * size.sum(), "but for slivers"
+
+
+def test_only_marks_and_lights_glow(glb):
+    def glows(name: str) -> bool:
+        materials = [material for *_, material in glb.primitives(name)]
+        return all(any(material.get("emissiveFactor", [0])) for material in materials)
+
+    assert glows("number_7")
+    assert glows("arrow_7")
+    assert glows("fiducial_7")
+    assert glows("tip_marker")
+    assert not glows("skin")
+    assert not glows("table")
+
+
+def test_colors_are_light_as_gltf_wants_it():
+    """sRGB 0.5 is 21.4 % of white's light (IEC 61966-2-1)."""
+    linear = Material("gray", (0.5, 0.0, 1.0)).linear_color
+    assert linear == pytest.approx((0.21404, 0.0, 1.0), abs=1e-5)
+
+
+def test_trimesh_reads_it(content, glb):
+    scene = trimesh.load(io.BytesIO(content), file_type="glb")
+    triangles = sum(len(mesh.faces) for mesh in scene.geometry.values())
+    assert triangles == sum(len(part[2]) for part in glb.primitives("world"))
+    room = scene.bounds[1] - scene.bounds[0]
+    assert np.all(room < 8.0), "meters"
+
+
+def test_vtk_reads_it(content, glb, tmp_path):
+    path = tmp_path / "scene.glb"
+    path.write_bytes(content)
+    importer = vtkGLTFImporter()
+    importer.SetFileName(str(path))
+    importer.Update()
+    actors = importer.GetRenderer().GetActors()
+    assert actors.GetNumberOfItems() == len(glb.primitives("world"))
+    count = sum(
+        actors.GetItemAsObject(index).GetMapper().GetInput().GetNumberOfCells()
+        for index in range(actors.GetNumberOfItems())
+    )
+    assert count == sum(len(part[2]) for part in glb.primitives("world"))
