@@ -220,6 +220,19 @@ class Host:
             self._usable(name).click()
         self.process_events()
 
+    def place(self, *position: float) -> None:
+        """Click in a view, RAS mm, while Slicer's mouse places points of a markup."""
+        interaction = self.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
+        selection = self.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
+        if interaction.GetCurrentInteractionMode() != interaction.Place:
+            raise AssertionError("The mouse places no points now.")
+        node = self.scene.GetNodeByID(selection.GetActivePlaceNodeID())
+        node.AddControlPoint(*position)
+        isLine = node.IsA("vtkMRMLMarkupsLineNode") and node.GetNumberOfControlPoints() < 2
+        if not interaction.GetPlaceModePersistence() and not isLine:
+            interaction.SetCurrentInteractionMode(interaction.ViewTransform)
+        self.process_events()
+
     def answer(self, part: str, answer: Any) -> None:
         """Answer the next dialog that says `part`: a button's name, a path, a text, a function."""
         ANSWERS.prepare(part, answer)

@@ -1,0 +1,93 @@
+"""A trainee who plays the trial that the instructor has started, over a link of their own."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import RASTrainerError
+from rastrainer.igtl.client import Client
+from rastrainer.scenario import load_scenario
+from rastrainer.scripted_trial import say_hello
+from rastrainer_simulator.assets import asset_path
+
+SPEED_MM_S = 400
+NEAR_ENOUGH_MM = 1.5
+ABOVE_MM = 40.0
+
+
+class Player:
+    """Touches the fiducials of a running trial in a thread of its own.
+
+    The journal tells where the head stands, which a person sees on the screen.
+    """
+
+    def __init__(self, port: int, records: Path) -> None:
+        self._port = port
+        self._records = records
+        self._error: Exception | None = None
+        self._thread: threading.Thread | None = None
+
+    def touch(self, first: int, last: int) -> None:
+        """Begin to touch the points numbered `first` to `last`."""
+        self._begin(lambda client: self._touch(client, first, last))
+
+    def register(self) -> None:
+        """Begin to register the touched points."""
+        self._begin(lambda client: _do(client, "Register"))
+
+    @property
+    def is_done(self) -> bool:
+        """Whether what was begun is over; what went wrong is raised here."""
+        if self._error is not None:
+            raise self._error
+        return self._thread is None or not self._thread.is_alive()
+
+    def _begin(self, play) -> None:
+        def run() -> None:
+            try:
+                with Client(port=self._port) as client:
+                    say_hello(client, "player")
+                    play(client)
+            except (RASTrainerError, AssertionError) as error:
+                self._error = error
+
+        self._thread = threading.Thread(target=run, daemon=True)
+        self._thread.start()
+
+    def _touch(self, client: Client, first: int, last: int) -> None:
+        for above, fiducial in list(self._places())[first - 1 : last]:
+            for place in (above, fiducial):
+                _move_to(client, place)
+            _do(client, "Capture")
+            _move_to(client, above)
+
+    def _places(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        journal = max(self._records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
+        with journal.open(encoding="utf-8") as lines:
+            header = json.loads(lines.readline())
+        scenario = load_scenario(asset_path("scenarios", "colin27"))
+        head_to_world = scenario.perturbed_head_to_world(header["seed"])
+        fiducials = scenario.task(header["task"]).fiducials
+        center = transforms.apply(head_to_world, scenario.target_position)
+        for fiducial in transforms.apply(head_to_world, fiducials):
+            outward = (fiducial - center) / np.linalg.norm(fiducial - center)
+            yield fiducial + ABOVE_MM * outward, fiducial
+
+
+def _do(client: Client, name: str, **arguments: object) -> None:
+    reply = client.send_command(name, arguments, timeout=20)
+    assert reply.ok, f"{name}: {reply.error}"
+
+
+def _move_to(client: Client, place: np.ndarray) -> None:
+    def is_there(tip) -> bool:
+        return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - place) < NEAR_ENOUGH_MM
+
+    _do(client, "MoveTipTo", positionMm=place.tolist(), speedMmS=SPEED_MM_S)
+    client.wait_for("ToolTipToWorld", is_there, 20)

@@ -1,0 +1,204 @@
+"""A whole session in the module, by buttons alone, with the real simulator's process."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+from pathlib import Path
+
+from Testing.end_to_end.module.installed_simulator import PACKAGE, write_program, write_wheel
+from Testing.end_to_end.module.player import Player
+from Testing.slicer.host.host import Host
+
+TRAINEE = "T-007"
+PLAN_MM = (10.0, 20.0, 30.0)
+FAST = ("--speed", "20", "--no-views", "--no-gamepad")
+
+
+class Story:
+    """The steps of a session, in their order; each presses buttons and waits for what they do."""
+
+    def __init__(self, host: Host, folder: Path) -> None:
+        self.host = host
+        self.folder = folder
+        self.records = folder / "records"
+        self._pid_file = folder / "simulator.pid"
+        self._options = [*FAST, "--records", str(self.records)]
+        self.player: Player | None = None
+        self.port = 0
+
+    def set_up(self) -> None:
+        host = self.host
+        wheels = write_wheel(self.folder / "wheels", self._pid_file, self._options)
+        host.open()
+        host.find("setupGroupBox").collapsed = False
+        host.type("packageLineEdit", PACKAGE)
+        host.type("wheelsPathLineEdit", str(wheels))
+        host.press("setupButton")
+        host.wait_until(lambda: host.find("startSimulatorButton").enabled, "it is set up", 60)
+        host.find("setupGroupBox").collapsed = True
+
+    def choose_own_program(self) -> None:
+        """Take a simulator that is installed elsewhere; quicker than to set it up."""
+        host = self.host
+        program = write_program(self.folder / "rastrainer", self._pid_file, self._options)
+        host.open()
+        host.find("setupGroupBox").collapsed = False
+        host.type("programPathLineEdit", str(program))
+        host.find("setupGroupBox").collapsed = True
+
+    def start_simulator(self) -> None:
+        host = self.host
+        if self.port == 0:
+            self.port = free_port()
+            host.type("portSpinBox", str(self.port))
+        host.press("startSimulatorButton")
+        self.wait_until_connected()
+
+    def create_trainee(self) -> None:
+        host = self.host
+        host.type("pseudonymLineEdit", TRAINEE)
+        host.check("newConsentCheckBox")
+        host.press("createTraineeButton")
+        assert TRAINEE in host.find("traineeComboBox").currentText
+
+    def show_scenario(self) -> None:
+        host = self.host
+        host.choose("taskComboBox", "Task 1")
+        host.press("showScenarioButton")
+        host.check("robotCheckBox")
+        assert host.scene.GetFirstNodeByName("Robot link 7") is not None
+
+    def start_task(self) -> None:
+        host = self.host
+        host.press("startTaskButton")
+        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial runs")
+        self.player = Player(self.port, self.records)
+
+    def touch_some(self) -> None:
+        self._touch(1, 6)
+
+    def pause_and_resume(self) -> None:
+        host = self.host
+        host.press("pauseButton")
+        host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial is paused")
+        host.press("pauseButton")
+        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial goes on")
+
+    def touch_the_others(self) -> None:
+        self._touch(7, 15)
+
+    def register(self) -> None:
+        host = self.host
+        self.player.register()
+        host.wait_until(lambda: self.player.is_done, "the trainee registers")
+        host.wait_until(lambda: host.find("historyTable").rowCount == 1, "the history grows")
+        host.wait_until(lambda: host.find("scoreTable").rowCount > 0, "the trial is scored")
+
+    def look_at_registration(self) -> None:
+        host = self.host
+        unfold(host, "registrationCollapsibleButton")
+        host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "15 residuals")
+        host.choose("residualsTable", 3)
+        host.press("excludeButton")
+        host.wait_until(lambda: host.find("residualsTable").rowCount == 14, "one is left out")
+        host.press("undoButton")
+        host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "it is back")
+        host.choose("kindComboBox", "Affine")
+        host.choose("kindComboBox", "Rigid")
+        host.check("headColoredCheckBox")
+
+    def plan_a_target(self) -> None:
+        host = self.host
+        unfold(host, "planCollapsibleButton")
+        host.press("placeTargetButton")
+        host.place(*PLAN_MM)
+        host.wait_until(lambda: host.find("sendPlanButton").enabled, "the plan can be sent")
+        host.press("sendPlanButton")
+        host.wait_until(lambda: "shows the plan" in host.text("reachableText"), "it is shown")
+
+    def look_at_score(self) -> None:
+        host = self.host
+        unfold(host, "scoreCollapsibleButton")
+        host.press("showTablesButton")
+        host.press("learningCurveButton")
+        assert host.scene.GetFirstNodeByClass("vtkMRMLPlotChartNode") is not None
+
+    def export(self) -> None:
+        host = self.host
+        for button, part, name in (
+            ("exportTraineeButton", "Export the trainee", "trainee.json"),
+            ("exportHistoryButton", "Export the history", "history.csv"),
+            ("exportScoresButton", "Export all trials", "trials.csv"),
+        ):
+            host.answer(part, self.folder / name)
+            host.press(button)
+            assert TRAINEE in (self.folder / name).read_text(encoding="utf-8")
+
+    def delete_trainee(self) -> None:
+        host = self.host
+        host.answer("cannot be undone", "No")
+        host.press("deleteTraineeButton")
+        assert TRAINEE in host.find("traineeComboBox").currentText
+        host.answer("cannot be undone", "Yes")
+        host.press("deleteTraineeButton")
+        assert TRAINEE not in host.find("traineeComboBox").currentText
+        assert host.find("historyTable").rowCount == 0
+
+    def stop_simulator(self) -> None:
+        host = self.host
+        host.press("stopSimulatorButton")
+        assert host.text("stateText") == "Not connected."
+
+    STEPS = (
+        set_up,
+        start_simulator,
+        create_trainee,
+        show_scenario,
+        start_task,
+        touch_some,
+        pause_and_resume,
+        touch_the_others,
+        register,
+        look_at_registration,
+        plan_a_target,
+        look_at_score,
+        export,
+        delete_trainee,
+        stop_simulator,
+    )
+
+    def wait_until_connected(self) -> None:
+        host = self.host
+
+        def is_connected() -> bool:
+            said = host.find("simulatorLogEdit").plainText
+            assert "ended by itself" not in host.text("programText"), said
+            return host.text("stateText").startswith("Connected")
+
+        host.wait_until(is_connected, "it is connected", 60)
+
+    def kill_simulator(self) -> None:
+        """End the simulator's process as a crash would; the module notices it."""
+        host = self.host
+        os.kill(int(self._pid_file.read_text()), signal.SIGKILL)
+        host.wait_until(lambda: "ended by itself" in host.text("programText"), "the end is told")
+
+    def _touch(self, first: int, last: int) -> None:
+        host = self.host
+        self.player.touch(first, last)
+        host.wait_until(lambda: self.player.is_done, f"points {first} to {last} are touched", 60)
+        host.wait_until(lambda: host.find("pointsProgressBar").value == last, "they appear")
+
+
+def unfold(host: Host, name: str) -> None:
+    """Unfold a section."""
+    host.find(name).collapsed = False
+    host.process_events()
+
+
+def free_port() -> int:
+    """Return a port on which nobody listens."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return listener.getsockname()[1]
