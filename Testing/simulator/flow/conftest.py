@@ -10,11 +10,13 @@ from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.flow.desk import Desk
 from rastrainer_simulator.flow.preferences import Preferences
+from rastrainer_simulator.flow.running_desk import RunningDesk
 from rastrainer_simulator.flow.session import Surroundings
 from rastrainer_simulator.operator_input import Command, OperatorInput
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer
-from Testing.simulator.flow.trainee import Keys, Trainee
+from Testing.sdl_virtual_gamepad import VirtualGamepad
+from Testing.simulator.flow.trainee import Keys, Pad, Trainee
 
 
 class Outside:
@@ -44,6 +46,13 @@ def shared(setup):
     return Simulation(setup, 3)
 
 
+def put_back(simulation):
+    """End whatever trial another test has left."""
+    start = Command("StartTask", {"task": "task-1", "trainee": "nobody", "mode": "desktop"})
+    commands = (Command("Abort"), start, Command("Abort"))
+    simulation.step(0.004, OperatorInput(commands=commands))
+
+
 @pytest.fixture
 def outside(tmp_path):
     return Outside(tmp_path)
@@ -51,7 +60,7 @@ def outside(tmp_path):
 
 @pytest.fixture
 def loop(shared, tmp_path):
-    shared.step(0.004, OperatorInput(commands=(Command("Abort"),)))
+    put_back(shared)
     with ControlLoop(shared, tmp_path / "records", speed=None) as loop:
         yield loop
 
@@ -68,4 +77,32 @@ def trainee(loop, desk):
     """Return a trainee with a keyboard, at the start menu."""
     trainee = Trainee(loop, desk, Keys)
     trainee.until_menu("start")
-    return trainee
+    yield trainee
+    trainee.close()
+
+
+@pytest.fixture
+def running(loop, outside):
+    """Return a desk with SDL's gamepads."""
+    running = RunningDesk(loop, outside.surroundings, has_gamepad=True)
+    yield running
+    running.close()
+
+
+@pytest.fixture
+def felt():
+    """Return the strengths of the motors at each of SDL's calls."""
+    return []
+
+
+@pytest.fixture
+def pilot(loop, running, felt):
+    """Return a trainee with a gamepad, at the start menu."""
+    gamepad = VirtualGamepad(lambda *strengths: felt.append(strengths))
+    gamepad.plug_in()
+    pilot = Trainee(loop, running.desk, lambda it: Pad(it, gamepad), running.advance)
+    pilot.until_menu("start")
+    yield pilot
+    pilot.close()
+    if gamepad.is_plugged_in:
+        gamepad.plug_out()

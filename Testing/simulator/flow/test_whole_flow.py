@@ -1,35 +1,35 @@
-"""From the start menu to the result, as the paper's figure 4 has it."""
+"""From the start menu to the result, as the paper's figure 4 has it, against a real control loop."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from rastrainer.protocol import CommandName, Phase, check_arguments
-
-
-def score(loop, trial_id):
-    arguments = {
-        "trialId": trial_id,
-        "matrix": np.eye(4).ravel().tolist(),
-        "freMm": 1.25,
-        "expectedTreMm": 1.5,
-        "score": 81.0,
-        "details": {"ctps": 62.5, "warnings": []},
-    }
-    loop.submit("TrialScored", check_arguments("TrialScored", arguments), "Slicer").result(10)
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer_simulator.record.replay import replay
 
 
-def test_the_whole_flow_goes_by_keys_alone(trainee, outside):
-    keys = trainee.hands
+SCORE = {
+    "matrix": np.eye(4).ravel().tolist(),
+    "freMm": 1.25,
+    "expectedTreMm": 1.5,
+    "score": 81.0,
+    "details": {"ctps": 62.5, "warnings": ["Point 3 is far off."]},
+}
+
+
+def go_to_the_experiment_menu(trainee):
     trainee.choose("train")
     trainee.until_menu("introduction")
     trainee.tap("accept", "accept", "accept")
     trainee.until_menu("controls")
     trainee.choose("next")
     trainee.until_menu("experiment")
-    trainee.focus("trainee")
-    keys.type("P07")
+
+
+def train_and_look_at_the_result(trainee, outside):
     trainee.until(lambda: trainee.item("trainee").value == "P07")
+    assert not trainee.item("task-1").is_enabled
     trainee.choose("trial-run")
     trainee.until_menu(None)
     trainee.tap("menu")
@@ -46,9 +46,50 @@ def test_the_whole_flow_goes_by_keys_alone(trainee, outside):
     training = trainee.state.training
     assert (training.trainee, training.task, training.mode) == ("P07", "task-1", "desktop")
     outside.has_slicer = True
-    score(trainee.loop, training.trial_id)
+    assert trainee.submit("TrialScored", trialId=training.trial_id, **SCORE).ok
     trainee.until_menu("result")
     assert trainee.menu.facts[0].value == "81 / 100"
+    assert trainee.menu.paragraphs == ("Point 3 is far off.",)
     trainee.choose("next")
     trainee.until_menu("experiment")
     assert trainee.menu.focus == "task-2"
+    return training.trial_id
+
+
+def test_the_whole_flow_goes_by_keys_alone(trainee, outside):
+    go_to_the_experiment_menu(trainee)
+    trainee.focus("trainee")
+    trainee.hands.type("P07")
+    train_and_look_at_the_result(trainee, outside)
+
+
+def test_the_whole_flow_goes_by_a_gamepad_alone_and_its_trial_replays_bit_by_bit(
+    pilot, outside, setup, tmp_path
+):
+    go_to_the_experiment_menu(pilot)
+    pilot.choose("trainee")
+    pilot.until_menu("keyboard")
+    for row, steps in (("row1", 5), ("row3", 0), ("row3", 7)):
+        pilot.focus(row)
+        pilot.tap(*["right"] * steps, "accept")
+    pilot.choose("done")
+    pilot.until_menu("experiment")
+    trial_id = train_and_look_at_the_result(pilot, outside)
+    (path,) = (tmp_path / "records").glob(f"*{trial_id}.journal")
+    reading = read_journal(path)
+    assert reading.integrity is Integrity.INTACT
+    assert reading.header["trainee"] == "P07"
+    assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}
+    assert replay(reading, setup).is_identical
+
+
+@pytest.mark.parametrize("control", ["pause", "menu"])
+def test_a_trial_is_paused_and_goes_on(trainee, control):
+    trainee.start("task-1")
+    trainee.tap(control)
+    trainee.until_menu("trial")
+    elapsed = trainee.state.elapsed
+    trainee.step(20)
+    assert trainee.state.elapsed == elapsed
+    trainee.tap(control)
+    trainee.until_menu(None)

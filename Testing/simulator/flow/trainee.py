@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import time
+import threading
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import numpy as np
 
-from rastrainer.protocol import Phase
+from rastrainer.protocol import Phase, check_arguments
 from rastrainer_simulator.flow.screen import Screen
 from rastrainer_simulator.teleoperation.axes import camera_axes
 from rastrainer_simulator.vectors import dot
 from rastrainer_simulator.view_server.operator_desk import Control, Feedback, Hello
 
 PATIENCE_S = 40.0
-STEP_S = 0.004
+TICKS_A_STEP = 2
+STEP_S = 0.004 * TICKS_A_STEP
+MOST_STEPS = 2000
 MM = 1000.0
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
@@ -44,20 +46,48 @@ class Watcher:
         return [feedback.kind for feedback in self.feedbacks]
 
 
+class LockStep:
+    """Lets a control loop tick only when a test says so: nothing depends on how fast it is."""
+
+    def __init__(self, loop):
+        self._go, self._done = threading.Semaphore(0), threading.Semaphore(0)
+        self._is_free = False
+        loop.subscribe(self._tick)
+
+    def ticks(self, count: int) -> None:
+        for _ in range(count):
+            self._go.release()
+            assert self._done.acquire(timeout=PATIENCE_S), "the control loop has stopped"
+
+    def free(self) -> None:
+        """Let the loop go on alone."""
+        self._is_free = True
+        self._go.release()
+
+    def _tick(self, _result) -> None:
+        if not self._is_free:
+            self._done.release()
+            self._go.acquire()
+
+
 class Trainee:
     """Goes through menus by their names, and to fiducials by the sticks.
 
     Args:
-        loop: a control loop that ticks.
+        loop: a control loop that ticks as fast as it can.
         desk: its desk.
-        hands: what the trainee has in them.
-        look: called in every step beside the desk's, such as to poll gamepads.
+        make_hands: gives what the trainee works with.
+        advance: lets the desk, and what belongs to it, go on for some seconds.
     """
 
-    def __init__(self, loop, desk, make_hands, look: Callable[[], None] = lambda: None):
-        self.loop, self.desk, self._look = loop, desk, look
+    def __init__(self, loop, desk, make_hands, advance: Callable[[float], None] | None = None):
+        self.loop, self.desk, self._advance = loop, desk, advance or desk.advance
         self.watcher = Watcher(desk)
+        self._lock_step = LockStep(loop)
         self.hands: Hands = make_hands(self)
+
+    def close(self) -> None:
+        self._lock_step.free()
 
     @property
     def menu(self):
@@ -70,17 +100,16 @@ class Trainee:
     def step(self, count: int = 1) -> None:
         """Let the desk go on for `count` steps, and the loop with it."""
         for _ in range(count):
-            tick = self.state.tick
-            self._look()
-            self.desk.advance(STEP_S)
-            self.wait(lambda tick=tick: self.state.tick > tick)
+            self._advance(STEP_S)
+            self._lock_step.ticks(TICKS_A_STEP)
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Step until a condition is true."""
-        give_up = time.monotonic() + PATIENCE_S
-        while not condition():
-            assert time.monotonic() < give_up, f"{what} never came; the screen: {self.desk.screen}"
+        for _ in range(MOST_STEPS):
+            if condition():
+                return
             self.step()
+        raise AssertionError(f"{what} never came; the screen: {self.desk.screen}")
 
     def until_menu(self, name: str | None) -> None:
         """Step until a menu of that name is open, or none."""
@@ -108,6 +137,17 @@ class Trainee:
     def item(self, name: str):
         return next(item for item in self.menu.items if item.name == name)
 
+    def submit(self, name: str, **arguments):
+        """Have a command carried out as Slicer would; return its answer."""
+        future = self.loop.submit(name, check_arguments(name, arguments), "Slicer")
+        self.until(future.done, f"the answer to {name}")
+        return future.result()
+
+    def start(self, task: str, trainee: str = "P07") -> None:
+        """Begin a task as Slicer would, and wait for its screen."""
+        assert self.submit("StartTask", task=task, trainee=trainee).ok
+        self.until_menu(None)
+
     def touch(self, point: np.ndarray, center: np.ndarray) -> None:
         """Carry the tip over the head to a point of the skin (3,) m, touch and lift off."""
         outward = (point - center) / np.linalg.norm(point - center)
@@ -118,8 +158,8 @@ class Trainee:
         for share in np.linspace(0.0, 1.0, 7)[1:]:
             between = (1.0 - share) * first + share * outward
             self.steer_to(center + lifted * between / np.linalg.norm(between), 0.02)
-        self.steer_to(point + 0.012 * outward, 0.004)
-        self.steer_to(point, 0.0025, fine=True)
+        self.steer_to(point + 0.01 * outward, 0.005)
+        self.steer_to(point, 0.004, fine=True)
         self.hands.push(0.0, 0.0, 0.0, False)
         self.step(2)
         kept = len(self.state.training.touches)
@@ -142,7 +182,8 @@ class Trainee:
             if np.linalg.norm(away) < near or self.state.sim_time > give_up:
                 return
             wanted = away / max(full, float(np.linalg.norm(away)))
-            wanted *= 0.35 + 0.65 * np.linalg.norm(wanted)
+            # Sticks hardly answer near their middle.
+            wanted *= max(1.0, 0.7 / np.linalg.norm(wanted))
             right, forward, up = (dot(wanted, a) for a in (axes.right, axes.forward, axes.up))
             self.hands.push(right, forward, up, fine)
             self.step()
@@ -155,12 +196,6 @@ class Trainee:
             self.touch(truth.in_world(truth.fiducials[label]) / MM, center)
         assert self.state.training.phase is Phase.COMPLETE, task
         self.step(2)
-
-    def wait(self, condition: Callable[[], bool]) -> None:
-        give_up = time.monotonic() + PATIENCE_S
-        while not condition():
-            assert time.monotonic() < give_up
-            time.sleep(0.0)
 
 
 class Keys:
@@ -212,3 +247,34 @@ class Keys:
         for code in wanted - self._held:
             self._trainee.desk.on_key(self._view, code, True, "")
         self._held = wanted
+
+
+class Pad:
+    """A gamepad that SDL reads; `plugged` is its virtual one."""
+
+    BUTTONS: Mapping[str, str] = {
+        "accept": "a",
+        "back": "b",
+        "up": "dpup",
+        "down": "dpdown",
+        "left": "dpleft",
+        "right": "dpright",
+        "touch": "a",
+        "undo": "b",
+        "camera": "y",
+        "pause": "back",
+        "menu": "start",
+    }
+
+    def __init__(self, trainee: Trainee, plugged):
+        self._trainee, self.plugged = trainee, plugged
+
+    def tap(self, control: str) -> None:
+        self.plugged.press(self.BUTTONS[control])
+        self._trainee.step()
+        self.plugged.press(self.BUTTONS[control], False)
+        self._trainee.step()
+
+    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
+        right, forward, up = (max(-1.0, min(1.0, value)) for value in (right, forward, up))
+        self.plugged.move(leftx=right, lefty=-forward, righty=-up, righttrigger=float(fine))
