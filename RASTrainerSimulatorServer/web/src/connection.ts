@@ -1,0 +1,102 @@
+/** Stay joined to the simulator, and come back whenever it was away. */
+
+import { SUBPROTOCOL, type Hello, type News } from "./messages";
+
+const RETRY_MS = 1000;
+/** A view that holds something says so at least this often; the simulator lets go after 0.5 s. */
+const ALIVE_MS = 150;
+
+export interface ConnectionListener {
+  /** A message has come. */
+  onNews(news: News): void;
+  /** The stream has begun, or it is gone. */
+  onConnected(isConnected: boolean): void;
+  /** The simulator does not know this browser (any more): it has to be paired. */
+  onUnknown(): void;
+}
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private isWanted = false;
+  private lastSent = 0;
+
+  constructor(
+    private hello: Hello,
+    private readonly listener: ConnectionListener,
+  ) {
+    window.setInterval(() => this.keepAlive(), ALIVE_MS / 3);
+  }
+
+  /** Tells whether something is held that the simulator must not let go. */
+  isHolding: () => boolean = () => false;
+
+  get isConnected(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  start(): void {
+    this.isWanted = true;
+    this.join();
+  }
+
+  /** Join again as another kind of view: the page becomes a headset, or a page again. */
+  rejoin(hello: Hello): void {
+    this.hello = hello;
+    this.socket?.close();
+    this.join();
+  }
+
+  /** Send a message, unless there is no connection: what was pressed then does not count. */
+  send(type: string, members: object = {}): void {
+    if (this.isConnected) {
+      this.lastSent = performance.now();
+      this.socket?.send(JSON.stringify({ type, ...members }));
+    }
+  }
+
+  private join(): void {
+    const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/stream`;
+    const socket = new WebSocket(url, SUBPROTOCOL);
+    this.socket = socket;
+    let wasOpen = false;
+    socket.onopen = () => {
+      wasOpen = true;
+      socket.send(JSON.stringify({ type: "hello", ...this.hello }));
+      this.listener.onConnected(true);
+    };
+    socket.onmessage = (event) => {
+      if (socket === this.socket) this.listener.onNews(JSON.parse(event.data) as News);
+    };
+    socket.onclose = () => {
+      if (socket !== this.socket) return;
+      this.socket = null;
+      this.listener.onConnected(false);
+      void this.comeBack(wasOpen);
+    };
+  }
+
+  private async comeBack(wasOpen: boolean): Promise<void> {
+    if (!wasOpen && !(await isPaired())) {
+      this.isWanted = false;
+      this.listener.onUnknown();
+      return;
+    }
+    window.setTimeout(() => {
+      if (this.isWanted && this.socket === null) this.join();
+    }, RETRY_MS);
+  }
+
+  private keepAlive(): void {
+    if (this.isHolding() && performance.now() - this.lastSent >= ALIVE_MS) this.send("alive");
+  }
+}
+
+/** Tell whether the simulator knows this browser; a simulator that is away knows everyone. */
+export async function isPaired(): Promise<boolean> {
+  try {
+    const answer = await fetch("/sounds/focus.wav", { method: "HEAD" });
+    return answer.status !== 401;
+  } catch {
+    return true;
+  }
+}

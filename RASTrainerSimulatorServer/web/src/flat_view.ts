@@ -1,0 +1,86 @@
+/** The picture on a flat display: one camera fills it, the other has a corner. */
+
+import { PerspectiveCamera, Vector2 } from "three";
+
+import type { SceneNews } from "./messages";
+import type { Stage } from "./stage";
+import { Flight, Viewpoint } from "./viewpoint";
+
+export const INSET_SHARE = 0.22;
+const NEAR = 0.05;
+const FAR = 12;
+
+export class FlatView {
+  readonly camera = new PerspectiveCamera(30, 1, NEAR, FAR);
+  private readonly other = new PerspectiveCamera(30, 1, NEAR, FAR);
+  private readonly flight = new Flight();
+  private readonly inset = new Viewpoint();
+  private readonly size = new Vector2();
+  private scene: SceneNews | null = null;
+  private chosen = "";
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly frame: HTMLElement,
+  ) {}
+
+  take(scene: SceneNews): void {
+    this.scene = scene;
+    this.chosen = "";
+  }
+
+  /** Name of the camera in the corner, "" without one. */
+  get insetName(): string {
+    return Object.keys(this.scene?.cameras ?? {}).find((name) => name !== this.chosen) ?? "";
+  }
+
+  /** Look through a camera of the simulator. */
+  choose(name: string, now: number): void {
+    const place = this.scene?.cameras[name];
+    if (place === undefined || name === this.chosen) return;
+    this.chosen = name;
+    this.flight.go(name, place, now);
+    const other = this.scene?.cameras[this.insetName];
+    if (other !== undefined) this.inset.take(other);
+  }
+
+  /** Fit the picture to the window; return whether it had to be changed. */
+  fit(): boolean {
+    const { renderer } = this.stage;
+    const ratio = Math.min(2, window.devicePixelRatio);
+    renderer.getSize(this.size);
+    if (
+      this.size.x === window.innerWidth &&
+      this.size.y === window.innerHeight &&
+      renderer.getPixelRatio() === ratio
+    ) {
+      return false;
+    }
+    renderer.setPixelRatio(ratio);
+    renderer.setSize(window.innerWidth, window.innerHeight);
+    renderer.getSize(this.size);
+    return true;
+  }
+
+  /** Let the camera fly; return whether it moves. */
+  advance(now: number): boolean {
+    return this.flight.advance(now);
+  }
+
+  draw(): void {
+    const { renderer, scene } = this.stage;
+    const { x: width, y: height } = this.size;
+    this.flight.now.look(this.camera, width / height);
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, width, height);
+    renderer.render(scene, this.camera);
+    if (this.insetName === "") return;
+    const box = this.frame.getBoundingClientRect();
+    this.inset.look(this.other, box.width / box.height);
+    renderer.setScissorTest(true);
+    renderer.setViewport(box.left, height - box.bottom, box.width, box.height);
+    renderer.setScissor(box.left, height - box.bottom, box.width, box.height);
+    renderer.render(scene, this.other);
+    renderer.setScissorTest(false);
+  }
+}

@@ -1,0 +1,59 @@
+/** How smoothly the picture is drawn, told to the simulator once a second. */
+
+import type { Connection } from "./connection";
+
+const PERIOD_MS = 1000;
+const MOST = 10_000;
+const SMOOTHING = 0.1;
+
+export class FrameCount {
+  private shown = 0;
+  private dropped = 0;
+  private last = 0;
+  private told = 0;
+  /** Of the display, Hz; estimated unless `fixedHz` is known. */
+  private interval = 1000 / 60;
+  fixedHz = 0;
+
+  constructor(private readonly connection: Connection) {}
+
+  get refreshHz(): number {
+    return this.fixedHz > 0 ? this.fixedHz : 1000 / this.interval;
+  }
+
+  /** The display asks for a picture at `now` (ms); what it did not ask for was dropped. */
+  asked(now: number): void {
+    const passed = now - this.last;
+    this.last = now;
+    if (passed <= 0 || passed > PERIOD_MS) return;
+    const period = 1000 / this.refreshHz;
+    this.dropped += Math.max(0, Math.round(passed / period) - 1);
+    // The shortest intervals are the display's own; longer ones are late pictures.
+    if (passed < 1.5 * this.interval) this.interval += SMOOTHING * (passed - this.interval);
+    else this.interval += 0.002 * (passed - this.interval);
+  }
+
+  /** A picture was drawn. */
+  drawn(): void {
+    this.shown++;
+  }
+
+  /** Tell what was counted if it is time. */
+  tell(now: number): void {
+    if (now - this.told < PERIOD_MS) return;
+    this.told = now;
+    this.connection.send("frames", {
+      shown: Math.min(MOST, this.shown),
+      dropped: Math.min(MOST, this.dropped),
+      refreshHz: Math.min(1000, Math.round(10 * this.refreshHz) / 10),
+    });
+    this.shown = this.dropped = 0;
+  }
+
+  /** Begin anew, on another display. */
+  reset(fixedHz = 0): void {
+    this.fixedHz = fixedHz;
+    this.shown = this.dropped = 0;
+    this.last = this.told = performance.now();
+  }
+}

@@ -1,0 +1,86 @@
+/** A gamepad that the browser reads, in the W3C's standard layout. */
+
+import type { Connection } from "./connection";
+import type { ControlNews, EventNews } from "./messages";
+
+const AXES = 4;
+const BUTTONS = 17;
+const START = 9;
+const CHANGE = 0.004;
+const AT_REST = 0.05;
+
+export class Gamepads {
+  private readonly axes = new Array<number>(AXES).fill(0);
+  private readonly buttons = new Array<number>(BUTTONS).fill(0);
+  private control: ControlNews | null = null;
+  isHolding = false;
+
+  constructor(private readonly connection: Connection) {}
+
+  takeControl(control: ControlNews): void {
+    this.control = control;
+  }
+
+  /** Look at the pad, and tell what has changed. */
+  poll(): void {
+    const pad = firstPad();
+    if (pad === null) {
+      if (this.isHolding) this.tellRest();
+      return;
+    }
+    // A gamepad at this very computer is read by the simulator too: one of both is enough.
+    const isReadThere = this.control?.holder === "gamepad" && !this.control.isYou;
+    if (isReadThere && !this.isHolding && !(pad.buttons[START]?.pressed ?? false)) return;
+    if (!this.take(pad)) return;
+    this.connection.send("pad", { axes: this.axes, buttons: this.buttons });
+  }
+
+  /** Vibrate, if this pad is what drives the arm. */
+  feel(event: EventNews): void {
+    const drives = this.control?.isYou && this.control.holder === "browser's gamepad";
+    if (!drives || event.rumble <= 0) return;
+    const strength = { weakMagnitude: event.rumble, strongMagnitude: event.rumble };
+    const duration = event.data.rumbleMs ?? 100;
+    void firstPad()?.vibrationActuator?.playEffect("dual-rumble", { duration, ...strength });
+  }
+
+  /** Take the positions; return whether they differ from those that were told. */
+  private take(pad: Gamepad): boolean {
+    let differs = false;
+    this.isHolding = false;
+    for (let index = 0; index < AXES; index++) {
+      const value = pad.axes[index] ?? 0;
+      differs = differs || Math.abs(value - this.axes[index]!) > CHANGE;
+      this.isHolding = this.isHolding || Math.abs(value) > AT_REST;
+    }
+    for (let index = 0; index < BUTTONS; index++) {
+      const value = pad.buttons[index]?.value ?? 0;
+      differs = differs || Math.abs(value - this.buttons[index]!) > CHANGE;
+      this.isHolding = this.isHolding || value > AT_REST;
+    }
+    if (!differs) return false;
+    for (let index = 0; index < AXES; index++) this.axes[index] = rounded(pad.axes[index] ?? 0);
+    for (let index = 0; index < BUTTONS; index++) {
+      this.buttons[index] = rounded(pad.buttons[index]?.value ?? 0);
+    }
+    return true;
+  }
+
+  private tellRest(): void {
+    this.axes.fill(0);
+    this.buttons.fill(0);
+    this.isHolding = false;
+    this.connection.send("pad", { axes: this.axes, buttons: this.buttons });
+  }
+}
+
+function firstPad(): Gamepad | null {
+  for (const pad of navigator.getGamepads()) {
+    if (pad?.connected && pad.mapping === "standard") return pad;
+  }
+  return null;
+}
+
+function rounded(value: number): number {
+  return Math.round(1000 * value) / 1000;
+}

@@ -1,0 +1,141 @@
+/** The page: joins the simulator, shows what it says, and tells what is pressed. */
+
+import { Connection, isPaired } from "./connection";
+import { FlatView } from "./flat_view";
+import { FrameCount } from "./frame_count";
+import { Gamepads } from "./gamepads";
+import { Keyboard } from "./keyboard";
+import type { EventNews, Hello, News, SceneNews, StateNews } from "./messages";
+import { byId, Overlay } from "./overlay";
+import { pair } from "./pairing";
+import { PoseStream } from "./pose_stream";
+import { loadScene } from "./scene_model";
+import { Sounds } from "./sounds";
+import { Stage } from "./stage";
+import { TargetArrow } from "./target_arrow";
+import { say, useLanguage } from "./texts";
+
+export class Page {
+  private readonly connection = new Connection(PAGE, {
+    onNews: (news) => this.take(news),
+    onConnected: (isConnected) => this.connected(isConnected),
+    onUnknown: () => void this.begin(),
+  });
+  private readonly stage = new Stage(byId("picture") as HTMLCanvasElement);
+  private readonly flat = new FlatView(this.stage, byId("inset"));
+  private readonly overlay = new Overlay(this.connection);
+  private readonly keyboard = new Keyboard(this.connection);
+  private readonly pads = new Gamepads(this.connection);
+  private readonly sounds = new Sounds();
+  private readonly frames = new FrameCount(this.connection);
+  private readonly arrow = new TargetArrow();
+  private bodies: readonly string[] = [];
+  private poses = new PoseStream(0);
+  private state: StateNews | null = null;
+  private lastEvent = 0;
+  private isLoading = "";
+  private isDue = true;
+
+  constructor() {
+    this.connection.isHolding = () => this.keyboard.isHolding || this.pads.isHolding;
+    document.addEventListener("visibilitychange", () => {
+      this.connection.send("visibility", { isVisible: !document.hidden });
+    });
+    this.stage.renderer.setAnimationLoop((now) => this.turn(now));
+  }
+
+  /** Pair if need be, and join. */
+  async begin(): Promise<void> {
+    if (!(await isPaired())) await pair(byId("pairing") as HTMLFormElement);
+    this.connection.start();
+    await this.sounds.load();
+  }
+
+  private connected(isConnected: boolean): void {
+    this.overlay.setNotice(isConnected ? "" : say("lost"));
+    this.lastEvent = 0;
+  }
+
+  private take(news: News): void {
+    switch (news.type) {
+      case "welcome":
+        this.bodies = news.bodies;
+        this.poses = new PoseStream(news.bodies.length);
+        break;
+      case "scene":
+        void this.load(news);
+        break;
+      case "state":
+        this.takeState(news);
+        break;
+      case "screen":
+        useLanguage(news.screen.language);
+        this.overlay.show(news.screen);
+        break;
+      case "control":
+        this.pads.takeControl(news);
+        this.overlay.showControl(news);
+        break;
+      case "event":
+        this.happen(news);
+    }
+  }
+
+  private async load(news: SceneNews): Promise<void> {
+    if (news.url === this.isLoading) return;
+    this.isLoading = news.url;
+    try {
+      const model = await loadScene(news, this.bodies);
+      if (news.url !== this.isLoading) return;
+      this.stage.show(model);
+      this.flat.take(news);
+      this.isDue = true;
+      document.body.dataset.scene = news.task || "none";
+    } catch {
+      this.isLoading = "";
+      this.overlay.setNotice(say("noScene"));
+    }
+  }
+
+  private takeState(state: StateNews): void {
+    this.poses.put(state.time, state.poses, performance.now() / 1000);
+    this.state = state;
+    this.isDue = true;
+  }
+
+  private happen(event: EventNews): void {
+    if (event.number <= this.lastEvent) return;
+    this.lastEvent = event.number;
+    this.sounds.play(event.sound, event.volume);
+    this.pads.feel(event);
+  }
+
+  private turn(nowMs: number): void {
+    const now = nowMs / 1000;
+    this.pads.poll();
+    this.frames.asked(nowMs);
+    this.frames.tell(nowMs);
+    const { state } = this;
+    const { model } = this.stage;
+    if (state === null || model === null) return;
+    this.flat.choose(state.camera, now);
+    const hasMoved = this.flat.fit() || this.flat.advance(now) || this.isDue;
+    if (!model.pulse(now) && !hasMoved) return;
+    this.isDue = false;
+    this.poses.place(model.bodies, performance.now() / 1000);
+    model.mark(state);
+    this.overlay.showInset(this.flat.insetName);
+    this.overlay.showContact(state.proximity === "contact");
+    this.arrow.show(model, this.flat.camera, document.body.dataset.menu === "" ? state.next : null);
+    this.flat.draw();
+    this.frames.drawn();
+  }
+}
+
+const PAGE: Hello = { kind: "page", device: browserName(), refreshHz: 0 };
+
+function browserName(): string {
+  return /(Firefox|Edg|OPR|Chrome|Safari)\/\d+/.exec(navigator.userAgent)?.[0] ?? "";
+}
+
+void new Page().begin();

@@ -1,0 +1,117 @@
+/** What the simulator and a view say to each other; docs/views.md explains each message. */
+
+export const SUBPROTOCOL = "rastrainer.views.1";
+
+export type Tone = "plain" | "good" | "warning" | "error";
+
+export interface Item {
+  readonly name: string;
+  readonly label: string;
+  readonly kind: "button" | "choice" | "text" | "axis";
+  readonly value: string;
+  readonly is_enabled: boolean;
+  readonly help: string;
+}
+
+export interface Fact {
+  readonly label: string;
+  readonly value: string;
+  readonly tone: Tone;
+}
+
+export interface Menu {
+  readonly name: string;
+  readonly title: string;
+  readonly paragraphs: readonly string[];
+  readonly facts: readonly Fact[];
+  readonly items: readonly Item[];
+  readonly focus: string;
+  readonly picture: string;
+}
+
+export interface Message {
+  readonly text: string;
+  readonly tone: Tone;
+}
+
+export interface Hint {
+  readonly control: string;
+  readonly action: string;
+}
+
+export interface Screen {
+  readonly menu: Menu | null;
+  readonly instruction: Message;
+  readonly warnings: readonly Message[];
+  readonly status: readonly string[];
+  readonly hints: readonly Hint[];
+  readonly language: string;
+}
+
+export type Triple = readonly [number, number, number];
+
+export interface CameraPlace {
+  readonly position: Triple;
+  readonly focalPoint: Triple;
+  readonly viewUp: Triple;
+  readonly viewAngleDeg: number;
+}
+
+export interface Welcome {
+  readonly type: "welcome";
+  readonly protocol: number;
+  readonly view: number;
+  readonly bodies: readonly string[];
+}
+
+export interface SceneNews {
+  readonly type: "scene";
+  readonly url: string;
+  readonly task: string;
+  readonly cameras: Readonly<Record<string, CameraPlace>>;
+  readonly fiducials: Readonly<Record<string, Triple>>;
+}
+
+export interface StateNews {
+  readonly type: "state";
+  readonly tick: number;
+  readonly time: number;
+  readonly poses: readonly (readonly number[])[];
+  readonly clearanceMm: number;
+  readonly proximity: "free" | "near" | "contact";
+  readonly camera: string;
+  readonly phase: string;
+  readonly next: string | null;
+  readonly touched: readonly string[];
+  readonly elapsed: number;
+}
+
+export interface ScreenNews {
+  readonly type: "screen";
+  readonly screen: Screen;
+}
+
+export interface EventNews {
+  readonly type: "event";
+  readonly number: number;
+  readonly kind: string;
+  readonly sound: string;
+  readonly volume: number;
+  readonly rumble: number;
+  readonly data: { readonly rumbleMs?: number };
+}
+
+export interface ControlNews {
+  readonly type: "control";
+  readonly holder: string;
+  readonly isYou: boolean;
+}
+
+export type News = Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews;
+
+/** What a view says of itself when it joins. */
+export interface Hello {
+  readonly kind: "page" | "headset";
+  readonly device: string;
+  readonly refreshHz: number;
+}

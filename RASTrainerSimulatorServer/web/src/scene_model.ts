@@ -1,0 +1,145 @@
+/** The scene that the simulator made: loaded, batched, moved and colored as its state says. */
+
+import {
+  Color,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  MeshStandardMaterial,
+  Vector3,
+  type Object3D,
+} from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+
+import { batch, ownColor } from "./batch";
+import type { SceneNews, StateNews } from "./messages";
+
+const FIDUCIAL = "fiducial_";
+const FURNITURE = ["table", "floor", "room"];
+const PULSE_S = 1.4;
+const PULSE_COLOR = new Color(1, 0.97, 0.75);
+
+/** sRGB, as in the simulator's scene/materials.py. */
+const COLORS = {
+  waiting: new Color().setRGB(0.1, 0.24, 0.62, "srgb"),
+  next: new Color().setRGB(1.0, 0.8, 0.05, "srgb"),
+  touched: new Color().setRGB(0.1, 0.62, 0.25, "srgb"),
+  free: new Color().setRGB(0.05, 0.3, 1.0, "srgb"),
+  near: new Color().setRGB(1.0, 0.05, 0.05, "srgb"),
+};
+
+export class SceneModel {
+  /** All of it; its children are in World (x forward, y left, z up), m. */
+  readonly root: Object3D;
+  /** In the order of the stream's poses. */
+  readonly bodies: readonly (Object3D | undefined)[];
+  private readonly named = new Map<string, Object3D>();
+  private readonly fiducials = new Map<string, Mesh>();
+  private readonly waiting = glow(COLORS.waiting);
+  private readonly next = glow(COLORS.next);
+  private readonly touched = glow(COLORS.touched);
+  private readonly tip = glow(COLORS.free);
+  private marked = "";
+  private pulses = false;
+
+  constructor(
+    file: Object3D,
+    readonly news: SceneNews,
+    bodies: readonly string[],
+  ) {
+    file.traverse((node) => this.named.set((node.userData.name as string) ?? node.name, node));
+    this.root = this.named.get("world") ?? file;
+    this.bodies = bodies.map((name) => this.named.get(name));
+    this.prepare(bodies);
+  }
+
+  node(name: string): Object3D | undefined {
+    return this.named.get(name);
+  }
+
+  /** Return where a fiducial of the present task is in World, m, written into `target`. */
+  fiducial(label: string, target: Vector3): Vector3 | null {
+    const place = this.news.fiducials[label];
+    const head = this.named.get("head");
+    if (place === undefined || head === undefined) return null;
+    return target.fromArray(place).applyQuaternion(head.quaternion).add(head.position);
+  }
+
+  /** Color the tool's tip and the fiducials. */
+  mark(state: StateNews): void {
+    this.tip.color.copy(state.proximity === "free" ? COLORS.free : COLORS.near);
+    const marked = `${state.next} ${state.touched.length}`;
+    if (marked === this.marked) return;
+    this.marked = marked;
+    this.pulses = state.next !== null;
+    for (const [label, mesh] of this.fiducials) {
+      const isTouched = state.touched.includes(label);
+      mesh.material = isTouched ? this.touched : label === state.next ? this.next : this.waiting;
+    }
+  }
+
+  /** Brighten and darken the next fiducial; return whether it changes the picture at `now` (s). */
+  pulse(now: number): boolean {
+    const share = 0.5 - 0.5 * Math.cos((2 * Math.PI * now) / PULSE_S);
+    this.next.color.copy(COLORS.next).lerp(PULSE_COLOR, share);
+    return this.pulses;
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.root.traverse((node) => {
+      if (node instanceof Mesh) {
+        node.geometry.dispose();
+        (node.material as MeshBasicMaterial).dispose();
+      }
+    });
+  }
+
+  private prepare(bodies: readonly string[]): void {
+    const none = new Set<Object3D>();
+    for (const name of FURNITURE) this.batchNode(name, "matt", none);
+    const tip = this.named.get("tip_marker");
+    for (const name of bodies) {
+      if (name !== "head") this.batchNode(name, "glossy", new Set(tip ? [tip] : []));
+    }
+    if (tip instanceof Mesh) tip.material = this.tip;
+    this.prepareHead();
+  }
+
+  private prepareHead(): void {
+    const head = this.named.get("head");
+    const skin = this.named.get("skin");
+    if (head === undefined) return;
+    const marks = new Group();
+    for (const node of [...head.children]) {
+      const name = (node.userData.name as string) ?? node.name;
+      if (name.startsWith(FIDUCIAL) && node instanceof Mesh) {
+        node.material = this.waiting;
+        this.fiducials.set(name.slice(FIDUCIAL.length), node);
+      } else if (node !== skin) {
+        marks.add(node);
+      }
+    }
+    head.add(marks);
+    batch(marks, "matt", new Set());
+    if (skin instanceof Mesh) {
+      const color = ownColor(skin).color;
+      skin.material = new MeshStandardMaterial({ color, roughness: 0.6 });
+    }
+  }
+
+  private batchNode(name: string, finish: "matt" | "glossy", apart: Set<Object3D>): void {
+    const node = this.named.get(name);
+    if (node !== undefined) batch(node, finish, apart);
+  }
+}
+
+/** Load the scene that `news` tells of. */
+export async function loadScene(news: SceneNews, bodies: readonly string[]): Promise<SceneModel> {
+  const file = await new GLTFLoader().loadAsync(news.url);
+  return new SceneModel(file.scene, news, bodies);
+}
+
+function glow(color: Color): MeshBasicMaterial {
+  return new MeshBasicMaterial({ color: color.clone() });
+}
