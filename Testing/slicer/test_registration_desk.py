@@ -200,10 +200,11 @@ def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
 def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
     table.touch()
     mine = table.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
-    setPoints(mine, LABELS, table.touched + [10.0, 0.0, 0.0])
+    moved = table.touched + np.array([10.0, 0.0, 0.0])
+    setPoints(mine, LABELS, moved)
     table.desk.chooseLists(mine, table.fixed)
     table.desk.process()
-    np.testing.assert_allclose(table.desk.shown.moving_mm, table.touched + [10.0, 0.0, 0.0])
+    np.testing.assert_allclose(table.desk.shown.moving_mm, moved)
     table.scene.RemoveNode(mine)
     table.desk.process()
     np.testing.assert_allclose(table.desk.shown.moving_mm, table.touched, atol=1e-9)

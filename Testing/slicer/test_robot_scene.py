@@ -62,15 +62,15 @@ def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
 def test_the_robot_stands_where_its_touches_are_shown(scene, robot, scenario):
     fixed = showTask(scene, scenario, "task-1")
     transform = showPlannedPlace(scene, scenario, capturedPointsNode(scene), fixed)
-    inWorld = bounds(robot[0])
+    in_world = bounds(robot[0])
     followPlacement(scene)
-    onHead = bounds(robot[0])
+    on_head = bounds(robot[0])
     # The scenario turns the head by half a turn and puts it at x = 500, z = 300.
-    np.testing.assert_allclose(onHead[[0, 1]], 500.0 - inWorld[[1, 0]], atol=1e-3)
-    np.testing.assert_allclose(onHead[[4, 5]], inWorld[[4, 5]] - 300.0, atol=1e-3)
+    np.testing.assert_allclose(on_head[[0, 1]], 500.0 - in_world[[1, 0]], atol=1e-3)
+    np.testing.assert_allclose(on_head[[4, 5]], in_world[[4, 5]] - 300.0, atol=1e-3)
     setApplied(transform, False)
     followPlacement(scene)
-    np.testing.assert_allclose(bounds(robot[0]), inWorld)
+    np.testing.assert_allclose(bounds(robot[0]), in_world)
 
 
 def test_what_is_deleted_is_made_again_when_the_robot_is_shown_again(scene, robot):

@@ -9,6 +9,7 @@ import slicer
 from rastrainer.ctps import CTPS_WARNING, Trial
 from rastrainer.errors import InputError
 from rastrainer.slicer.history_nodes import showHistory, showLearningCurve
+from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.score_board import (
     motionRows,
     scoreRows,
@@ -17,7 +18,6 @@ from rastrainer.slicer.score_board import (
     showStandings,
     standings,
 )
-from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.study import Study
 from rastrainer.trial_analysis import analyze_trial
@@ -99,7 +99,7 @@ def test_one_trainee_is_exported_as_json_and_everyone_as_a_table(desk, add_trial
     assert desk.exportHistory(tmp_path / "all.csv", everybody=True) == 2
 
 
-def test_the_history_is_a_table_and_two_learning_curves(scene, desk, add_trial):
+def test_the_history_is_a_table_and_two_learning_curves(scene, add_trial):
     trials = [add_trial(number, trainee="a") for number in (1, 2, 3)]
     chart = showLearningCurve(scene, "a", trials)
     assert showLearningCurve(scene, "a", trials) is chart
@@ -119,7 +119,7 @@ def test_a_trial_without_results_has_empty_cells(scene, desk, make_record):
     assert table.GetCellText(0, table.GetColumnIndex("score")) == "nan"
 
 
-def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(desk, add_trial):
+def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(add_trial):
     trial = add_trial(1)
     rows = {row.title: row for row in scoreRows(trial, COHORT)}
     assert rows["Score"].value == trial.score.score
@@ -144,7 +144,7 @@ def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(des
     assert (reference.count, reference.median, reference.betterThan) == (4, 95.0, 0.5)
 
 
-def test_motion_metrics_come_with_their_definitions(desk, add_trial):
+def test_motion_metrics_come_with_their_definitions(add_trial):
     trial = add_trial(1, motion={"path_length_mm": 2500.0, "sparc": -1.9})
     rows = motionRows(trial)
     assert [row.title for row in rows] == ["Path length", "Smoothness, SPARC"]

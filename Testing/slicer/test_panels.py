@@ -1,0 +1,338 @@
+"""Every panel in the host: what its buttons do, what they refuse, and what is said."""
+
+import csv
+import json
+import uuid
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer import transforms
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.study import Study
+from rastrainer.tasks import LABELS
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+
+SECTIONS = ("simulator", "trainees", "scenario", "training", "registration", "plan", "score")
+
+
+@pytest.fixture
+def panels(host):
+    """The module with every section open."""
+    host.open()
+    for section in SECTIONS:
+        host.find(f"{section}CollapsibleButton").collapsed = False
+    for group in ("setupGroupBox", "otherHeadGroupBox", "motionGroupBox"):
+        host.find(group).collapsed = False
+    host.process_events()
+    return host
+
+
+@pytest.fixture
+def colin():
+    return load_scenario(asset_path("scenarios", "colin27"))
+
+
+@pytest.fixture
+def study_path(panels):
+    return panels.find("studyPathLineEdit").currentPath
+
+
+@pytest.fixture
+def add_trial(study_path, make_record, colin):
+    """Returns a function that puts a scored trial on the built-in head into the study."""
+
+    def add(number, trainee, **changes):
+        fiducials = colin.task("task-1").fiducials
+        noise = np.random.default_rng(number).normal(0.0, 0.6, (15, 3))
+        touched = transforms.apply(colin.perturbed_head_to_world(number), fiducials + noise)
+        record = make_record(
+            str(uuid.UUID(int=number)),
+            trainee=trainee,
+            scenario="colin27",
+            startedUtc=f"2026-03-02T09:{number:02d}:00Z",
+            **changes,
+        )
+        for point, position in zip(record["points"], touched.tolist(), strict=True):
+            point["positionMm"] = position
+        analysis = analyze_trial(TrialRecord.from_json(record), colin)
+        with Study.open(study_path) as study:
+            study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+
+    return add
+
+
+@pytest.fixture
+def touched(panels, colin):
+    """The scene of a trial with its touches, (15, 3) float, World, mm."""
+    panels.press("showScenarioButton")
+    return transforms.apply(
+        colin.perturbed_head_to_world(3),
+        colin.task("task-1").fiducials + np.random.default_rng(3).normal(0.0, 0.6, (15, 3)),
+    )
+
+
+def touch(host, points):
+    setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
+    count = min(len(points), 15)
+    host.wait_until(
+        lambda: host.find("residualsTable").rowCount == (count if count > 2 else 0),
+        "the touches are registered",
+    )
+    host.process_events()
+
+
+def cells(host, name):
+    table = host.find(name)
+    return [
+        [table.item(row, column).text() for column in range(table.columnCount)]
+        for row in range(table.rowCount)
+    ]
+
+
+# Trainees
+
+
+def test_a_trainee_is_created_chosen_archived_and_brought_back(panels, study_path):
+    panels.press("createTraineeButton")
+    assert panels.find("traineeComboBox").currentText == "T001"
+    panels.check("consentCheckBox")
+    panels.press("archiveButton")
+    with Study.open(study_path) as study:
+        (trainee,) = study.trainees(archived=True)
+    assert (trainee.pseudonym, trainee.consent) == ("T001", True)
+    assert panels.find("traineeComboBox").currentText == "T001 (archived)"
+    panels.press("archiveButton")
+    with Study.open(study_path) as study:
+        assert len(study.trainees()) == 1
+
+
+def test_a_taken_pseudonym_is_told(panels):
+    for _ in range(2):
+        panels.type("pseudonymLineEdit", "Blue")
+        panels.press("createTraineeButton")
+    assert "taken; choose another" in panels.messages[-1].text
+
+
+def test_buttons_without_a_trainee_say_why_they_are_disabled(panels):
+    for name in ("archiveButton", "exportTraineeButton", "deleteTraineeButton"):
+        with pytest.raises(AssertionError, match="Choose a trainee first"):
+            panels.press(name)
+    with pytest.raises(AssertionError, match="Connect to the simulator first"):
+        panels.press("startTaskButton")
+
+
+def test_a_trainee_is_deleted_only_after_a_yes(panels, add_trial, study_path):
+    add_trial(1, "T-001")
+    panels.type("pseudonymLineEdit", "other")
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    panels.answer("Delete", "No")
+    panels.press("deleteTraineeButton")
+    assert panels.find("historyTable").rowCount == 1
+    panels.answer("Delete", "Yes")
+    panels.press("deleteTraineeButton")
+    assert "deleted with 1 trials" in panels.text("traineeText")
+    with Study.open(study_path) as study:
+        assert [trainee.pseudonym for trainee in study.trainees()] == ["other"]
+
+
+def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
+    for number in (1, 2, 3):
+        add_trial(number, "T-001", completionTimeS=100.0 - number)
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    assert [row[3] for row in cells(panels, "historyTable")] == ["99.0", "98.0", "97.0"]
+    panels.press("learningCurveButton")
+    chart = findNode(panels.scene, "vtkMRMLPlotChartNode", Role.LEARNING_CURVE)
+    assert chart.GetNumberOfPlotSeriesNodes() == 2
+    panels.answer("Export the history", str(tmp_path / "history.csv"))
+    panels.press("exportHistoryButton")
+    with (tmp_path / "history.csv").open(newline="") as file:
+        assert len(list(csv.DictReader(file))) == 3
+    panels.answer("Export the trainee", str(tmp_path / "trainee.json"))
+    panels.press("exportTraineeButton")
+    assert len(json.loads((tmp_path / "trainee.json").read_text())["trials"]) == 3
+
+
+def test_the_study_is_another_file_once_it_is_chosen_and_one_that_is_none_is_told(panels, tmp_path):
+    panels.press("createTraineeButton")
+    panels.find("studyPathLineEdit").currentPath = str(tmp_path / "second.db")
+    panels.process_events()
+    assert panels.find("traineeComboBox").count == 1
+    panels.press("createTraineeButton")
+    letter = tmp_path / "letter.db"
+    letter.write_text("A letter to a friend. " * 300)
+    panels.find("studyPathLineEdit").currentPath = str(letter)
+    panels.process_events()
+    assert "is not a study database" in panels.messages[-1].text
+    assert panels.find("studyPathLineEdit").currentPath == str(tmp_path / "second.db")
+    assert panels.find("traineeComboBox").count == 2
+
+
+# Scenario
+
+
+def test_head_fiducials_and_robot_are_shown(panels):
+    panels.choose("taskComboBox", "Task 2")
+    panels.press("showScenarioButton")
+    assert panels.text("startTaskButton") == "Start Task 2"
+    fixed = findNode(panels.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
+    assert fixed.GetName() == "Task 2 fiducials"
+    panels.check("robotCheckBox")
+    assert findNode(panels.scene, "vtkMRMLModelNode", f"{Role.ROBOT} link 7") is not None
+    panels.clear_scene()
+    panels.wait_until(lambda: not panels.find("robotCheckBox").checked, "the box follows")
+
+
+def test_a_model_of_the_scene_can_be_the_head(panels):
+    panels.press("showScenarioButton")
+    former = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    mine = panels.scene.AddNewNodeByClass("vtkMRMLModelNode", "Mine")
+    mine.SetAndObservePolyData(former.GetPolyData())
+    panels.choose("headModelComboBox", mine)
+    panels.press("useHeadButton")
+    assert findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is mine
+    assert not former.GetDisplayVisibility()
+
+
+# Registration
+
+
+def test_fits_residuals_and_the_error_to_expect_are_shown_with_their_units(panels, touched):
+    touch(panels, touched)
+    rows = cells(panels, "fitsTable")
+    assert [row[0] for row in rows] == ["Rigid", "Similarity", "Affine"]
+    assert "Expected TRE at the target" in panels.text("treText")
+    assert "(mm)" in panels.find("fitsTable").horizontalHeaderItem(1).text()
+    assert len(cells(panels, "residualsTable")) == 15
+
+
+def test_a_warning_has_a_button_that_mends_it_and_undo_brings_it_back(panels, touched):
+    touched[6] += [9.0, -6.0, 5.0]
+    touch(panels, touched)
+    assert "Point 7 lies" in panels.text("warning0Text")
+    panels.press("remedy0Button")
+    assert panels.find("residualsTable").rowCount == 14
+    assert "Left out: 7" in panels.text("registrationText")
+    panels.press("undoButton")
+    panels.process_events()
+    assert panels.find("residualsTable").rowCount == 15
+    assert panels.text("remedy0Button") == "Leave out 7"
+
+
+def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched, colin):
+    touch(panels, touched)
+    view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
+    panels.choose("residualsTable", 4)
+    place = [view.GetSliceToRAS().GetElement(row, 3) for row in range(3)]
+    assert place == pytest.approx(colin.task("task-1").fiducials[4], abs=1e-3)
+    panels.press("excludeButton")
+    assert "Left out: 5" in panels.text("registrationText")
+
+
+def test_the_transform_is_applied_or_not_by_a_checkbox(panels, touched):
+    touch(panels, touched)
+    points = capturedPointsNode(panels.scene)
+    assert panels.find("appliedCheckBox").checked
+    panels.check("appliedCheckBox", False)
+    assert points.GetParentTransformNode() is None
+    panels.check("appliedCheckBox")
+    assert points.GetParentTransformNode().GetName() == "WorldToHead"
+    points.SetAndObserveTransformNodeID(None)
+    panels.wait_until(lambda: not panels.find("appliedCheckBox").checked, "the box follows")
+
+
+def test_another_target_is_chosen_and_the_head_colored(panels, touched):
+    touch(panels, touched)
+    before = panels.text("treText")
+    target = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
+    target.AddControlPoint(60.0, 60.0, -60.0)
+    panels.choose("targetComboBox", target)
+    panels.wait_until(lambda: panels.text("treText") != before, "the error is told anew")
+    panels.check("headColoredCheckBox")
+    head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    assert head.GetDisplayNode().GetScalarVisibility()
+
+
+def test_the_choice_of_a_fit_changes_the_transform(panels, touched):
+    touch(panels, touched)
+    transform = findNode(panels.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    rigid = slicer.util.arrayFromTransformMatrix(transform)
+    panels.choose("kindComboBox", "Similarity")
+    similar = slicer.util.arrayFromTransformMatrix(transform)
+    assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
+    assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
+
+
+# Plan
+
+
+def test_a_plan_says_what_is_missing_until_it_can_be_sent(panels, touched):
+    with pytest.raises(AssertionError, match="Place a target or a trajectory"):
+        panels.press("sendPlanButton")
+    panels.press("placeTargetButton")
+    with pytest.raises(AssertionError, match="has no point yet"):
+        panels.press("sendPlanButton")
+    panels.find("planComboBox").currentNode().AddControlPoint(10.0, 20.0, 0.0)
+    touch(panels, touched)
+    panels.wait_until(lambda: "target x" in panels.text("planWorldText"), "the plan is mapped")
+    assert "mm (95 %" in panels.text("planTreText")
+    with pytest.raises(AssertionError, match="Connect to the simulator first"):
+        panels.press("sendPlanButton")
+
+
+# Score
+
+
+def test_a_trial_is_scored_beside_the_reference_group_and_exported(panels, add_trial, tmp_path):
+    add_trial(1, "T-001", motion={"sparc": -1.9})
+    add_trial(2, "T-001")
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    assert panels.find("trialComboBox").currentText.startswith("2: task-1")
+    measures = [row[0] for row in cells(panels, "scoreTable")]
+    assert measures[0] == "Score"
+    assert "CTPS as published" in measures
+    assert "rises with a slower completion" in panels.text("ctpsText")
+    groups = {row[2] for row in cells(panels, "standingsTable")}
+    assert groups == {"own trials", "reference group"}
+    panels.choose("trialComboBox", "1: task-1")
+    assert cells(panels, "motionTable") == [["Smoothness, SPARC", "-1.90"]]
+    panels.press("showTablesButton")
+    assert findNode(panels.scene, "vtkMRMLTableNode", Role.SCORE) is not None
+    panels.answer("Export all trials", str(tmp_path / "all.csv"))
+    panels.press("exportScoresButton")
+    assert len((tmp_path / "all.csv").read_text().splitlines()) == 3
+
+
+def test_a_study_without_consenting_trainees_has_no_report(panels, add_trial, tmp_path):
+    add_trial(1, "T-001")
+    panels.answer("Folder for the report", str(tmp_path / "report"))
+    panels.press("reportButton")
+    assert "agreed to research" in panels.messages[-1].text
+
+
+# Simulator
+
+
+def test_the_simulator_must_be_set_up_before_it_is_started(panels):
+    assert "press Set up, once" in panels.text("programText")
+    with pytest.raises(AssertionError, match="Set it up first"):
+        panels.press("startSimulatorButton")
+    panels.find("programPathLineEdit").currentPath = "/nowhere/rastrainer"
+    panels.process_events()
+    panels.press("startSimulatorButton")
+    assert "There is no program" in panels.messages[-1].text
+
+
+def test_a_set_up_that_cannot_begin_is_told(panels, tmp_path):
+    panels.find("wheelsPathLineEdit").currentPath = str(tmp_path)
+    panels.press("setupButton")
+    assert "There are no wheels" in panels.messages[-1].text
