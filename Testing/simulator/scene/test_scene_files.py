@@ -1,0 +1,120 @@
+import asyncio
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.scene import scene_files as scene_files_module
+from rastrainer_simulator.scene.cache_folder import KEPT_FILES, cache_folder, forget_oldest
+from rastrainer_simulator.scene.scene_files import SceneFiles, read_scene
+from rastrainer_simulator.scene.scene_key import scene_key, setup_digest
+from Testing.simulator.scene.glb_reader import Glb
+
+
+@pytest.fixture(scope="module")
+def built(setup, tmp_path_factory):
+    """A folder with the scene without a task, and that scene."""
+    folder = tmp_path_factory.mktemp("scenes")
+    return folder, asyncio.run(SceneFiles(folder).scene(setup, ""))
+
+
+@pytest.fixture
+def no_process(monkeypatch):
+    async def refuse(*_arguments, **_named):
+        raise AssertionError("no scene is to be built")
+
+    monkeypatch.setattr(scene_files_module.asyncio, "create_subprocess_exec", refuse)
+
+
+def test_a_scene_is_built_by_a_process_and_named_after_its_content(built):
+    folder, file = built
+    assert [path.suffix for path in folder.iterdir()] == [".glb"]
+    content = read_scene(file)
+    assert Glb(content).children("head") == ["skin"]
+
+
+@pytest.mark.usefixtures("no_process")
+def test_what_was_built_once_is_there_the_next_time(built, setup):
+    folder, file = built
+    files = SceneFiles(folder)
+    assert asyncio.run(files.scene(setup, "")) == file
+    assert files.find(file.sha256) == file
+    assert files.find("0" * 64) is None
+
+
+def test_a_broken_file_in_the_cache_is_built_anew(built, setup):
+    folder, file = built
+    file.path.write_bytes(read_scene(file)[:-1])
+    assert read_scene(file) is None
+    assert asyncio.run(SceneFiles(folder).scene(setup, "")) == file
+
+
+def test_who_does_not_wait_any_more_ends_the_building(setup, tmp_path):
+    async def give_up():
+        building = asyncio.create_task(SceneFiles(tmp_path).scene(setup, ""))
+        await asyncio.sleep(0.3)
+        building.cancel()
+        await asyncio.gather(building, return_exceptions=True)
+
+    asyncio.run(give_up())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_scene_that_cannot_be_built_is_told_in_one_sentence(setup, tmp_path):
+    scenario = replace(setup.scenario, folder=tmp_path / "gone")
+    with pytest.raises(InputError, match=r"could not be built: .*gone does not exist"):
+        asyncio.run(SceneFiles(tmp_path).scene(replace(setup, scenario=scenario), ""))
+
+
+def test_the_key_changes_with_task_scenario_and_robot(setup):
+    digest = setup_digest(setup)
+    others = [
+        replace(setup, scenario_sha256="0" * 64),
+        replace(setup, robot=replace(setup.robot, meshes=setup.robot.meshes[:-1])),
+        replace(setup, robot=replace(setup.robot, meshes=())),
+    ]
+    keys = {scene_key(digest, task) for task in ("", "task-1", "task-2")}
+    keys |= {scene_key(setup_digest(other), "") for other in others}
+    assert len(keys) == 6
+    assert setup_digest(setup) == digest
+
+
+def test_the_oldest_scenes_are_forgotten(tmp_path):
+    for index in range(KEPT_FILES + 5):
+        path = tmp_path / f"{index:03d}.glb"
+        path.touch()
+        _set_time(path, index)
+    forget_oldest(tmp_path)
+    assert sorted(path.stem for path in tmp_path.iterdir())[0] == "005"
+
+
+def _set_time(path: Path, seconds: int) -> None:
+    os.utime(path, (seconds, seconds))
+
+
+def test_a_cache_that_cannot_be_written_is_replaced_for_the_time_being(tmp_path, monkeypatch):
+    (tmp_path / "rastrainer").write_text("in the way")
+    for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
+        monkeypatch.setenv(variable, str(tmp_path))
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    folder = cache_folder()
+    assert folder.is_dir()
+    assert not folder.is_relative_to(tmp_path)
+    folder.rmdir()
+
+
+IMPORTS = """
+import sys
+import rastrainer_simulator.server
+import rastrainer_simulator.view_server.open_views
+unwanted = [name for name in sys.modules if name.startswith(("vtk", "trimesh"))]
+assert not unwanted, unwanted
+"""
+
+
+def test_the_simulators_process_never_imports_vtk():
+    subprocess.run([sys.executable, "-c", IMPORTS], check=True)

@@ -1,0 +1,140 @@
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial import cKDTree
+
+from rastrainer.head_mesh import HeadMesh, read_head_mesh
+from rastrainer.surface_queries import nearest_on_mesh
+from rastrainer_simulator.planning.skin_places import smooth_places
+from rastrainer_simulator.scene.mark_shapes import NUMBER_HEIGHT, RIM_RADIUS
+from rastrainer_simulator.scene.skin_marks import (
+    ARROW_LIFT,
+    DOT_LIFT,
+    NUMBER_LIFT,
+    RIM_LIFT,
+    skin_marks,
+)
+
+RADIUS = 80.0
+FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
+LABELS = [str(number) for number in range(1, 16)]
+TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
+SEEDS = ("random 0", "crowded 3")
+
+
+@pytest.fixture(scope="module")
+def ball() -> HeadMesh:
+    sphere = trimesh.creation.icosphere(subdivisions=5, radius=RADIUS)
+    return HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
+
+
+def test_marks_lie_on_the_skin_and_follow_its_curve(ball):
+    for mark in skin_marks(ball, FRONT, ("7", "12", "15")):
+        lifts = [(mark.dot, DOT_LIFT), (mark.rim, RIM_LIFT), (mark.number, NUMBER_LIFT)]
+        for shape, lift in [*lifts, *([(mark.arrow, ARROW_LIFT)] if mark.arrow else [])]:
+            heights = np.linalg.norm(shape.points, axis=1) - RADIUS
+            assert np.all(np.abs(heights - lift) < 0.3)
+
+
+def test_a_number_reads_from_outside_with_the_patients_superior_up(ball):
+    points = skin_marks(ball, FRONT[:1], ("1L",))[0].number.points
+    assert np.ptp(points[:, 2]) == pytest.approx(NUMBER_HEIGHT, rel=0.05)
+    # Seen from in front of the face, the patient's right (+x) is on the left.
+    foot = points[points[:, 2] < points[:, 2].min() + 0.15 * NUMBER_HEIGHT]
+    assert foot[:, 0].min() < points[:, 0].mean(), "the foot of the L reaches to the viewer's right"
+    assert np.median(foot[:, 0]) < np.median(points[:, 0])
+
+
+def test_fiducials_that_touch_each_other_get_no_arrow_between_them(ball):
+    turn = 2 * RIM_RADIUS / RADIUS
+    close = RADIUS * np.array([[0.0, 1.0, 0.0], [np.sin(turn), np.cos(turn), 0.0]])
+    marks = skin_marks(ball, close, ("1", "2"))
+    assert [mark.arrow for mark in marks] == [None, None]
+
+
+def test_an_arrow_leads_round_the_ball_to_the_other_side(ball):
+    arrow = skin_marks(ball, np.array([FRONT[0], [0.0, -RADIUS, 0.1]]), ("1", "2"))[0].arrow
+    heights = np.linalg.norm(arrow.points, axis=1) - RADIUS
+    assert np.all(np.abs(heights - ARROW_LIFT) < 0.3)
+    assert arrow.points[-1, 2] > 20.0, "over the top, where the other side is nearest"
+
+
+@pytest.fixture(scope="module")
+def head(scenario) -> HeadMesh:
+    return read_head_mesh(scenario.head_mesh)
+
+
+@pytest.fixture(scope="module", params=(*TASKS, *SEEDS))
+def points(request, scenario, head) -> np.ndarray:
+    """The fiducials of a task that comes with RASTrainer, or drawn at random."""
+    if request.param in TASKS:
+        return scenario.task(request.param).fiducials
+    kind, seed = request.param.split()
+    places = head.vertices[smooth_places(head, 10.0)]
+    if kind == "crowded":
+        places = places[places[:, 1] > 20.0]
+    chosen = np.empty((0, 3))
+    for index in np.random.default_rng(int(seed)).permutation(len(places)):
+        place = places[index]
+        if len(chosen) < 15 and np.all(np.linalg.norm(chosen - place, axis=1) >= 20.0):
+            chosen = np.vstack([chosen, place])
+    assert len(chosen) == 15
+    return chosen
+
+
+@pytest.fixture(scope="module")
+def marks(head, points):
+    return skin_marks(head, points, LABELS)
+
+
+def apart(first: np.ndarray, second: np.ndarray) -> float:
+    return float(cKDTree(second).query(first)[0].min())
+
+
+def places_on(shape) -> np.ndarray:
+    """Return the vertices and the middles of the triangles: less than 1.5 mm between them."""
+    return np.concatenate([shape.points, shape.points[shape.triangles].mean(axis=1)])
+
+
+def test_no_number_touches_an_arrow_a_fiducial_or_another_number(marks):
+    arrows = np.concatenate([places_on(mark.arrow) for mark in marks if mark.arrow])
+    rims = np.concatenate([places_on(mark.rim) for mark in marks])
+    for mark in marks:
+        own = places_on(mark.number)
+        assert apart(own, arrows) > 1.0
+        assert apart(own, rims) > 1.0
+        for other in marks[: marks.index(mark)]:
+            assert apart(own, places_on(other.number)) > 4.0
+
+
+def test_every_number_is_nearest_to_its_own_fiducial(marks, points):
+    for index, mark in enumerate(marks):
+        distances = np.linalg.norm(mark.number.points.mean(axis=0) - points, axis=1)
+        assert np.argmin(distances) == index
+        assert distances[index] < 30.0
+
+
+def test_arrows_touch_neither_fiducials_nor_each_other(marks):
+    arrows = [mark.arrow for mark in marks if mark.arrow]
+    for index, arrow in enumerate(arrows):
+        for mark in marks:
+            assert apart(places_on(arrow), places_on(mark.rim)) > 0.7
+        for other in arrows[:index]:
+            assert apart(places_on(arrow), places_on(other)) > 0.7
+
+
+def test_every_arrow_starts_at_its_fiducial_and_points_to_the_next(marks, points):
+    assert marks[-1].arrow is None
+    for start, goal, mark in zip(points, points[1:], marks, strict=False):
+        ribbon = mark.arrow.points.reshape(-1, 5, 3).mean(axis=1)
+        assert np.linalg.norm(ribbon[0] - start) < RIM_RADIUS + 2.0
+        assert np.linalg.norm(ribbon[-1] - ribbon[0]) >= 5.0
+        assert np.linalg.norm(goal - ribbon[-1]) < np.linalg.norm(goal - ribbon[0])
+        tip_width = np.linalg.norm(mark.arrow.points[-1] - mark.arrow.points[-5])
+        assert tip_width < 0.1, "it comes to a point"
+
+
+def test_arrows_lie_on_the_skin(marks, head):
+    for mark in marks[:-1:3]:
+        for place in mark.arrow.points[::12]:
+            assert nearest_on_mesh(head, place).distance < ARROW_LIFT + 0.5
