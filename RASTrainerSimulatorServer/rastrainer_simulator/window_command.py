@@ -44,6 +44,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         default=Path.home() / "RASTrainer" / "pictures",
         help="folder of the pictures that F12 keeps (default: %(default)s)",
     )
+    parser.add_argument(
+        "--picture-quality",
+        choices=("high", "medium", "low"),
+        default="high",
+        help="light and shadows of these pictures (default: %(default)s)",
+    )
     parser.add_argument("--frame-log", type=Path, help=argparse.SUPPRESS)
     parser.set_defaults(run=run)
 
@@ -80,6 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         is_fullscreen=arguments.fullscreen,
         quality=None if arguments.quality == "auto" else Quality(arguments.quality),
         pictures=arguments.pictures,
+        picture_quality=Quality(arguments.picture_quality),
         frame_log=arguments.frame_log,
     )
     window = DesktopWindow(options)

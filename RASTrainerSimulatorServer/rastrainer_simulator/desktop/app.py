@@ -32,6 +32,8 @@ LEAST_REFRESH_HZ = 60.0
 TRIED_FRAMES = 12
 POLITENESS = 10
 LEFT_BUTTON = 1
+OWN_KEYS = (pygame.K_F11, pygame.K_F12)
+"""Full screen, and keep a picture: these the simulator is not told."""
 
 _log = logging.getLogger(__name__)
 
@@ -47,6 +49,7 @@ class WindowOptions:
         is_fullscreen: whether to begin without a frame.
         quality: None finds out what the machine can afford.
         pictures: folder of what F12 keeps.
+        picture_quality: of what F12 keeps, which may take its time.
         frame_log: file that gets a line for each picture, for measurements.
     """
 
@@ -56,6 +59,7 @@ class WindowOptions:
     is_fullscreen: bool = False
     quality: Quality | None = None
     pictures: Path = Path.home() / "RASTrainer" / "pictures"
+    picture_quality: Quality = Quality.HIGH
     frame_log: Path | None = None
 
 
@@ -83,6 +87,7 @@ class DesktopWindow:
         )
         self._keys = OperatorKeys(self._connection)
         self._frames = FrameCount(self._report_frames, time.monotonic())
+        self._own_held: set[int] = set()
         self._is_open = True
 
     async def run(self) -> None:
@@ -123,28 +128,43 @@ class DesktopWindow:
         await asyncio.sleep(max(0.0, rest))
 
     def _take(self, event: pygame.event.Event) -> None:
+        if event.type in (pygame.KEYDOWN, pygame.KEYUP) and event.key in OWN_KEYS:
+            self._take_own_key(event)
+            return
         if event.type == pygame.QUIT:
             self._is_open = False
-        elif event.type == pygame.KEYDOWN and event.key == pygame.K_F11:
-            self._window.toggle_fullscreen()
-        elif event.type == pygame.KEYDOWN and event.key == pygame.K_F12:
-            self._keep_picture()
-        elif event.type == pygame.MOUSEMOTION:
-            self._picture.pointer = event.pos
+        elif event.type == pygame.MOUSEMOTION and event.rel != (0, 0):
+            self._picture.pointer.move(event.pos, time.monotonic())
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button == LEFT_BUTTON:
-            self._picture.pointer = event.pos
-            name = self._picture.item_at_pointer()
-            if name:
-                self._connection.send(ITEM, name=name)
+            self._click(event.pos)
         elif event.type == pygame.MOUSEWHEEL and event.y:
             self._keys.tap("ArrowUp" if event.y > 0 else "ArrowDown")
         elif event.type in (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED):
             self._picture.redraw()
         self._keys.take(event)
 
+    def _take_own_key(self, event: pygame.event.Event) -> None:
+        """Do what a key of the window does, once for as long as it is held."""
+        if event.type == pygame.KEYUP:
+            self._own_held.discard(event.key)
+        elif event.key not in self._own_held:
+            self._own_held.add(event.key)
+            if event.key == pygame.K_F11:
+                self._window.toggle_fullscreen()
+            else:
+                self._keep_picture()
+
+    def _click(self, place: tuple[int, int]) -> None:
+        now = time.monotonic()
+        self._picture.pointer.move(place, now)
+        name = self._picture.item_at_pointer(now)
+        if name:
+            self._connection.send(ITEM, name=name)
+
     def _keep_picture(self) -> None:
+        pixels = self._picture.still(self._options.picture_quality)
         try:
-            path = save_picture(self._picture.best(), self._options.pictures)
+            path = save_picture(pixels, self._options.pictures)
         except InputError as error:
             _log.warning("%s", error)
         else:
@@ -175,7 +195,7 @@ class DesktopWindow:
         return contextlib.nullcontext() if path is None else path.open("w", encoding="utf-8")
 
     def _log_frame(self, log: IO[str] | None) -> None:
-        if log is None or self._inbox.state is None:
+        if log is None or self._inbox.state is None or self._inbox.scene is None:
             return
         line = {"shown": time.monotonic(), "tick": self._inbox.state["tick"]}
         log.write(json.dumps(line) + "\n")

@@ -43,7 +43,7 @@ class Connection:
         self._scene_url = ""
 
     def send(self, message: str, /, **members: Any) -> None:
-        """Send a message of that type, unless there is no connection: what was pressed then does not count."""
+        """Send a message of that type; without a connection what was pressed does not count."""
         if self._stream is not None:
             self._outgoing.put_nowait({"type": message, **members})
 

@@ -13,12 +13,16 @@ FLIGHT_S = 0.7
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """Where a camera stands; World, m; the angle is vertical, degrees."""
+    """Where a camera stands; World, m; the angle is vertical, degrees.
+
+    `aside` is how far the picture is pushed to the right, in halves of its width.
+    """
 
     position: np.ndarray
     focal_point: np.ndarray
     view_up: np.ndarray
     angle_deg: float
+    aside: float = 0.0
 
     @classmethod
     def from_json(cls, value: Mapping) -> Viewpoint:
@@ -38,9 +42,8 @@ class Viewpoint:
             (self.view_up, other.view_up),
         )
         place, focus, up = (start + share * (end - start) for start, end in pairs)
-        return Viewpoint(
-            place, focus, up, self.angle_deg + share * (other.angle_deg - self.angle_deg)
-        )
+        angle = self.angle_deg + share * (other.angle_deg - self.angle_deg)
+        return Viewpoint(place, focus, up, angle, self.aside + share * (other.aside - self.aside))
 
     def look(self, renderer: vtkRenderer) -> None:
         """Set a renderer's camera."""
@@ -49,6 +52,7 @@ class Viewpoint:
         camera.SetFocalPoint(*self.focal_point)
         camera.SetViewUp(*self.view_up)
         camera.SetViewAngle(self.angle_deg)
+        camera.SetWindowCenter(-self.aside, 0.0)
         renderer.ResetCameraClippingRange()
 
 

@@ -131,7 +131,9 @@ class Overlay:
             slot.sprite.paint(picture.pixels)
             self._menu = (picture, Box(0, 0, 0, 0))
         width, height = slot.sprite.size
-        box = Box((self._size[0] - width) // 2, top + (room[1] - height) // 2, width, height)
+        # To the left, so that the robot is seen beside it.
+        left = min(self._brush.px(theme.MENU_LEFT), (self._size[0] - width) // 2)
+        box = Box(left, top + (room[1] - height) // 2, width, height)
         self._menu = (self._menu[0], box)
         self._place("menu", box.left, box.top)
 

@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.protocol import Phase
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
 from rastrainer_simulator.desktop.notices import notice
 from rastrainer_simulator.desktop.overlay import Content, Overlay
+from rastrainer_simulator.desktop.pointer import Pointer
 from rastrainer_simulator.desktop.quality import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.desktop.stage import Stage
@@ -20,6 +22,8 @@ from rastrainer_simulator.flow.screen import Screen
 
 MM_IN_M = 1000.0
 PULSE_S = 1.4
+FAR = "far"
+BESIDE_MENU = 0.44
 PULSE_HZ: Mapping[Quality, float] = {Quality.HIGH: 30.0, Quality.MEDIUM: 30.0, Quality.LOW: 4.0}
 
 
@@ -36,11 +40,11 @@ class Picture:
         self._drawn_state: Mapping[str, Any] | None = None
         self._pulse_step = 0
         self._must_draw = True
-        self.pointer = (-1, -1)
+        self.pointer = Pointer()
 
-    def item_at_pointer(self) -> str:
+    def item_at_pointer(self, now: float) -> str:
         """Return the name of the menu's item under the mouse."""
-        return self._overlay.item_at(*self.pointer)
+        return self._overlay.item_at(*self.pointer.place(now))
 
     def redraw(self) -> None:
         """Draw at the next occasion, whatever has changed."""
@@ -54,7 +58,7 @@ class Picture:
         screen = self._inbox.screen
         self.stage.wants_inset = screen is None or screen.menu is None
         self.stage.prepare(now)
-        if self._overlay.show(self._content(), self._window.size):
+        if self._overlay.show(self._content(now), self._window.size):
             self._must_draw = True
         return self._must_draw or self.stage.is_moving(now)
 
@@ -63,10 +67,10 @@ class Picture:
         self._must_draw = False
         self._window.render_window.Render()
 
-    def best(self) -> np.ndarray:
-        """Return the same picture in the best quality, (height, width, 3) uint8."""
+    def still(self, best: Quality) -> np.ndarray:
+        """Return the same picture in another quality, (height, width, 3) uint8."""
         quality = self.stage.quality
-        self.stage.set_quality(Quality.HIGH)
+        self.stage.set_quality(best)
         self._mark(0.0)
         self._window.render_window.Render()
         pixels = self._window.pixels()
@@ -96,8 +100,17 @@ class Picture:
             self._scene.place(state["poses"])
             self._must_draw = True
         self._drawn_state = state
-        self.stage.choose(state["camera"], now)
+        self._choose_camera(state, now)
         self._mark(now)
+
+    def _choose_camera(self, state: Mapping[str, Any], now: float) -> None:
+        """Look as the simulator says; beside a menu, and from afar while no trial is open."""
+        screen = self._inbox.screen
+        if screen is None or screen.menu is None:
+            self.stage.choose(state["camera"], now)
+            return
+        is_idle = state["phase"] == Phase.IDLE and FAR in self.stage.cameras
+        self.stage.choose(FAR if is_idle else state["camera"], now, BESIDE_MENU)
 
     def _mark(self, now: float) -> None:
         """Color what the state says; the next fiducial grows brighter and darker again."""
@@ -113,7 +126,7 @@ class Picture:
             self._scene.pulse(0.5 - 0.5 * math.cos(2.0 * math.pi * now / PULSE_S))
             self._must_draw = True
 
-    def _content(self) -> Content:
+    def _content(self, now: float) -> Content:
         screen = self._inbox.screen or Screen()
         if self._inbox.problem:
             return Content(notice(self._inbox.problem, screen.language))
@@ -124,7 +137,7 @@ class Picture:
             is_contact=is_free and state.get("proximity") == "contact",
             inset=self.stage.inset_box if self.stage.has_inset else None,
             target=self._target() if is_free else None,
-            hovered="" if is_free else self.item_at_pointer(),
+            hovered=self.item_at_pointer(now),
         )
 
     def _target(self) -> tuple[Direction, int] | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 
 from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
 
@@ -41,7 +42,7 @@ class Stage:
             renderer.SetBackground(*BACKGROUND)
         self._scene: ShownScene | None = None
         self._cameras: dict[str, Viewpoint] = {}
-        self._camera = ""
+        self._chosen = ("", 0.0)
         self._flight: Flight | None = None
         self.quality = quality
         self.wants_inset = True
@@ -63,19 +64,28 @@ class Stage:
         if self._scene is not None:
             self._scene.finish(quality.is_physical)
 
-    def choose(self, camera: str, now: float) -> None:
-        """Have the main view go to a camera, and the inset show another."""
+    def choose(self, camera: str, now: float, aside: float = 0.0) -> None:
+        """Have the main view go to a camera, and the inset show another.
+
+        `aside` pushes the main picture to the right, in halves of its width.
+        """
         if camera not in self._cameras:
             return
+        viewpoint = replace(self._cameras[camera], aside=aside)
         if self._flight is None:
-            self._flight = Flight(self._cameras[camera])
-        elif camera != self._camera:
-            self._flight.go(self._cameras[camera], now)
-        self._camera = camera
+            self._flight = Flight(viewpoint)
+        elif (camera, aside) != self._chosen:
+            self._flight.go(viewpoint, now)
+        self._chosen = (camera, aside)
 
     def is_moving(self, now: float) -> bool:
         """Return whether the main view's camera is on its way."""
         return self._flight is not None and self._flight.is_flying(now)
+
+    @property
+    def cameras(self) -> Collection[str]:
+        """Names of the views there are."""
+        return self._cameras.keys()
 
     @property
     def inset_box(self) -> Box:
@@ -106,7 +116,7 @@ class Stage:
             (box.left + box.width) / width,
             1.0 - box.top / height,
         )
-        other = next((name for name in self._cameras if name != self._camera), self._camera)
+        other = next((name for name in self._cameras if name != self._chosen[0]), self._chosen[0])
         self._cameras[other].look(self._inset)
 
     def _light(self) -> None:

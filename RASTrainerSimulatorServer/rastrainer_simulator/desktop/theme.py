@@ -24,7 +24,7 @@ def rgba(code: int, opacity: float = 1.0) -> Color:
 
 NIGHT = rgba(0x0E1726, 0.94)
 GLASS = rgba(0x0E1726, 0.80)
-SCRIM = rgba(0x0A1220, 0.45)
+SCRIM = rgba(0x0A1220, 0.25)
 ROW = rgba(0xFFFFFF, 0.07)
 ROW_HOVER = rgba(0xFFFFFF, 0.14)
 FIELD = rgba(0x000000, 0.35)
@@ -80,6 +80,7 @@ PANEL_PAD = 7 * STEP
 RADIUS = 2 * STEP
 PANEL_RADIUS = 4 * STEP
 ROW_HEIGHT = 8 * STEP
+MENU_LEFT = 12 * STEP
 PANEL_WIDTH = 900
 WIDE_PANEL_WIDTH = 1560
 INSTRUCTION_WIDTH = 940
