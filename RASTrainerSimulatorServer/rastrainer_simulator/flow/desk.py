@@ -109,9 +109,9 @@ class Desk:
 
     def view_left(self, view: int) -> None:
         """Forget a view."""
-        self._views.pop(view, None)
         for kind in SourceKind:
             self.controls.forget(self._source(kind, view))
+        self._views.pop(view, None)
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:

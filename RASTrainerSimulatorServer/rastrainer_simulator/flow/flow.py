@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer.protocol import Phase
+from rastrainer.protocol import TRIAL_RUN, Phase
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.control_name import ControlName, Situation
 from rastrainer_simulator.flow.feedback import happening
@@ -110,6 +110,8 @@ class Flow:
             self._working.begin(*points_in_world(self._control_loop.truth))
             session.trainee = training.trainee
             session.mode = training.mode
+            if training.task == TRIAL_RUN:
+                session.progress.note(training.trainee, training.task)
         if training.phase in (Phase.RUNNING, Phase.COMPLETE):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, Proximity
 from rastrainer_simulator.controls.control_name import ControlName
 from rastrainer_simulator.flow.pages.start import StartPage
@@ -161,7 +163,7 @@ class Working:
         elapsed = session.state.elapsed
         if session.training.task != TRIAL_RUN:
             return session.duration(elapsed)
-        left = max(0.0, TRIAL_RUN_S - elapsed)
+        left = math.ceil(max(0.0, TRIAL_RUN_S - elapsed))
         return session.texts.say("status.left", time=session.duration(left))
 
     def _toward(self, target: Vector) -> str:

@@ -303,7 +303,6 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "here and scored later.",
         "warning.unplugged": "The gamepad {name} is unplugged: the robot stands still. Plug it in "
         "again or go on with the keyboard.",
-        "warning.no gamepad": "No gamepad is connected: use the keyboard.",
         "warning.unmapped": "The gamepad {name} has an unknown layout: use another one or the "
         "keyboard.",
         "warning.no SDL": "Gamepads cannot be read on this computer ({reason}): use the keyboard.",

@@ -315,7 +315,6 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "aufgezeichnet und später bewertet.",
         "warning.unplugged": "Das Gamepad {name} ist ausgesteckt: Der Roboter steht still. Steck "
         "es wieder ein oder mach mit der Tastatur weiter.",
-        "warning.no gamepad": "Es ist kein Gamepad angeschlossen: Nimm die Tastatur.",
         "warning.unmapped": "Das Gamepad {name} hat eine unbekannte Belegung: Nimm ein anderes "
         "oder die Tastatur.",
         "warning.no SDL": "Auf diesem Rechner lassen sich keine Gamepads lesen ({reason}): Nimm "

@@ -1,13 +1,11 @@
-"""From the start menu to the result, as the paper's figure 4 has it, against a real control loop."""
+"""From the start menu to the result (the paper's figure 4), against a real control loop."""
 
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from rastrainer.journal.journal_reader import Integrity, read_journal
 from rastrainer_simulator.record.replay import replay
-
 
 SCORE = {
     "matrix": np.eye(4).ravel().tolist(),
@@ -81,15 +79,3 @@ def test_the_whole_flow_goes_by_a_gamepad_alone_and_its_trial_replays_bit_by_bit
     assert reading.header["trainee"] == "P07"
     assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}
     assert replay(reading, setup).is_identical
-
-
-@pytest.mark.parametrize("control", ["pause", "menu"])
-def test_a_trial_is_paused_and_goes_on(trainee, control):
-    trainee.start("task-1")
-    trainee.tap(control)
-    trainee.until_menu("trial")
-    elapsed = trainee.state.elapsed
-    trainee.step(20)
-    assert trainee.state.elapsed == elapsed
-    trainee.tap(control)
-    trainee.until_menu(None)

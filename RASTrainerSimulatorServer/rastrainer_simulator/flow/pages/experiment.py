@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer.protocol import TRIAL_RUN, CommandName, Mode
+from rastrainer.protocol import CommandName, Mode
 from rastrainer_simulator.controls.source import SourceKind
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.keyboard import KeyboardPage
@@ -94,6 +94,4 @@ class ExperimentPage(Page):
     def _begin(self, task: str) -> None:
         session = self.session
         trainee = session.trainee.strip()
-        if task == TRIAL_RUN:
-            session.progress.note(trainee, task)
         session.do(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": session.mode})

@@ -1,0 +1,197 @@
+"""Gamepads that go, operators that come, and controls that are changed on the screen."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.controls.bindings_file import FILE_NAME, read_bindings
+from rastrainer_simulator.controls.control_name import ControlName
+from rastrainer_simulator.flow.running_desk import RunningDesk
+from rastrainer_simulator.view_server.operator_desk import Hello
+from Testing.simulator.flow.trainee import Keys
+
+
+def tip(trainee):
+    return np.array(trainee.tip)
+
+
+def test_unplugging_stops_the_robot_at_once_and_says_so_and_the_trial_goes_on(pilot):
+    pilot.start("task-1")
+    pilot.hands.push(0.6, 0.0, 0.3, False)
+    before = tip(pilot)
+    pilot.step(20)
+    assert np.linalg.norm(tip(pilot) - before) > 0.002
+    pilot.hands.plugged.plug_out()
+    pilot.step()
+    stopped = tip(pilot)
+    pilot.step(30)
+    assert np.array_equal(tip(pilot), stopped)
+    assert pilot.state.training.phase == "running"
+    assert "unplugged: the robot stands still" in pilot.desk.screen.warnings[0].text
+    assert pilot.desk.control.holder == ""
+    pilot.hands.plugged.plug_in()
+    pilot.step(20)
+    assert pilot.desk.screen.warnings == ()
+    pilot.hands.push(0.6, 0.0, 0.0, False)
+    pilot.step(20)
+    assert np.linalg.norm(tip(pilot) - stopped) > 0.002
+
+
+def test_a_stick_that_is_held_while_a_menu_closes_does_not_move_the_arm_until_let_go(pilot):
+    pilot.start("task-1")
+    pilot.tap("menu")
+    pilot.until_menu("trial")
+    pilot.hands.push(0.8, 0.0, 0.0, False)
+    pilot.step(5)
+    pilot.submit("Resume")
+    pilot.until_menu(None)
+    still = tip(pilot)
+    pilot.step(20)
+    assert np.array_equal(tip(pilot), still)
+    pilot.hands.push(0.0, 0.0, 0.0, False)
+    pilot.step(2)
+    pilot.hands.push(0.8, 0.0, 0.0, False)
+    pilot.step(20)
+    assert not np.array_equal(tip(pilot), still)
+
+
+def test_another_operator_takes_the_control_only_after_a_rest_and_by_the_menu(trainee):
+    trainee.start("task-1")
+    other = Keys(trainee, view=2, kind="page")
+    trainee.hands.push(1.0, 0.0, 0.0, False)
+    trainee.step(2)
+    other.tap("touch")
+    other.tap("menu")
+    assert trainee.desk.control.view == 1
+    assert trainee.state.training.rejected == 0
+    assert trainee.state.training.phase == "running"
+    assert "The keyboard holds the control" in trainee.desk.screen.warnings[0].text
+    trainee.hands.push(0.0, 0.0, 0.0, False)
+    trainee.step(300)
+    other.tap("touch")
+    assert trainee.desk.control.view == 1
+    other.tap("menu")
+    assert trainee.desk.control.view == 2
+    trainee.until_menu("trial")
+    trainee.hands.tap("accept")
+    trainee.step(5)
+    assert trainee.state.training.phase == "paused"
+
+
+def test_the_keyboard_and_the_gamepad_of_one_seat_share_the_control(pilot):
+    keys = Keys(pilot, view=1)
+    pilot.tap("down")
+    assert pilot.desk.control.holder == "gamepad"
+    keys.tap("down")
+    assert pilot.desk.control.holder == "keyboard"
+    pilot.tap("down")
+    assert pilot.desk.control.holder == "gamepad"
+
+
+def test_a_view_that_leaves_lets_the_arm_stand_still_and_gives_the_control_up(trainee):
+    trainee.start("task-1")
+    trainee.hands.push(1.0, 0.0, 0.0, False)
+    trainee.step(20)
+    trainee.desk.view_left(1)
+    trainee.step()
+    still = tip(trainee)
+    trainee.step(20)
+    assert np.array_equal(tip(trainee), still)
+    assert trainee.desk.control.holder == ""
+
+
+def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(trainee):
+    trainee.desk.view_left(1)
+    desk = trainee.desk
+    desk.view_joined(5, Hello("headset", "Quest 3", 90.0))
+    desk.on_press(5, "touch")
+    trainee.until_menu("introduction")
+    desk.on_press(5, "undo")
+    trainee.until_menu("start")
+    trainee.start("task-1")
+    desk.on_sticks(5, (0.9, 0.0, 0.0), (0.0, 0.0), False)
+    trainee.step(10)
+    desk.on_visibility(5, False)
+    trainee.until_menu("trial")
+
+
+def test_a_control_is_given_a_free_key_and_keeps_it(trainee, outside):
+    open_the_bindings(trainee)
+    trainee.choose("touch")
+    trainee.until_menu("listen")
+    trainee.hands.key("KeyT")
+    trainee.until_menu("bindings")
+    trainee.step(20)
+    assert trainee.item("touch").value == "T"
+    assert trainee.desk.screen.warnings[0].text == "Touch is now T."
+    saved = read_bindings(outside.surroundings.config / FILE_NAME)
+    assert saved.keyboard[ControlName.TOUCH] == ("KeyT",)
+    trainee.choose("defaults")
+    trainee.step()
+    assert read_bindings(outside.surroundings.config / FILE_NAME) == DEFAULT_BINDINGS
+
+
+@pytest.mark.parametrize("answer", ["exchange", "cancel"])
+def test_a_key_that_is_taken_is_exchanged_only_on_request(trainee, answer):
+    open_the_bindings(trainee)
+    trainee.choose("touch")
+    trainee.until_menu("listen")
+    trainee.hands.key("KeyC")
+    trainee.until_menu("conflict")
+    assert trainee.menu.paragraphs == ("C is Camera now. Exchange it with Touch?",)
+    trainee.choose(answer)
+    trainee.until_menu("bindings")
+    trainee.step(20)
+    labels = (trainee.item("touch").value, trainee.item("camera").value)
+    assert labels == (("C", "Space") if answer == "exchange" else ("Space, Enter", "C"))
+
+
+def test_nobody_pressing_anything_leaves_the_bindings_as_they_were(trainee):
+    open_the_bindings(trainee)
+    trainee.choose("undo")
+    trainee.until_menu("listen")
+    trainee.until_menu("bindings")
+    assert trainee.desk.controls.bindings == DEFAULT_BINDINGS
+
+
+def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):
+    pilot.choose("controls")
+    pilot.until_menu("controls")
+    pilot.choose("test")
+    pilot.until_menu("test")
+    pilot.hands.push(0.5, -1.0, 0.25, True)
+    pilot.hands.plugged.press("x")
+    pilot.step(20)
+    values = [item.value for item in pilot.menu.items if item.kind == "axis"]
+    assert values == ["0.50", "-1.00", "0.25", "0.00", "0.00"]
+    assert pilot.menu.facts[0].value == "On"
+    assert ("X", "nothing") in [(fact.label, fact.value) for fact in pilot.menu.facts]
+    pilot.tap("back")
+    assert pilot.menu.name == "test"
+    pilot.tap("menu")
+    pilot.until_menu("controls")
+
+
+def test_hostile_settings_files_are_told_and_the_defaults_used(loop, outside):
+    folder = outside.surroundings.config
+    folder.mkdir()
+    (folder / FILE_NAME).write_text(json.dumps({"formatVersion": 1, "keyboard": {"touch": []}}))
+    (folder / "preferences.json").write_text("[" * 100_000)
+    running = RunningDesk(loop, outside.surroundings, has_gamepad=False)
+    running.advance(0.01)
+    warnings = [message.text for message in running.desk.screen.warnings]
+    assert len(warnings) == 2
+    assert all(text.endswith("The defaults are used.") for text in warnings)
+    assert running.desk.controls.bindings == DEFAULT_BINDINGS
+    running.close()
+
+
+def open_the_bindings(trainee):
+    trainee.choose("controls")
+    trainee.until_menu("controls")
+    trainee.choose("rebind")
+    trainee.until_menu("bindings")

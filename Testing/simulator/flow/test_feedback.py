@@ -1,0 +1,100 @@
+"""Everything that happens is heard and felt once."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.flow.feedback import SENSATIONS, Happening, happening
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.state import Event, EventKind
+
+
+@pytest.fixture(scope="module")
+def shared(setup):
+    """Return a simulation in which every touch counts, wherever the tip is."""
+    training = replace(setup.settings.training, acceptance_radius=10.0)
+    return Simulation(replace(setup, settings=replace(setup.settings, training=training)), 3)
+
+
+def happenings_of(loop):
+    """Return a list that fills with what the loop's events mean."""
+    heard = []
+    loop.subscribe(lambda result: heard.extend(filter(None, map(happening, result.events))))
+    return heard
+
+
+def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(pilot, felt):
+    expected = happenings_of(pilot.loop)
+    # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
+    pilot.desk.subscribe(lambda _news: pilot.desk.rumble(0.0, 0.0))
+    pilot.start("task-1")
+    truth = pilot.loop.truth
+    center = truth.in_world(truth.target) / 1000.0
+    top = truth.in_world(truth.fiducials["1"]) / 1000.0
+    outward = (top - center) / np.linalg.norm(top - center)
+    pilot.steer_to(top + 0.06 * outward, 0.02)
+    pilot.steer_to(top - 0.02 * outward, 0.001)
+    pilot.steer_to(top + 0.06 * outward, 0.02)
+    pilot.hands.push(0.0, 0.0, 0.0, False)
+    for number in range(1, 16):
+        pilot.tap("touch")
+        pilot.until(lambda number=number: len(pilot.state.training.touches) == number)
+    pilot.tap("undo")
+    pilot.until(lambda: len(pilot.state.training.touches) == 14)
+    pilot.step(2)
+    pilot.tap("touch")
+    pilot.until(lambda: pilot.state.training.phase == "complete")
+    pilot.step(2)
+    pilot.tap("touch")
+    pilot.until_menu("complete")
+    pilot.tap("accept")
+    pilot.until_menu("waiting")
+    told = [kind for kind in pilot.watcher.kinds if kind not in ("focus", "accept")]
+    assert told == [each.value for each in expected]
+    counted = Counter(told)
+    assert counted["touch"] == 16
+    assert counted["undo"] == counted["finish"] == 1
+    assert counted["proximity-in"] == counted["proximity-out"] >= 1
+    assert counted["contact"] == counted["contact-out"] >= 1
+    strengths = [SENSATIONS[each].rumble for each in expected]
+    assert [low for low, _ in felt if low > 0.0] == pytest.approx(strengths, abs=1e-4)
+    numbers = [feedback.number for feedback in pilot.watcher.feedbacks]
+    assert numbers == list(range(1, len(numbers) + 1))
+
+
+def test_every_sound_that_is_named_comes_with_rastrainer():
+    sounds = {sensation.sound for sensation in SENSATIONS.values()} - {""}
+    assert sounds == {path.stem for path in asset_path("sounds").glob("*.wav")}
+    assert set(SENSATIONS) == set(Happening)
+
+
+def test_muted_sounds_have_no_volume(trainee):
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    trainee.focus("volume")
+    trainee.tap("right")
+    trainee.step()
+    assert trainee.watcher.feedbacks[-1].volume == pytest.approx(0.7)
+    trainee.focus("muted")
+    assert trainee.watcher.feedbacks[-1].volume == pytest.approx(0.8)
+    trainee.tap("right", "up")
+    assert trainee.watcher.feedbacks[-1].volume == 0.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "data", "meant"),
+    [
+        (EventKind.REJECTED, {}, Happening.ERROR),
+        (EventKind.PROXIMITY, {"from": "free", "to": "contact"}, Happening.CONTACT),
+        (EventKind.PROXIMITY, {"from": "contact", "to": "free"}, Happening.PROXIMITY_OUT),
+        (EventKind.PHASE, {"phase": "paused"}, None),
+        (EventKind.CAMERA, {"camera": "far"}, None),
+    ],
+)
+def test_what_an_event_means(kind, data, meant):
+    assert happening(Event(kind, 0.0, data)) is meant

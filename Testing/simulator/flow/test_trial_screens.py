@@ -1,0 +1,190 @@
+"""The screens of a trial: whoever starts, pauses or ends it."""
+
+from __future__ import annotations
+
+from rastrainer_simulator.flow import working
+from rastrainer_simulator.flow.progress import Progress
+
+
+def test_a_trial_that_slicer_starts_pauses_and_aborts_leads_to_the_same_screens(trainee):
+    trainee.start("task-2", "T-99")
+    assert trainee.desk.screen.instruction.text == "T-99, touch point 1."
+    assert trainee.desk.screen.status[:2] == ("Task 2", "0 of 15 points")
+    trainee.submit("Pause")
+    trainee.until_menu("trial")
+    trainee.submit("Resume")
+    trainee.until_menu(None)
+    trainee.submit("Abort")
+    trainee.until_menu("experiment")
+    assert trainee.item("trainee").value == "T-99"
+
+
+def test_a_trial_is_paused_and_goes_on_by_the_same_control(trainee):
+    for control in ("pause", "menu"):
+        trainee.start("task-1")
+        trainee.tap(control)
+        trainee.until_menu("trial")
+        elapsed = trainee.state.elapsed
+        trainee.step(20)
+        assert trainee.state.elapsed == elapsed
+        trainee.tap(control)
+        trainee.until_menu(None)
+        trainee.submit("Abort")
+        trainee.until_menu("experiment")
+
+
+def test_a_trial_is_aborted_only_when_the_trainee_says_so_twice(trainee):
+    trainee.start("task-1")
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    trainee.choose("abort")
+    trainee.until_menu("abort")
+    assert trainee.menu.focus == "keep"
+    trainee.tap("accept")
+    trainee.until_menu("trial")
+    assert trainee.state.training.phase == "paused"
+    trainee.choose("abort")
+    trainee.until_menu("abort")
+    trainee.choose("abort")
+    trainee.until_menu("experiment")
+    assert trainee.state.training.phase == "idle"
+
+
+def test_tasks_wait_for_the_one_before_unless_the_instructor_says_otherwise(trainee):
+    trainee.choose("train")
+    trainee.until_menu("introduction")
+    trainee.choose("skip")
+    trainee.until_menu("controls")
+    trainee.choose("next")
+    trainee.until_menu("experiment")
+    assert trainee.item("trial-run").help == "Enter your ID first."
+    trainee.desk.on_text(1, "trainee", "P07")
+    trainee.step()
+    assert trainee.item("trial-run").is_enabled
+    assert trainee.item("task-1").help == "Trial run comes first."
+    trainee.focus("task-3")
+    trainee.tap("accept")
+    trainee.step()
+    assert trainee.watcher.kinds[-1] == "error"
+    assert trainee.state.training.phase == "idle"
+    trainee.tap("back")
+    trainee.until_menu("start")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    trainee.focus("order")
+    trainee.tap("right", "back")
+    trainee.until_menu("start")
+    trainee.choose("train")
+    trainee.until_menu("experiment")
+    assert trainee.item("task-5").is_enabled
+
+
+def test_what_was_done_is_known_after_the_simulator_was_started_again(trainee, outside, loop):
+    trainee.start("trial-run", "P07")
+    trainee.submit("Abort")
+    trainee.until_menu("experiment")
+    trainee.close()
+    loop.stop()
+    progress = Progress(outside.surroundings.records)
+    assert progress.has_done("P07", "trial-run")
+    assert not progress.has_done("P07", "task-1")
+    assert not progress.has_done("P08", "trial-run")
+
+
+def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monkeypatch):
+    monkeypatch.setattr(working, "TRIAL_RUN_S", 1.0)
+    trainee.start("trial-run")
+    assert trainee.desk.screen.status[2] == "00:01 left"
+    trainee.until_menu("practice")
+    assert trainee.state.training.phase == "paused"
+    trainee.choose("resume")
+    trainee.until_menu(None)
+    trainee.step(50)
+    assert trainee.menu is None
+    trainee.tap("menu")
+    trainee.until_menu("practice")
+    trainee.choose("finish")
+    trainee.until_menu("experiment")
+    assert trainee.item("task-1").is_enabled
+
+
+def test_a_touch_that_is_too_far_is_refused_in_the_chosen_language_and_with_one_tone(trainee):
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    trainee.focus("language")
+    trainee.tap("right")
+    trainee.step()
+    assert trainee.menu.title == "Einstellungen"
+    trainee.start("task-1")
+    assert trainee.desk.screen.instruction.text == "P07, berühre Punkt 1."
+    trainee.tap("touch")
+    trainee.until(lambda: trainee.desk.screen.instruction.tone == "warning")
+    assert trainee.desk.screen.instruction.text.startswith("Zu weit von Punkt 1: ")
+    assert trainee.desk.screen.language == "de"
+    trainee.step(20)
+    assert trainee.watcher.kinds.count("error") == 1
+
+
+def test_the_way_to_the_target_is_told_in_words(trainee):
+    trainee.start("task-1")
+    target = trainee.loop.truth.in_world(trainee.loop.truth.fiducials["1"])
+    away = sum((a - 1000.0 * b) ** 2 for a, b in zip(target, trainee.tip, strict=True)) ** 0.5
+    words = trainee.desk.screen.status[3].split()
+    assert words[:2] == ["Point", "1:"]
+    assert abs(float(words[2]) - away) <= 2.5
+    assert {word.strip(",") for word in words[4:]} <= {"left", "right", "back", "forward", "down"}
+
+
+def test_the_trainee_is_told_that_slicer_is_gone_and_who_scores_then(trainee, outside):
+    trainee.start("task-1")
+    assert trainee.desk.screen.warnings == ()
+    outside.has_slicer = True
+    trainee.step(20)
+    outside.has_slicer = False
+    trainee.step(20)
+    assert "3D Slicer is lost" in trainee.desk.screen.warnings[0].text
+    outside.has_slicer = True
+    trainee.step(20)
+    assert trainee.desk.screen.warnings == ()
+
+
+def test_the_camera_changes_by_its_control(trainee):
+    trainee.start("task-1")
+    before = trainee.state.camera
+    trainee.tap("camera")
+    trainee.until(lambda: trainee.state.camera != before)
+    trainee.tap("camera")
+    trainee.until(lambda: trainee.state.camera == before)
+
+
+def test_what_the_arm_s_settings_would_change_waits_for_the_end_of_a_trial(trainee, outside):
+    trainee.start("task-1")
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    assert not trainee.item("direction").is_enabled
+    assert trainee.item("volume").is_enabled
+    trainee.submit("Abort")
+    trainee.until_menu("experiment")
+    trainee.tap("back")
+    trainee.until_menu("start")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    trainee.focus("fine")
+    trainee.tap("right")
+    trainee.step()
+    assert outside.settings[-1].teleoperation.fine_speed == 0.04
+
+
+def test_quitting_is_asked_for(trainee, outside):
+    trainee.choose("quit")
+    trainee.until_menu("quit")
+    trainee.tap("accept")
+    trainee.until_menu("start")
+    assert not outside.has_quit
+    trainee.choose("quit")
+    trainee.until_menu("quit")
+    trainee.choose("leave")
+    trainee.step()
+    assert outside.has_quit
