@@ -287,6 +287,7 @@ class Host:
         self.process_events()
 
     def _usable(self, name: str) -> Any:
+        self.process_events()  # A widget that has just been added is shown by an event.
         widget = self.find(name)._qt
         if not widget.isEnabled():
             raise AssertionError(f"{name} is disabled: {widget.toolTip()}")

@@ -1,0 +1,104 @@
+"""What may be wrong with touches: the panel names the points, and offers what can be done."""
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.tasks import LABELS
+from rastrainer_simulator.assets import asset_path
+
+ALL = ", ".join(LABELS)
+ONE_LINE = np.outer(np.arange(15), [9.0, 9.0, 9.0])
+
+
+@pytest.fixture
+def panel(host):
+    """The section Registration, open, with the fiducials of task 1 in the scene."""
+    host.open()
+    host.press("showScenarioButton")
+    host.find("registrationCollapsibleButton").collapsed = False
+    host.process_events()
+    return host
+
+
+@pytest.fixture
+def touches():
+    """Good touches, (15, 3) float, World, mm."""
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
+    return transforms.apply(
+        colin.perturbed_head_to_world(3), colin.task("task-1").fiducials + noise
+    )
+
+
+def touch(host, points):
+    """Put touches into the scene, and wait until the panel has taken them."""
+    host.find("registrationText").text = ""
+    setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
+    host.wait_until(lambda: host.text("registrationText"), "the touches are registered")
+
+
+def warnings(host):
+    layout = host.find("warningsWidget").layout()
+    widgets = [layout.itemAt(index).widget() for index in range(layout.count())]
+    return [widget.text for widget in widgets if widget.className() == "QLabel"]
+
+
+def rows(*order):
+    return lambda points: points[list(order)]
+
+
+def moved(row, offset):
+    return lambda points: points + np.outer(np.arange(15) == row, offset)
+
+
+def onto(row, other):
+    return lambda points: np.where((np.arange(15) == row)[:, None], points[other], points)
+
+
+@pytest.mark.parametrize(
+    ("change", "named", "button"),
+    [
+        (rows(0, 1, 3, 2, *range(4, 15)), "Points 3 and 4 seem to be exchanged", "Put in order"),
+        (rows(*range(14, -1, -1)), f"({ALL}) are in reverse order", "Put in order"),
+        (rows(*range(1, 15), 0), f"({ALL}) begin elsewhere", "Put in order"),
+        (onto(9, 4), "Points 5 and 10 of the moving points", "Leave out 10"),
+        (moved(6, [9.0, -6.0, 5.0]), "Point 7 lies", "Leave out 7"),
+    ],
+    ids=["exchanged", "reversed", "begun elsewhere", "one place twice", "one bad touch"],
+)
+def test_one_click_mends_it_at_once_and_undo_brings_it_back(panel, touches, change, named, button):
+    touch(panel, change(touches))
+    assert named in " ".join(warnings(panel))
+    number = next(n for n, text in enumerate(warnings(panel)) if named in text)
+    assert panel.text(f"remedy{number}Button") == button
+    panel.press(f"remedy{number}Button")
+    assert named not in " ".join(warnings(panel))
+    panel.press("undoButton")
+    assert named in " ".join(warnings(panel))
+
+
+@pytest.mark.parametrize(
+    ("change", "named", "advice"),
+    [
+        (lambda points: points * [1, 1, -1], f"({ALL}) are a mirror image", "check the sign"),
+        (lambda points: points / 1000, f"({ALL}) are 998.9 times", "must be in millimeters"),
+        (lambda points: points[0] + ONE_LINE, f"({ALL})", "one line"),
+        (lambda points: points[:2], "", "at least 3"),
+    ],
+    ids=["mirrored", "in meters", "on one line", "too few"],
+)
+def test_what_no_click_can_mend_is_told_with_its_points(panel, touches, change, named, advice):
+    touch(panel, change(touches))
+    told = " ".join([*warnings(panel), panel.text("registrationText")])
+    assert named in told
+    assert advice in told
+
+
+def test_good_touches_raise_no_warning(panel, touches):
+    touch(panel, touches)
+    assert warnings(panel) == []
+    assert panel.find("residualsTable").rowCount == 15
