@@ -17,6 +17,9 @@ from rastrainer.target_error import expected_tre, target_error
 from rastrainer.tasks import LABELS
 
 
+LEGEND = "vtkMRMLColorLegendDisplayNode"
+
+
 class Table:
     """The scene of a played trial, and the desk that looks at it."""
 
@@ -195,6 +198,20 @@ def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
     assert low <= values.min() < values.max() <= high
     table.desk.setHeadColored(False)
     assert not display.GetScalarVisibility()
+
+
+def test_bars_beside_the_head_say_which_color_is_how_many_mm(table):
+    table.scene.RegisterNodeClass(slicer.vtkMRMLColorLegendDisplayNode())
+    table.touch()
+    table.desk.setHeadColored(True)
+    count = table.scene.GetNumberOfNodesByClass(LEGEND)
+    legends = [table.scene.GetNthNodeByClass(n, LEGEND) for n in range(count)]
+    titles = {legend.GetTitleText(): legend for legend in legends}
+    assert set(titles) == {"Residual (mm)", "Expected TRE (mm)"}
+    table.desk.setHeadColored(False)
+    assert not titles["Expected TRE (mm)"].GetVisibility()
+    table.touch(table.touched[:2])
+    assert not titles["Residual (mm)"].GetVisibility()
 
 
 def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):

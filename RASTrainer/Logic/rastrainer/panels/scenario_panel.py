@@ -59,10 +59,11 @@ class ScenarioPanel:
             self._desk.setRobotShown(shown)
 
     def useHead(self) -> None:
-        """Look at a model of the scene as the head."""
-        with slicer.util.tryWithErrorDisplay(_("The model cannot be used as the head.")):
-            model = self._ui.headModelComboBox.currentNode()
-            self._desk.useHead(model)
+        """Look at a model, or at the skin of a volume, as the head."""
+        with slicer.util.tryWithErrorDisplay(
+            _("This cannot be used as the head."), waitCursor=True
+        ):
+            model = self._desk.useHead(self._ui.headModelComboBox.currentNode(), self._progress)
             self._ui.otherHeadText.text = _(
                 "{name} is the head now; the simulator keeps its own."
             ).format(name=model.GetName())
@@ -76,6 +77,10 @@ class ScenarioPanel:
             volume = logic.downloadSample(SAMPLE)
             slicer.util.setSliceViewerLayers(background=volume, fit=True)
             self._ui.otherHeadText.text = _("{name} is in the scene.").format(name=volume.GetName())
+
+    def _progress(self, step: str, share: float) -> None:
+        self._ui.otherHeadText.text = f"{step}: {100 * share:.0f} %"
+        slicer.app.processEvents()
 
     def showState(self) -> None:
         """Show what may have changed in the scene meanwhile."""
@@ -124,8 +129,8 @@ class ScenarioPanel:
         setUsable(
             self._ui.useHeadButton,
             self._ui.headModelComboBox.currentNode() is not None,
-            _("Look at this model as the head, instead of the one above."),
-            _("Choose a model of the scene first."),
+            _("Look at this as the head, instead of the one above; of a volume, at its skin."),
+            _("Choose a model or a volume of the scene first."),
         )
 
     def _tell(self, sentence: str) -> None:

@@ -10,6 +10,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.registration import Registration
+from rastrainer.slicer.color_legend import LEFT, hideLegend, showLegend
 from rastrainer.slicer.residual_glyphs import COLOR_TABLE_ID
 from rastrainer.target_error import expected_tre
 
@@ -35,6 +36,7 @@ def colorHead(model: Any, registration: Registration) -> tuple[float, float]:
     low, high = float(errors.min()), float(errors.max())
     display.SetScalarRange(*colorRange(low, high))
     display.SetScalarVisibility(True)
+    showLegend(model, "Expected TRE (mm)", LEFT)
     return low, high
 
 
@@ -49,3 +51,4 @@ def uncolorHead(model: Any) -> None:
     display = model.GetDisplayNode()
     if display is not None and display.GetActiveScalarName() == SCALARS:
         display.SetScalarVisibility(False)
+        hideLegend(model)

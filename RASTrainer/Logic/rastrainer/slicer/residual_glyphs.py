@@ -9,6 +9,7 @@ import numpy as np
 import vtk
 
 from rastrainer.registration import Registration
+from rastrainer.slicer.color_legend import RIGHT, hideLegend, showLegend
 from rastrainer.slicer.scene import Role, findNode, findOrAddNode
 
 LONGEST_ARROW_MM = 40.0
@@ -62,6 +63,7 @@ def showResidualArrows(scene: Any, registration: Registration) -> Any:
     display.SetScalarRangeFlag(display.UseManualScalarRange)
     display.SetScalarRange(*residualRange(registration))
     display.SetScalarVisibility(True)
+    showLegend(node, "Residual (mm)", RIGHT)
     return node
 
 
@@ -70,6 +72,7 @@ def clearResidualArrows(scene: Any) -> None:
     node = findNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS)
     if node is not None and node.GetPolyData() and node.GetPolyData().GetNumberOfPoints():
         node.SetAndObservePolyData(vtk.vtkPolyData())
+        hideLegend(node)
 
 
 def residualRange(registration: Registration) -> tuple[float, float]:
