@@ -1,0 +1,70 @@
+"""The ordinary server process, worked by a gamepad alone."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import numpy as np
+
+from rastrainer.igtl.client import Client
+from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
+
+PATIENCE_S = 30.0
+
+
+class Watch:
+    """What an OpenIGTLink client sees of the simulator."""
+
+    def __init__(self, client):
+        self._client = client
+
+    def state(self):
+        message = self._client.wait_for("SimState", timeout=PATIENCE_S)
+        return json.loads(message.content.text)
+
+    def until(self, condition):
+        give_up = time.monotonic() + PATIENCE_S
+        while not condition(state := self.state()):
+            assert time.monotonic() < give_up, state
+
+    def tip(self):
+        return np.array(self._client.wait_for("ToolTipToWorld").content.matrix)[:3, 3]
+
+    def moves(self):
+        before = self.tip()
+        time.sleep(0.3)
+        return np.linalg.norm(self.tip() - before) > 0.01
+
+
+def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_path):
+    simulator = SimulatorWithGamepad(tmp_path / "records", "--view-port", "0", "--seed", "5")
+    with simulator, Client(port=simulator.port) as client:
+        watch = Watch(client)
+        watch.until(lambda state: state["phase"] == "idle")
+        # Start training, three pages of introduction, the controls, and the ID: "A".
+        for button in ("a", "a", "a", "a", "a", "a", "a", *["dpdown"] * 5, "a"):
+            simulator.tap(button)
+        for button in ("dpdown", "dpdown", "a"):
+            simulator.tap(button)
+        watch.until(lambda state: state["phase"] == "running")
+        state = watch.state()
+        assert (state["trainee"], state["task"], state["mode"]) == ("A", "trial-run", "desktop")
+        simulator.move(leftx=0.8)
+        assert watch.moves()
+        simulator.plug_out()
+        time.sleep(0.3)
+        assert not watch.moves()
+        assert watch.state()["phase"] == "running"
+        simulator.plug_in()
+        time.sleep(0.3)
+        simulator.move(leftx=-0.8)
+        assert watch.moves()
+        simulator.move(leftx=0.0)
+        assert simulator.felt() == []
+        simulator.tap("a")
+        watch.until(lambda state: "Too far from point 1" in state["instruction"])
+        assert [strength for strength, _ in simulator.felt() if strength > 0] == [45874 / 65535]
+        simulator.tap("start")
+        watch.until(lambda state: state["phase"] == "paused")
+        assert simulator.stop()[0] == 0
