@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
+from collections.abc import Callable
 
 from aiohttp import hdrs, web
 from aiohttp.typedefs import Handler
@@ -16,6 +18,7 @@ from rastrainer_simulator.view_server.sessions import Sessions
 COOKIE = "rastrainer-view"
 PAIR_FIRST = "Pair first: POST /pair with the code that the simulator shows."
 NOT_A_CODE = f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows.'
+BODY_S = 5.0
 _BEARER = "Bearer "
 _code_text = text(64)
 
@@ -23,13 +26,18 @@ _code_text = text(64)
 class Gate:
     """Lets paired views pass, and everyone else to the page and to the pairing only."""
 
-    def __init__(self, sessions: Sessions, code: PairingCode) -> None:
+    def __init__(
+        self, sessions: Sessions, code: PairingCode, note: Callable[[web.Request], None]
+    ) -> None:
+        """Make a gate; `note` is told of every request that arrives."""
         self._sessions = sessions
         self._code = code
+        self._note = note
 
     @web.middleware
     async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         """Refuse what comes from elsewhere or without a session's key."""
+        self._note(request)
         check_origin(request)
         if not _is_public(request) and not self._sessions.knows(_key(request)):
             raise web.HTTPUnauthorized(text=PAIR_FIRST)
@@ -37,7 +45,7 @@ class Gate:
 
     async def pair(self, request: web.Request) -> web.Response:
         """Give a key, and a cookie with it, for the pairing code."""
-        code = _code(await request.read())
+        code = await _code(request)
         wait = self._code.seconds_to_wait()
         if wait > 0:
             raise web.HTTPTooManyRequests(
@@ -67,8 +75,9 @@ def _key(request: web.Request) -> str:
     return request.cookies.get(COOKIE, "")
 
 
-def _code(body: bytes) -> str:
+async def _code(request: web.Request) -> str:
     try:
+        body = await asyncio.wait_for(request.read(), BODY_S)
         return _code_text(decode_json_object(body.decode()).get("code"))
-    except (InputError, ValueError):
+    except (InputError, ValueError, asyncio.TimeoutError):
         raise web.HTTPBadRequest(text=NOT_A_CODE) from None

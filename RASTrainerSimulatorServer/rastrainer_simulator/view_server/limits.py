@@ -15,7 +15,7 @@ class ViewLimits:
         sessions: keys that are remembered; the oldest is forgotten.
         message_bytes: of one message from a view.
         messages_per_s: that a view may send on average, and at most that many at once.
-        first_message_s: time that a view has to say hello.
+        first_message_s: time that a connection has for its first request, and a view for its hello.
         silent_s: after which what a silent view holds is released.
         state_hz: how often views are told what moves.
         waiting_events: events that may wait for a view; one more drops it.

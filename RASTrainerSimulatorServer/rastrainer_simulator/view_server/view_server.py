@@ -16,6 +16,7 @@ from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.igtl.state_feed import StateFeed
 from rastrainer_simulator.scene.cache_folder import cache_folder
 from rastrainer_simulator.scene.scene_files import SceneFiles, read_scene
+from rastrainer_simulator.view_server.connections import KEEP_ALIVE_S, Connections, http_log
 from rastrainer_simulator.view_server.gate import Gate
 from rastrainer_simulator.view_server.limits import ViewLimits
 from rastrainer_simulator.view_server.messages import HELLO, SUBPROTOCOL, check_message
@@ -70,8 +71,13 @@ class ViewServer:
         self._views = Views(control_loop, desk, self._scenes, self._limits)
         self._streams = 0
         self._page = page_folder()
+        self._connections = Connections(self._limits.connections, self._limits.first_message_s)
         self._runner = web.AppRunner(
-            self._application(), access_log=None, shutdown_timeout=SHUTDOWN_S
+            self._application(),
+            access_log=None,
+            logger=http_log(),
+            keepalive_timeout=KEEP_ALIVE_S,
+            shutdown_timeout=SHUTDOWN_S,
         )
         self._server: asyncio.Server | None = None
         self._unsubscribe: Callable[[], None] = lambda: None
@@ -84,10 +90,11 @@ class ViewServer:
         """
         loop = asyncio.get_running_loop()
         try:
-            self._server = await loop.create_server(self._connected, host, port)
+            self._server = await loop.create_server(self._connections, host, port)
         except (OSError, OverflowError) as error:
             raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
         await self._runner.setup()
+        self._connections.server = self._runner.server
         feed = StateFeed(self._views.is_due, self._views.tell, loop)
         self._unsubscribe = self._control_loop.subscribe(feed)
         self.port = self._server.sockets[0].getsockname()[1]
@@ -101,13 +108,8 @@ class ViewServer:
         await self._views.close()
         await self._runner.cleanup()
 
-    def _connected(self) -> asyncio.Protocol:
-        """Return who talks to a new connection."""
-        server = self._runner.server
-        return server() if len(server.connections) < self._limits.connections else _Refused()
-
     def _application(self) -> web.Application:
-        gate = Gate(self.sessions, self.code)
+        gate = Gate(self.sessions, self.code, self._connections.note)
         app = web.Application(middlewares=[gate.check], client_max_size=LARGEST_BODY)
         app.on_response_prepare.append(add_security_headers)
         app.add_routes(
@@ -196,10 +198,3 @@ class ViewServer:
         with contextlib.suppress(OSError):
             peer = transport.get_extra_info("socket")
             peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._limits.buffer_bytes)
-
-
-class _Refused(asyncio.Protocol):
-    """Ends a connection at once."""
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        transport.close()

@@ -59,8 +59,8 @@ class Views:
     async def serve(self, view: View, hello: Hello) -> None:
         """Have a view take part until it leaves."""
         self._views[view.number] = view
-        self._desk.view_joined(view.number, hello)
         try:
+            self._desk.view_joined(view.number, hello)
             self._tell_all(view)
             self._watch()
             await view.serve()

@@ -10,6 +10,7 @@ from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.scene.cache_folder import cache_folder
 from rastrainer_simulator.scene.scene_files import NO_TASK, SceneFiles
 from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.view_server import view_server as view_server_module
 from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ServedViews, ViewClient
 
@@ -35,6 +36,12 @@ def loop_thread():
     thread = LoopThread()
     yield thread
     thread.stop()
+
+
+@pytest.fixture(autouse=True)
+def no_page(monkeypatch):
+    """Have no built page, whether there is one in this checkout or not."""
+    monkeypatch.setattr(view_server_module, "page_folder", lambda: None)
 
 
 @pytest.fixture

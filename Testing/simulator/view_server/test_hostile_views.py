@@ -1,8 +1,10 @@
 import json
+import socket
 
 import aiohttp
 import pytest
 
+from Testing.simulator.igtl.servers import HOST
 from Testing.simulator.view_server.served import HELLO
 
 KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
@@ -110,3 +112,31 @@ def test_connections_beyond_the_limit_are_closed(serve, connect):
     with pytest.raises(aiohttp.ClientError):
         connect(served)
     assert view.next("state")["type"] == "state"
+
+
+STRANGE_REQUESTS = [
+    b"\x00\xff garbage\r\n\r\n",
+    b"GET / HTTP/9.9\r\n\r\n",
+    b"GET /" + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n",
+    b"GET / HTTP/1.1\r\nAuthorization: Bearer secret\x01\r\n\r\n",
+    b"GET / HTTP/1.1\r\nTransfer-Encoding: chunked\r\nContent-Length: 3\r\n\r\nzz",
+    b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+    b"POST /pair HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 99999999999\r\n\r\n{}",
+]
+
+
+@pytest.mark.parametrize("request_bytes", STRANGE_REQUESTS)
+def test_what_is_no_request_is_refused_and_not_logged(served, caplog, request_bytes):
+    with socket.create_connection((HOST, served.port), 10) as stranger:
+        stranger.sendall(request_bytes)
+        stranger.shutdown(socket.SHUT_WR)
+        answer = stranger.recv(100)
+    assert answer == b"" or answer.split(b" ")[1] in (b"400", b"413")
+    assert caplog.text == ""
+
+
+def test_a_connection_that_asks_for_nothing_is_closed(serve):
+    served = serve(first_message_s=0.05)
+    with socket.create_connection((HOST, served.port), 10) as stranger:
+        stranger.sendall(b"GET / HTTP/1.1\r\nHost:")
+        assert stranger.recv(100) == b""

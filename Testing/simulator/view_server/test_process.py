@@ -64,12 +64,14 @@ def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, thread):
 
 def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, thread):
     key = secrets.token_urlsafe()
-    with ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator:
-        with ViewClient(thread, simulator.url, key) as view:
-            view.join()
-            view.next("state")
-            assert simulator.stop()[0] == 0
-            assert view.closing() == (1001, "The simulator has been stopped.")
+    with (
+        ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator,
+        ViewClient(thread, simulator.url, key) as view,
+    ):
+        view.join()
+        view.next("state")
+        assert simulator.stop()[0] == 0
+        assert view.closing() == (1001, "The simulator has been stopped.")
 
 
 def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):

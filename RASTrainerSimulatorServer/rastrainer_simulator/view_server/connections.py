@@ -1,0 +1,62 @@
+"""Connections of any kind: how many there may be, how long they may hesitate, what is logged."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+
+from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
+
+KEEP_ALIVE_S = 75.0
+
+
+def http_log() -> logging.Logger:
+    """Return a log of our own mistakes only: what strangers send is not written down."""
+    log = logging.getLogger(f"{__name__}.http")
+    if not log.filters:
+        log.addFilter(_is_own_mistake)
+    return log
+
+
+def _is_own_mistake(record: logging.LogRecord) -> bool:
+    error = record.exc_info[1] if record.exc_info else None
+    return not isinstance(error, HttpProcessingError)
+
+
+class Connections:
+    """Makes who talks to each new connection; a protocol factory for `loop.create_server`."""
+
+    def __init__(self, most: int, first_request_s: float) -> None:
+        """Allow `most` connections at once, each of which asks for something within that time."""
+        self._most = most
+        self._first_request_s = first_request_s
+        self._silent: set[asyncio.BaseProtocol] = set()
+        self.server: web.Server | None = None
+        """Talks to the connections; set once it is there."""
+
+    def __call__(self) -> asyncio.BaseProtocol:
+        """Return who talks to a new connection."""
+        if self.server is None or len(self.server.connections) >= self._most:
+            return _Refused()
+        protocol = self.server()
+        self._silent.add(protocol)
+        loop = asyncio.get_running_loop()
+        loop.call_later(self._first_request_s, self._end_if_silent, protocol)
+        return protocol
+
+    def note(self, request: web.BaseRequest) -> None:
+        """Take note that a connection has asked for something."""
+        self._silent.discard(request.protocol)
+
+    def _end_if_silent(self, protocol: web.RequestHandler) -> None:
+        if protocol in self._silent:
+            self._silent.discard(protocol)
+            protocol.force_close()
+
+
+class _Refused(asyncio.Protocol):
+    """Ends a connection at once."""
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        transport.close()
