@@ -15,10 +15,13 @@ SUBCOMMANDS = {
     "register": "rastrainer.commands.register_command",
     "score": "rastrainer.commands.score_command",
     "report": "rastrainer.commands.report_command",
+    "export": "rastrainer.commands.export_command",
+    "delete-trainee": "rastrainer.commands.delete_command",
     "simulator": "rastrainer_simulator.simulator_command",
     "window": "rastrainer_simulator.window_command",
     "replay": "rastrainer_simulator.replay_command",
     "verify": "rastrainer_simulator.verify_command",
+    "simulate-cohort": "rastrainer_simulator.cohort_command",
     "demo": "rastrainer_simulator.demo_command",
 }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from rastrainer_simulator.state import SimulationState, StepResult
 
 MM = 1000.0
 LONGEST_S = 1800.0
+NOTHING: Mapping[str, Any] = {}
 
 OnStep = Callable[[Simulation, SimulationState, OperatorInput, StepResult], Any]
 """Is told the simulation, the state before, the input and the result of each step."""
@@ -53,6 +54,7 @@ def play_virtual_trial(
     on_step: OnStep | None = None,
     trainee: str | None = None,
     mode: Mode = Mode.DESKTOP,
+    trial_id: str | None = None,
 ) -> VirtualTrial:
     """Play one task to its registration; the simulation is left in the phase `registered`.
 
@@ -65,6 +67,7 @@ def play_virtual_trial(
         on_step: is called after each step as a recorder wants it.
         trainee: pseudonym; by default told from the seed.
         mode: goes into the record; the hands do not see it.
+        trial_id: UUID; by default told from the simulation's seed and the number of the trial.
 
     Raises:
         InputError: there is no such task.
@@ -86,14 +89,15 @@ def play_virtual_trial(
         "seed": seed,
     }
 
-    def step(action: Action | None) -> StepResult:
-        before, operator_input = simulation.state, _input(action)
+    def step(action: Action | None, own: Mapping[str, Any] = NOTHING) -> StepResult:
+        before, operator_input = simulation.state, _input(action, own)
         result = simulation.step(dt, operator_input)
         if on_step is not None:
             on_step(simulation, before, operator_input, result)
         return result
 
-    state = step((CommandName.START_TASK, start)).state
+    own = {} if trial_id is None else {"trialId": trial_id}
+    state = step((CommandName.START_TASK, start), own).state
     while state.training.phase is not Phase.REGISTERED:
         if state.elapsed > LONGEST_S:
             raise UnfinishedTrialError(
@@ -114,11 +118,12 @@ def play_virtual_trial(
     )
 
 
-def _input(action: Action | None) -> OperatorInput:
+def _input(action: Action | None, own: Mapping[str, Any]) -> OperatorInput:
+    """Return an action as the operator's input; `own` are arguments that no client may send."""
     if action is None:
         return HANDS_OFF
     name, arguments = action
-    return OperatorInput(commands=(Command(name, check_arguments(name, arguments)),))
+    return OperatorInput(commands=(Command(name, {**check_arguments(name, arguments), **own}),))
 
 
 def _observation(state: SimulationState) -> Observation:

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import RASTrainerError
+from rastrainer.journal.file_lock import lock
 from rastrainer.journal.journal_line import NO_LINE, encode_line
 from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
-from rastrainer_simulator.record.file_lock import lock
 
 
 class RecordError(RASTrainerError):

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.training.true_error import Truth
 
-SUFFIX = ".journal"
 FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are looked at first."""
 

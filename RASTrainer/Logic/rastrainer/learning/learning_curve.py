@@ -58,12 +58,14 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
     if not np.all(np.isfinite(y) & (y >= 0)):
         raise InputError("A learning curve needs times or errors that are finite and not below 0.")
     trials = np.arange(1, len(y) + 1)
-    fits = [(rate, *_linear_fit(trials**-rate, y)) for rate in RATES]
-    rate, gain, plateau, squares = min(fits, key=lambda fit: fit[3])
+    gains, plateaus, all_squares = _linear_fits(trials ** -RATES[:, None], y)
+    best = int(np.argmin(all_squares))
+    rate, gain = float(RATES[best]), float(gains[best])
+    plateau, squares = float(plateaus[best]), float(all_squares[best])
     total = float(((y - y.mean()) ** 2).sum())
     return LearningCurve(
         gain=gain,
-        rate=float(rate),
+        rate=rate,
         plateau=plateau,
         residual_sd=math.sqrt(squares / (len(y) - 3)),
         r_squared=1 - squares / total if total > 0 else 0.0,
@@ -71,15 +73,20 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
     )
 
 
-def _linear_fit(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
-    """Return gain, plateau, both at least 0, and the sum of squares of y = gain·x + plateau."""
-    gain = float(((x - x.mean()) * (y - y.mean())).sum() / ((x - x.mean()) ** 2).sum())
-    plateau = float(y.mean() - gain * x.mean())
-    if gain < 0:
-        gain, plateau = 0.0, float(y.mean())
-    elif plateau < 0:
-        gain, plateau = float((x @ y) / (x @ x)), 0.0
-    return gain, plateau, float(((y - gain * x - plateau) ** 2).sum())
+def _linear_fits(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return gain, plateau, both at least 0, and sum of squares of y = gain·x + plateau.
+
+    `x` is (k, n), a row a fit; the results are (k,).
+    """
+    centered = x - x.mean(axis=1, keepdims=True)
+    gain = centered @ (y - y.mean()) / (centered**2).sum(axis=1)
+    gain = np.maximum(gain, 0.0)
+    plateau = y.mean() - gain * x.mean(axis=1)
+    without = plateau < 0
+    gain = np.where(without, x @ y / (x**2).sum(axis=1), gain)
+    plateau = np.where(without, 0.0, plateau)
+    squares = ((y - gain[:, None] * x - plateau[:, None]) ** 2).sum(axis=1)
+    return gain, plateau, squares
 
 
 def _aicc(squares: float, n: int, parameters: int) -> float:

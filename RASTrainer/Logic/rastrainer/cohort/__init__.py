@@ -1,0 +1,1 @@
+"""Cohorts of virtual trainees with known skills, to plan studies and to test every statistic."""

@@ -1,0 +1,83 @@
+"""`rastrainer export STUDY -o DIR`: a study for other programs."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.export.motion_bids import make_empty_folder, write_motion_bids
+from rastrainer.export.slicer_files import write_slicer_files
+from rastrainer.export.tidy_csv import answers_csv, trials_csv
+from rastrainer.export.xapi import HOME_PAGE, statements_text
+from rastrainer.files import write_text
+from rastrainer.journal.folder import read_trajectory
+from rastrainer.report.published_scores import with_ctps
+from rastrainer.report.study_data import StudyData, read_study_data
+from rastrainer.study import Study
+
+FORMATS = ("csv", "bids", "xapi", "slicer")
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the command to a command line; `arguments.run(arguments)` runs it."""
+    parser = subparsers.add_parser(
+        "export",
+        help="export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
+        description=(
+            "Write a study into an empty folder, a folder a format. Trainees appear by their "
+            "pseudonyms, and only those who agreed to research."
+        ),
+    )
+    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument(
+        "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
+    )
+    parser.add_argument(
+        "--records", type=Path, metavar="DIR", help="the simulator's journals, for Motion-BIDS"
+    )
+    parser.add_argument(
+        "--home-page",
+        default=HOME_PAGE,
+        metavar="URL",
+        help="of the lab's system, for xAPI (default: %(default)s)",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the export and return the exit status.
+
+    Raises:
+        InputError: the study cannot be read, the folder holds something, or journals are lacking.
+    """
+    formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
+    if "bids" in formats and arguments.records is None:
+        raise InputError("Motion-BIDS needs the journals: give their folder with --records.")
+    data = with_ctps(read_study_data(arguments.study))
+    make_empty_folder(arguments.output)
+    for name in formats:
+        print(f"{arguments.output / name}: {_write(name, data, arguments)}")
+    return 0
+
+
+def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
+    folder = arguments.output / name
+    if name == "bids":
+        count = write_motion_bids(
+            data, folder, lambda trial_id: read_trajectory(arguments.records, trial_id)
+        )
+        return f"{count} of {len(data.trials)} trials"
+    make_empty_folder(folder)
+    if name == "csv":
+        write_text(folder / "trials.csv", trials_csv(data))
+        write_text(folder / "answers.csv", answers_csv(data))
+    elif name == "xapi":
+        write_text(folder / "statements.json", statements_text(data, arguments.home_page))
+    else:
+        with Study.open(arguments.study) as study:
+            for trial in data.trials:
+                if trial.trial_id:
+                    write_slicer_files(study.trial(trial.trial_id), folder / trial.trial_id)
+    return f"{len(data.trials)} trials"

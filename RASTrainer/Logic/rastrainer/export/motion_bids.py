@@ -1,0 +1,202 @@
+"""Trajectories as a Motion-BIDS dataset (BIDS specification 1.10, motion).
+
+Every trial whose journal is there becomes `motion/` files of its trainee: the tip's position and
+the clearance at 50 Hz in the trial's own time, and its touches as events. No dates are written.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import defaultdict
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import rastrainer
+from rastrainer.errors import InputError
+from rastrainer.files import write_text
+from rastrainer.motion.signals import resample
+from rastrainer.motion.trajectory import Trajectory
+from rastrainer.motion.trial_motion import RATE_HZ
+from rastrainer.report.study_data import StudyData, TrialRow
+
+BIDS_VERSION = "1.10.0"
+TRACKING = "tooltip"
+CHANNELS = (
+    ("tip_x", "x", "POS", "tool_tip", "mm"),
+    ("tip_y", "y", "POS", "tool_tip", "mm"),
+    ("tip_z", "z", "POS", "tool_tip", "mm"),
+    ("clearance", "n/a", "MISC", "tool_tip", "mm"),
+)
+
+FindTrajectory = Callable[[str], Trajectory | None]
+
+
+def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajectory) -> int:
+    """Write the dataset and return the number of trials in it.
+
+    Args:
+        data: The study.
+        folder: Where to; it must be empty or not there, so that nothing old is mixed in.
+        find_trajectory: From a trial's UUID to its trajectory; None where there is none.
+
+    Raises:
+        InputError: the folder holds something, cannot be written, or no trial has a trajectory.
+    """
+    make_empty_folder(folder)
+    labels = participant_labels(data.trainees)
+    runs: dict[tuple[str, str, str], int] = defaultdict(int)
+    written = 0
+    for trial in data.trials:
+        trajectory = find_trajectory(trial.trial_id) if trial.trial_id else None
+        if trajectory is None or len(trajectory.times_s) < 2:
+            continue
+        runs[trial.trainee, trial.mode, trial.task] += 1
+        run = runs[trial.trainee, trial.mode, trial.task]
+        _write_trial(folder, labels[trial.trainee], trial, run, trajectory)
+        written += 1
+    if not written:
+        raise InputError("No trial of the study has a journal with a trajectory to export.")
+    present = {trainee for trainee, _, _ in runs}
+    _write_dataset(folder, data, {name: labels[name] for name in labels if name in present})
+    return written
+
+
+def make_empty_folder(folder: Path) -> None:
+    """Make a folder; raise `InputError` where it cannot be made or holds something."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            raise InputError(f"The folder {folder} holds something; choose one that is empty.")
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+
+
+def participant_labels(trainees: tuple[str, ...]) -> dict[str, str]:
+    """Return for each pseudonym a label of letters and digits, all different."""
+    labels: dict[str, str] = {}
+    for index, trainee in enumerate(trainees, start=1):
+        label = re.sub(r"[^A-Za-z0-9]", "", trainee) or f"P{index:03d}"
+        while label.lower() in {other.lower() for other in labels.values()}:
+            label += f"x{index}"
+        labels[trainee] = label
+    return labels
+
+
+def _write_trial(
+    folder: Path, label: str, trial: TrialRow, run: int, trajectory: Trajectory
+) -> None:
+    place = folder / f"sub-{label}" / "motion"
+    place.mkdir(parents=True, exist_ok=True)
+    task = _task_label(trial.task)
+    start, end = f"sub-{label}_task-{task}", f"acq-{trial.mode}_run-{run:02d}"
+    whole = f"{start}_tracksys-{TRACKING}_{end}"
+    values = resample(
+        trajectory.times_s,
+        np.column_stack([trajectory.tip_mm, trajectory.clearance_mm]),
+        RATE_HZ,
+    )
+    lines = ["\t".join(f"{value:.4f}" for value in row) for row in values]
+    write_text(place / f"{whole}_motion.tsv", "\n".join(lines) + "\n")
+    write_text(place / f"{whole}_motion.json", _json(_motion_json(trial, trajectory)))
+    rows = [("name", "component", "type", "tracked_point", "units"), *CHANNELS]
+    write_text(place / f"{whole}_channels.tsv", _tsv(rows))
+    write_text(place / f"{start}_{end}_events.tsv", _tsv(_events(trajectory)))
+    write_text(place / f"{start}_{end}_events.json", _json(_EVENTS_JSON))
+
+
+def _task_label(task: str) -> str:
+    return re.sub(r"[^A-Za-z0-9]", "", task) or "task"
+
+
+def _motion_json(trial: TrialRow, trajectory: Trajectory) -> dict[str, Any]:
+    return {
+        "TaskName": _task_label(trial.task),
+        "TaskDescription": "Fifteen numbered fiducials on a virtual head are touched in order with "
+        "the tip of a teleoperated robot.",
+        "TrackingSystemName": TRACKING,
+        "SamplingFrequency": RATE_HZ,
+        "SamplingFrequencyEffective": RATE_HZ,
+        "RecordingDuration": round(float(trajectory.times_s[-1] - trajectory.times_s[0]), 3),
+        "RecordingType": "continuous",
+        "TrackedPointsCount": 1,
+        "MotionChannelCount": len(CHANNELS),
+        "POSChannelCount": 3,
+        "MISCChannelCount": 1,
+        "ACCELChannelCount": 0,
+        "ANGACCELChannelCount": 0,
+        "GYROChannelCount": 0,
+        "JNTANGChannelCount": 0,
+        "LATENCYChannelCount": 0,
+        "MAGNChannelCount": 0,
+        "ORNTChannelCount": 0,
+        "VELChannelCount": 0,
+        "Manufacturer": "RASTrainer",
+        "ManufacturersModelName": "simulated KUKA LBR iiwa 7",
+        "SoftwareVersions": rastrainer.__version__,
+        "InstitutionName": "n/a",
+    }
+
+
+def _events(trajectory: Trajectory) -> list[tuple[str, ...]]:
+    zero = float(trajectory.times_s[0])
+    found = [
+        *((touch.time_s, 0.0, "touch", touch.label) for touch in trajectory.touches),
+        *((touch.time_s, 0.0, "refused_touch", touch.label) for touch in trajectory.refused),
+        *((c.start_s, c.duration_s, "contact", "n/a") for c in trajectory.contacts),
+    ]
+    rows = [
+        (f"{onset - zero:.4f}", f"{duration:.4f}", kind, label)
+        for onset, duration, kind, label in sorted(found)
+    ]
+    return [("onset", "duration", "trial_type", "fiducial"), *rows]
+
+
+_EVENTS_JSON = {
+    "trial_type": {
+        "Description": "What happened.",
+        "Levels": {
+            "touch": "A fiducial was touched, and the touch was kept.",
+            "refused_touch": "A touch that did not count.",
+            "contact": "The tool touched the head.",
+        },
+    },
+    "fiducial": {"Description": "Label of the fiducial that was due, 1 to 15."},
+}
+
+
+def _write_dataset(folder: Path, data: StudyData, labels: Mapping[str, str]) -> None:
+    description = {
+        "Name": data.title,
+        "BIDSVersion": BIDS_VERSION,
+        "DatasetType": "raw",
+        "License": "n/a",
+        "Authors": ["The laboratory that ran the study"],
+        "GeneratedBy": [{"Name": "RASTrainer", "Version": rastrainer.__version__}],
+    }
+    write_text(folder / "dataset_description.json", _json(description))
+    write_text(
+        folder / "README.md",
+        f"# {data.title}\n\nMovements of a simulated surgical robot, teleoperated by trainees who "
+        "touched fifteen fiducials on a virtual head in each run. `acq-desktop` was seen on a "
+        "screen, `acq-hmd` in a headset. Positions are in the robot's frame (x forward, y left, "
+        "z up, mm); time is the trial's own, without pauses. Trainees are pseudonymous.\n",
+    )
+    rows = [("participant_id", "species", "pseudonym")]
+    rows += [(f"sub-{label}", "homo sapiens", name) for name, label in labels.items()]
+    write_text(folder / "participants.tsv", _tsv(rows))
+    write_text(
+        folder / "participants.json",
+        _json({"pseudonym": {"Description": "The trainee's name in the study."}}),
+    )
+
+
+def _tsv(rows: list[tuple[str, ...]]) -> str:
+    return "".join("\t".join(cell.replace("\t", " ") for cell in row) + "\n" for row in rows)
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

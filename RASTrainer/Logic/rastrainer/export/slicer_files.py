@@ -1,0 +1,64 @@
+"""A trial as files that 3D Slicer opens: points as markups, the transform, residuals as a table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.export.tidy_csv import csv_text
+from rastrainer.files import write_text
+from rastrainer.markups import write_markups
+from rastrainer.point_list import PointList
+from rastrainer.registration import RIGID
+from rastrainer.study_values import StoredTrial
+
+_TO_LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
+
+
+def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
+    """Write a trial's files and return their paths.
+
+    `touched-world.mrk.json` are the touches in the robot's frame, `touched-ras.mrk.json` the same
+    after the rigid registration, `WorldToRas.tfm` that registration, `residuals.csv` its table.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+    record, rigid = trial.record, trial.registrations.get(RIGID)
+    world = folder / "touched-world.mrk.json"
+    write_markups(world, PointList(record.labels, record.positions_mm))
+    if rigid is None:
+        return [world]
+    matrix = np.reshape(rigid.matrix, (4, 4))
+    ras, transform, table = (
+        folder / name for name in ("touched-ras.mrk.json", "WorldToRas.tfm", "residuals.csv")
+    )
+    moved = transforms.apply(matrix, record.positions_mm)
+    write_markups(ras, PointList(record.labels, moved))
+    write_text(transform, transform_text(matrix))
+    rows = [
+        [label, repr(value)] for label, value in zip(rigid.labels, rigid.residuals_mm, strict=True)
+    ]
+    write_text(table, csv_text(["fiducial", "residual_mm"], rows))
+    return [world, ras, transform, table]
+
+
+def transform_text(to_parent: np.ndarray) -> str:
+    """Return a linear transform, (4, 4) float in RAS mm, as ITK's text, which Slicer opens.
+
+    ITK's files are in LPS and map from the parent.
+    """
+    matrix = _TO_LPS @ transforms.inverse(to_parent) @ _TO_LPS
+    numbers = [*matrix[:3, :3].ravel(), *matrix[:3, 3]]
+    return (
+        "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\n"
+        f"Parameters: {' '.join(repr(float(number)) for number in numbers)}\n"
+        "FixedParameters: 0 0 0\n"
+    )

@@ -1,0 +1,106 @@
+"""Trials and questionnaires as xAPI statements (IEEE 9274.1.1, xAPI 1.0.3) for a record store."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from typing import Any
+
+from rastrainer.experiment.study_progress import QuestionnaireAnswers
+from rastrainer.report.outcomes import mode_title, task_title
+from rastrainer.report.study_data import StudyData, TrialRow
+from rastrainer.scoring import SCORE_VERSION
+
+HOME_PAGE = "https://rastrainer.invalid"
+VERBS = {
+    "completed": "http://adlnet.gov/expapi/verbs/completed",
+    "answered": "http://adlnet.gov/expapi/verbs/answered",
+}
+SIMULATION = "http://adlnet.gov/expapi/activities/simulation"
+SURVEY = "http://adlnet.gov/expapi/activities/assessment"
+NAMESPACE = uuid.UUID("6f0f2f3e-6f53-5d8f-9a1a-7f7a52415354")
+"""Of the statements about questionnaires, whose UUIDs follow from their content."""
+
+
+def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, Any]]:
+    """Return a statement for each trial and each answered questionnaire.
+
+    Args:
+        data: The study; a trial's statement has the trial's UUID, so that twice is once.
+        home_page: IRL of the lab's system, which makes the pseudonyms unique.
+    """
+    trials = [_trial(trial, home_page) for trial in data.trials if trial.trial_id]
+    return trials + [_answers(answered, home_page) for answered in data.answers]
+
+
+def statements_text(data: StudyData, home_page: str = HOME_PAGE) -> str:
+    """Return the statements as the JSON array that a record store takes."""
+    return json.dumps(statements(data, home_page), indent=1, allow_nan=False) + "\n"
+
+
+def _trial(trial: TrialRow, home_page: str) -> dict[str, Any]:
+    result: dict[str, Any] = {
+        "completion": True,
+        "duration": f"PT{trial.values['completion_time_s']:.2f}S",
+        "extensions": {
+            f"{home_page}/xapi/values/{name}": value for name, value in sorted(trial.values.items())
+        },
+    }
+    if "score" in trial.values:
+        score = trial.values["score"]
+        result["score"] = {"scaled": round(score / 100, 6), "raw": score, "min": 0, "max": 100}
+    return {
+        "id": trial.trial_id,
+        "version": "1.0.3",
+        "actor": _actor(trial.trainee, home_page),
+        "verb": _verb("completed"),
+        "object": _activity(f"{home_page}/tasks/{trial.task}", task_title(trial.task), SIMULATION),
+        "result": result,
+        "context": {
+            "platform": f"RASTrainer, {mode_title(trial.mode)}",
+            "extensions": {
+                f"{home_page}/xapi/mode": trial.mode,
+                f"{home_page}/xapi/trial-number": trial.number,
+                f"{home_page}/xapi/score-version": SCORE_VERSION,
+            },
+        },
+        "timestamp": trial.started_utc,
+    }
+
+
+def _answers(answered: QuestionnaireAnswers, home_page: str) -> dict[str, Any]:
+    step = answered.step
+    identity = f"{home_page} {answered.trainee} {step.name} {answered.stored_utc}"
+    name = step.questionnaire
+    return {
+        "id": str(uuid.uuid5(NAMESPACE, identity)),
+        "version": "1.0.3",
+        "actor": _actor(answered.trainee, home_page),
+        "verb": _verb("answered"),
+        "object": _activity(f"{home_page}/questionnaires/{name}", name, SURVEY),
+        "result": {
+            "completion": True,
+            "extensions": {
+                f"{home_page}/xapi/values/{scale}": score
+                for scale, score in answered.scores.items()
+            },
+        },
+        "context": {"extensions": {f"{home_page}/xapi/step": step.name}},
+        "timestamp": answered.stored_utc,
+    }
+
+
+def _actor(trainee: str, home_page: str) -> dict[str, Any]:
+    return {"objectType": "Agent", "account": {"homePage": home_page, "name": trainee}}
+
+
+def _verb(name: str) -> dict[str, Any]:
+    return {"id": VERBS[name], "display": {"en-US": name}}
+
+
+def _activity(iri: str, name: str, kind: str) -> dict[str, Any]:
+    return {
+        "objectType": "Activity",
+        "id": iri,
+        "definition": {"type": kind, "name": {"en-US": name}},
+    }

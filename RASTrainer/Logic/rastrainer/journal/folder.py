@@ -1,0 +1,89 @@
+"""The journals in a folder: which trainee's they are, and how they are read or erased."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_finite_json
+from rastrainer.journal.file_lock import lock
+from rastrainer.journal.journal_line import FIRST_BYTES, LONGEST_LINE
+from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.trajectory import Trajectory
+
+SUFFIX = ".journal"
+_ZEROS = bytes(1 << 20)
+
+
+def journals(folder: Path) -> list[Path]:
+    """Return the files of a folder that are journals by their name and first bytes.
+
+    Raises:
+        InputError: there is no such folder.
+    """
+    if not folder.is_dir():
+        raise InputError(f"There is no folder {folder} with journals.")
+    return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _begins_as_journal(path)]
+
+
+def read_trajectory(folder: Path, trial_id: str) -> Trajectory | None:
+    """Return the trajectory of a trial; None where the folder has no usable journal of it."""
+    for path in sorted(folder.glob(f"*_{trial_id}{SUFFIX}")):
+        with contextlib.suppress(InputError):
+            return Recording.of(read_journal(path).entries).trajectory()
+    return None
+
+
+def erase_journals(folder: Path, trainee: str) -> int:
+    """Overwrite and delete every journal of a trainee, damaged ones too; return how many.
+
+    Raises:
+        InputError: there is no such folder, a journal cannot be deleted, or one is being written.
+    """
+    paths = [path for path in journals(folder) if _trainee_of(path) == trainee]
+    for path in paths:
+        try:
+            with _locked(path) as descriptor:
+                _overwrite(descriptor)
+            path.unlink()
+        except OSError as error:
+            raise InputError(
+                f"The journal {path} cannot be deleted ({error.strerror}); if the trial is still "
+                "running, end it first."
+            ) from None
+    return len(paths)
+
+
+def _begins_as_journal(path: Path) -> bool:
+    with contextlib.suppress(OSError), path.open("rb") as file:
+        return file.read(len(FIRST_BYTES)) == FIRST_BYTES
+    return False
+
+
+def _trainee_of(path: Path) -> str | None:
+    """Return whose a journal is; the first line tells, whatever became of the others."""
+    with contextlib.suppress(OSError, ValueError, AttributeError), path.open("rb") as file:
+        return decode_finite_json(file.readline(LONGEST_LINE).decode("ascii")).get("trainee")
+    return None
+
+
+@contextlib.contextmanager
+def _locked(path: Path) -> Iterator[int]:
+    descriptor = os.open(path, os.O_RDWR | getattr(os, "O_BINARY", 0))
+    try:
+        lock(descriptor)
+        yield descriptor
+    finally:
+        os.close(descriptor)
+
+
+def _overwrite(descriptor: int) -> None:
+    rest = os.fstat(descriptor).st_size
+    os.lseek(descriptor, 0, os.SEEK_SET)
+    while rest > 0:
+        rest -= os.write(descriptor, _ZEROS[: min(rest, len(_ZEROS))])
+    os.fsync(descriptor)

@@ -1,0 +1,1 @@
+"""Cohorts of virtual trainees who play real trials, on all cores."""

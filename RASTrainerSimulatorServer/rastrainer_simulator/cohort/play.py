@@ -1,0 +1,171 @@
+"""Play one trial of a cohort with the whole simulation: arm, contact, hands, registration, score.
+
+The function is the same on one core, on all, and on another machine: it needs only its job.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.cohort.jobs import TrialJob
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.journal.folder import SUFFIX
+from rastrainer.motion.shortest_ways import shortest_ways
+from rastrainer.motion.trial_motion import with_path_efficiency
+from rastrainer.protocol import Mode
+from rastrainer.scoring import ScoreReference
+from rastrainer.surface_path import SurfaceGraph
+from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.stamps import file_stamp, iso
+from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.setup import load_setup
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.state import SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.virtual_trial import UnfinishedTrialError, play_virtual_trial
+
+STEP_S = 0.05
+
+
+@dataclass(frozen=True)
+class PlaySettings:
+    """How the jobs of a cohort are played.
+
+    Attributes:
+        scenario: Folder; None for the one that comes with RASTrainer.
+        step_s: Length of a step of the simulation.
+        references: Of the score, by task; the shipped ones for tasks that it leaves out.
+        records: Folder for the journals; None for none.
+    """
+
+    scenario: Path | None = None
+    step_s: float = STEP_S
+    references: Mapping[str, ScoreReference] | None = None
+    records: Path | None = None
+
+
+@dataclass(frozen=True)
+class PlayedTrial:
+    """What a job gave; `analysis` and the truth are None where the trainee got stuck."""
+
+    job: TrialJob
+    analysis: TrialAnalysis | None
+    head_to_world: np.ndarray | None = None
+    true_tre_mm: float | None = None
+
+    @property
+    def record(self) -> TrialRecord:
+        """The record of a trial that was finished."""
+        return self.analysis.record
+
+
+def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
+    """Play, register and score one trial; equal jobs give equal trials on any machine alike."""
+    simulation = _simulation(settings.scenario)
+    # Nothing of the trial before: a job alone says what comes of it.
+    simulation.continue_from(StartingPoint())
+    watch = _Watch(settings.step_s)
+    try:
+        trial = play_virtual_trial(
+            simulation,
+            job.task,
+            job.seed,
+            job.skill,
+            settings.step_s,
+            watch,
+            job.trainee,
+            Mode(job.mode),
+            job.trial_id,
+        )
+    except UnfinishedTrialError:
+        # The next trial needs a simulation that is not in the middle of one.
+        _simulation.cache_clear()
+        return PlayedTrial(job, None)
+    entries = _dated(watch.entries.taken(), job.started)
+    record = TrialRecord.from_json(watch.record_entry(entries)["record"])
+    if settings.records is not None:
+        _write_journal(settings.records, entries, job.started)
+    ways = _ways(settings.scenario, job.task)
+    record = replace(record, motion=with_path_efficiency(record.motion, ways))
+    scenario = simulation.setup.scenario
+    analysis = analyze_trial(record, scenario, references=settings.references)
+    target = scenario.target_position
+    there_and_back = transforms.apply(analysis.rigid.matrix @ trial.head_to_world, target)
+    true_tre_mm = float(np.linalg.norm(there_and_back - target))
+    return PlayedTrial(job, analysis, trial.head_to_world, true_tre_mm)
+
+
+class _Watch:
+    """Forms the journal's entries of the trial that is played."""
+
+    def __init__(self, step_s: float) -> None:
+        self._step_s = step_s
+        self.entries: TrialEntries | None = None
+
+    def __call__(
+        self,
+        simulation: Simulation,
+        before: SimulationState,
+        operator_input: OperatorInput,
+        result: StepResult,
+    ) -> None:
+        if self.entries is None:
+            self.entries = TrialEntries(simulation, before, result, self._step_s)
+        self.entries.add(simulation, operator_input, result)
+
+    def record_entry(self, entries: list[dict[str, Any]]) -> dict[str, Any]:
+        """Return the entry that holds the finished trial's record."""
+        return next(entry for entry in reversed(entries) if entry["kind"] == "registered")
+
+
+def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, Any]]:
+    """Date entries from when the trial is said to have begun, in simulated time."""
+    zero = entries[0]["simTime"]
+
+    def utc(sim_time: float) -> str:
+        return iso(started + timedelta(seconds=sim_time - zero))
+
+    for entry in entries:
+        entry["utc"] = utc(entry["simTime"])
+        if entry["kind"] == "registered":
+            record = entry["record"]
+            for point in record["points"]:
+                point["utc"] = utc(point["simTime"])
+            record["startedUtc"] = utc(zero)
+            record["completedUtc"] = record["points"][-1]["utc"]
+    return entries
+
+
+def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetime) -> None:
+    name = f"{file_stamp(iso(started))}_{entries[0]['trialId']}{SUFFIX}"
+    journal = Journal(folder / name)
+    journal.write(entries, sync=False)
+    journal.close()
+
+
+@functools.lru_cache(maxsize=1)
+def _simulation(scenario: Path | None) -> Simulation:
+    """Return this process's simulation, which is made once."""
+    return Simulation(load_setup(scenario), seed=0)
+
+
+@functools.lru_cache(maxsize=1)
+def _graph(scenario: Path | None) -> tuple[Any, SurfaceGraph]:
+    mesh = read_head_mesh(_simulation(scenario).setup.scenario.head_mesh)
+    return mesh, SurfaceGraph(mesh)
+
+
+@functools.lru_cache(maxsize=32)
+def _ways(scenario: Path | None, task: str) -> tuple[float, ...]:
+    fiducials = _simulation(scenario).setup.scenario.task(task).fiducials
+    return shortest_ways(fiducials, *_graph(scenario))

@@ -1,0 +1,111 @@
+"""Every statistic is tested against studies whose truth is known (a model, not the simulator)."""
+
+import numpy as np
+import pytest
+
+from rastrainer.cohort.outcome_model import OutcomeModel, draw_outcomes, draw_study
+from rastrainer.cohort.population import ModeEffect, Population
+from rastrainer.cohort.rejection_rates import rejection_rates
+from rastrainer.errors import InputError
+from rastrainer.inference.paired import compare_paired
+from rastrainer.inference.power import paired_power
+from rastrainer.learning.learning_curve import fit_learning_curve
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.report.comparisons import compare_modes
+from rastrainer.report.outcomes import MAIN_OUTCOMES
+from rastrainer.scripted_trainee import Skill
+
+MODES = ("desktop", "hmd")
+TASKS = 10
+
+
+def model(**changes):
+    return OutcomeModel([120.0] * TASKS, [1.5] * TASKS, **changes)
+
+
+@pytest.fixture(scope="module")
+def cohort():
+    """200 trainees, 10 tasks, 2 modes: times 10 % shorter and errors 20 % larger with the HMD."""
+    truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
+    return draw_study(truth, 200, MODES, np.random.default_rng(5))
+
+
+def test_the_effects_of_the_mode_are_recovered(cohort):
+    found = {c.outcome.name: c for c in compare_modes(cohort, MAIN_OUTCOMES, *MODES)}
+    for name, factor in (("completion_time_s", 0.9), ("rmse_mm", 1.2)):
+        ratio = np.mean(found[name].second_means) / np.mean(found[name].first_means)
+        assert ratio == pytest.approx(factor, rel=0.02)
+        assert found[name].adjusted_p < 1e-6
+
+
+def test_the_localization_error_is_recovered_from_the_registration_errors(cohort):
+    squares = [t.values["rmse_mm"] ** 2 for t in cohort.of_mode("desktop")]
+    fle = np.sqrt(np.mean(squares) / (1 - 2 / FIDUCIAL_COUNT))
+    spread = 0.15**2 + 0.05**2
+    assert fle == pytest.approx(1.5 * np.exp(spread), rel=0.03)
+
+
+def test_the_learning_rate_is_recovered(cohort):
+    means = [
+        np.mean([t.values["completion_time_s"] for t in cohort.of_mode("desktop") if t.number == n])
+        for n in range(1, TASKS + 1)
+    ]
+    curve = fit_learning_curve(means)
+    assert curve.has_learned
+    assert curve.at(10) / curve.at(1) == pytest.approx(10**-0.25, rel=0.03)
+
+
+@pytest.mark.parametrize("trainees", [8, 20])
+def test_without_an_effect_every_test_rejects_about_5_percent(trainees):
+    for rates in rejection_rates(model(), trainees, MODES, 1500, seed=1):
+        assert rates.t_test == pytest.approx(0.05, abs=0.018)
+        # An exact test of a discrete statistic stays at or below its level.
+        assert 0.02 < rates.wilcoxon < 0.065
+        assert rates.coverage == pytest.approx(0.95, abs=0.018)
+
+
+def test_with_an_effect_intervals_cover_and_power_is_as_computed():
+    truth = model(mode_time={"hmd": 1.05})
+    rates = {r.outcome: r for r in rejection_rates(truth, 16, MODES, 800, seed=2)}
+    assert rates["completion_time_s"].coverage == pytest.approx(0.95, abs=0.025)
+    times, _ = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
+    differences = np.diff(times.mean(axis=2))[:, 0]
+    expected = paired_power(float(differences.mean() / differences.std()), 16)
+    assert rates["completion_time_s"].t_test == pytest.approx(expected, abs=0.06)
+    assert rates["rmse_mm"].t_test < 0.08
+
+
+def test_the_quick_rejections_are_those_of_the_comparison():
+    random = np.random.default_rng(9)
+    times, _ = draw_outcomes(model(), 9, MODES, random)
+    result = compare_paired(*times.mean(axis=2).T)
+    low, high = result.interval
+    assert (result.p < 0.05) == (not low <= 0 <= high)
+
+
+def test_the_same_seed_gives_the_same_trainees_however_many():
+    population = Population(modes={"hmd": ModeEffect(speed=0.8, aim=1.5)}, learning=0.2)
+    desktop, hmd = (population.skill_of(3, mode, 1, seed=4) for mode in MODES)
+    assert population.skill_of(3, "desktop", 1, seed=4) == desktop
+    assert hmd.aim_sd_mm == pytest.approx(1.5 * desktop.aim_sd_mm)
+    assert hmd.speed_mm_s == pytest.approx(0.8 * desktop.speed_mm_s)
+    later = population.skill_of(3, "desktop", 10, seed=4)
+    assert later.speed_mm_s == pytest.approx(desktop.speed_mm_s * 10**0.2)
+    assert population.skill_of(4, "desktop", 1, seed=4) != desktop
+
+
+def test_the_population_is_typically_what_it_says():
+    population = Population(skill=Skill(speed_mm_s=100.0, aim_sd_mm=1.0))
+    skills = [population.skill_of(i, "desktop", 1, seed=0) for i in range(2000)]
+    for values, typical in (
+        ([s.speed_mm_s for s in skills], 100.0),
+        ([s.aim_sd_mm for s in skills], 1.0),
+    ):
+        assert np.median(values) == pytest.approx(typical, rel=0.02)
+        assert np.std(np.log(values)) == pytest.approx(0.15, rel=0.05)
+
+
+@pytest.mark.parametrize("changes", [{"learning": -1.0}, {"modes": {"hmd": ModeEffect(aim=0.0)}}])
+def test_an_impossible_population_is_refused(changes):
+    with pytest.raises(InputError, match=r"from 0(\.1)? to 1"):
+        Population(**changes)

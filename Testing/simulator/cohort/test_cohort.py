@@ -1,0 +1,121 @@
+"""A simulated cohort is a study like any other, repeatable, and its truth can be recovered."""
+
+import functools
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer.cohort.jobs import trial_jobs
+from rastrainer.errors import InputError
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.report.report import report_html
+from rastrainer.report.study_data import read_study_data
+from rastrainer.study import Study
+from rastrainer_simulator.cli import main
+from rastrainer_simulator.cohort.cohort import DATABASE, TRUTH, simulate_cohort
+from rastrainer_simulator.cohort.engines import run_jobs
+from rastrainer_simulator.cohort.play import PlaySettings, play_job
+from Testing.simulator.cohort.conftest import AIM_FACTOR, BRISK
+
+
+def numbers(trial):
+    return trial.job, trial.record.positions_mm.tolist(), trial.analysis.score.score
+
+
+def squared(number):
+    return number * number
+
+
+@pytest.fixture(scope="module")
+def data(played):
+    return read_study_data(played / DATABASE)
+
+
+def test_the_cohort_is_stored_like_a_real_study_and_reported(data):
+    assert (data.trainees, data.modes) == (("V0001", "V0002"), ("desktop", "hmd"))
+    values = data.trials[0].values
+    for name in ("score", "expected_tre_mm", "true_tre_mm", "sparc", "path_efficiency"):
+        assert np.isfinite(values[name])
+    assert 0.2 < values["path_efficiency"] < 1.0
+    assert "2 trainees did 4 trials" in report_html(data)
+
+
+def test_orders_are_balanced_and_dates_follow_the_order(played):
+    with Study.open(played / DATABASE) as study:
+        modes = [[t.record.mode for t in study.history(f"V000{i}")] for i in (1, 2)]
+    assert modes == [["desktop", "hmd"], ["hmd", "desktop"]]
+
+
+def test_the_scatter_of_the_aim_is_recovered_from_the_registrations(data):
+    """FRE² estimates FLE²; a tip that stops within 0.4 mm of its aim adds a little."""
+    fle_of = {}
+    for mode, factor in (("desktop", 1.0), ("hmd", AIM_FACTOR)):
+        squares = [t.values["rmse_mm"] ** 2 for t in data.of_mode(mode)]
+        fle_of[mode] = np.sqrt(np.mean(squares) / (1 - 2 / FIDUCIAL_COUNT))
+        aimed = np.sqrt(2) * factor * BRISK.aim_sd_mm
+        assert fle_of[mode] == pytest.approx(aimed, rel=0.3)
+    assert fle_of["hmd"] > 1.8 * fle_of["desktop"]
+
+
+def test_the_truth_stands_beside_the_study(played):
+    truth = json.loads((played / TRUTH).read_text())
+    assert truth["seed"] == 7
+    assert truth["population"]["modes"]["hmd"]["aim"] == AIM_FACTOR
+    assert truth["population"]["skill"]["aim_sd_mm"] == BRISK.aim_sd_mm
+
+
+def test_equal_jobs_give_equal_trials_whatever_was_played_before_and_in_which_process(
+    protocol, population
+):
+    jobs = list(trial_jobs(protocol, population, 1, 7))
+    play = functools.partial(play_job, settings=PlaySettings())
+    here = [numbers(trial) for trial in run_jobs(play, jobs, workers=1)]
+    there = [numbers(trial) for trial in run_jobs(play, jobs[::-1], workers=2)]
+    assert there[::-1] == here
+
+
+@pytest.mark.parametrize("engine", ["processes", "dask"])
+def test_every_engine_gives_the_results_in_the_order_of_the_jobs(engine):
+    assert list(run_jobs(squared, range(20), engine, workers=2)) == [i * i for i in range(20)]
+
+
+def test_a_scheduler_that_is_not_there_is_told():
+    with pytest.raises(InputError, match="no Dask scheduler at tcp"):
+        list(run_jobs(squared, [1], "dask", address="tcp://127.0.0.1:1"))
+
+
+def test_a_folder_that_holds_something_is_not_touched(protocol, population, tmp_path):
+    (tmp_path / "thesis.txt").write_text("mine")
+    with pytest.raises(InputError, match="holds something"):
+        simulate_cohort(protocol, population, 2, 0, tmp_path, PlaySettings(), workers=1)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_the_command_tells_power_without_playing(capsys):
+    words = ["simulate-cohort", "--trainees", "12", "--power", "50", "--hmd-aim", "1.3"]
+    assert main(words) == 0
+    text = capsys.readouterr().out
+    assert "50 studies of 12 trainees" in text
+    assert "not played" in text
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--trainees", "1"], "2 to 100000 trainees"),
+        ([], "with -o"),
+        (["-o", "x", "--aim", "50"], "the aim's SD from 0 to 3"),
+        (["-o", "x", "--step", "5"], "from 0.002 to 0.1 s"),
+        (["-o", "x", "--workers", "0"], "1 to 1024 workers"),
+        (["-o", "x", "--hmd-aim", "0"], "factors from 0.1 to 10"),
+        (["--power", "3"], "10 to 100000 studies"),
+        (["-o", "x", "--protocol", "missing.json"], "missing.json"),
+    ],
+)
+def test_bad_arguments_are_one_sentence(words, sentence, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate-cohort", *words]) == 2
+    printed = capsys.readouterr().err
+    assert sentence in printed
+    assert printed.count("\n") == 1
