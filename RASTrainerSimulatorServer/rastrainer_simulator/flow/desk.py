@@ -104,14 +104,13 @@ class Desk:
     def view_joined(self, view: int, hello: Hello) -> None:
         """Take note of a view; with a headset the next trial is one in a headset."""
         self._views[view] = hello
-        if hello.kind == "headset":
-            self._session.mode = Mode.HMD.value
+        self._choose_mode(hello)
 
     def view_left(self, view: int) -> None:
         """Forget a view."""
         for kind in SourceKind:
             self.controls.forget(self._source(kind, view))
-        self._views.pop(view, None)
+        self._choose_mode(self._views.pop(view, None))
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -224,6 +223,12 @@ class Desk:
         if sensation.rumble > 0.0:
             self.rumble(sensation.rumble, sensation.seconds)
         self._tell(feedback)
+
+    def _choose_mode(self, changed: Hello | None) -> None:
+        """Let the next trial be one in a headset while there is one; people may choose again."""
+        if changed is not None and changed.kind == "headset":
+            has_headset = any(hello.kind == "headset" for hello in self._views.values())
+            self._session.mode = (Mode.HMD if has_headset else Mode.DESKTOP).value
 
     def _take_tick(self, result: StepResult) -> None:
         """Keep a tick in which something happened; called in the control loop's thread."""

@@ -7,11 +7,11 @@ from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.control_name import ControlName, Situation
 from rastrainer_simulator.flow.feedback import happening
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.result import ResultPage, WaitingPage
+from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.screen import Hint, Message, Screen, Tone
-from rastrainer_simulator.flow.session import Session
+from rastrainer_simulator.flow.session import OPEN, Session
 from rastrainer_simulator.flow.working import Working, points_in_world
 from rastrainer_simulator.state import EventKind, SimulationState, StepResult
 from rastrainer_simulator.texts.texts import Said
@@ -84,13 +84,12 @@ class Flow:
         """Return what the trainee reads now."""
         session = self._session
         menu = session.pages.menu()
-        is_open = session.training.phase in (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
         warnings = (*more_warnings, *self._link_warnings(), *session.notices())
         if menu is not None:
             return Screen(
                 menu=menu,
                 warnings=(*self._record_warnings(), *warnings),
-                status=self._working.status() if is_open else (),
+                status=self._working.status() if session.has_open_trial else (),
                 hints=self._menu_hints(),
                 language=session.preferences.language,
             )
@@ -122,7 +121,8 @@ class Flow:
             session.pages.show(WaitingPage(session))
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session))
-        else:
+        elif before[1] in OPEN or isinstance(session.pages.top, FinishedPage):
+            # Another simulation may follow a trial while other pages are open: they stay.
             session.pages.show_start()
             session.pages.open(ExperimentPage(session))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName, Mode
+from rastrainer.protocol import CommandName, Mode, Phase
 from rastrainer.scenario import Scenario
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.bindings import Bindings
@@ -33,6 +33,10 @@ from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.vectors import Vector
 
 NOTICE_S = 5.0
+SET_UP_AFTER_S = 1.0
+"""A simulation takes a second to make: who steps through the options shall not wait for each."""
+OPEN = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
+"""The phases of a trial that can still be changed."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +96,8 @@ class Session:
         self._control_loop = control_loop
         self._controls = controls
         self._commands = Commands(control_loop.submit, self._refused)
+        self._wanted_settings: SimulationSettings | None = None
+        self._set_up_in = 0.0
         self._setting_up: Future[Answer] | None = None
         self._time = 0.0
         self._notices: list[tuple[float, Message]] = []
@@ -101,6 +107,11 @@ class Session:
     def training(self) -> TrainingState:
         """Where the trial stands."""
         return self.state.training
+
+    @property
+    def has_open_trial(self) -> bool:
+        """Whether a trial can still be changed."""
+        return self.training.phase in OPEN
 
     @property
     def tip(self) -> Vector:
@@ -132,7 +143,7 @@ class Session:
     @property
     def is_being_set_up(self) -> bool:
         """Whether other settings of the simulation are on their way."""
-        return self._setting_up is not None
+        return self._setting_up is not None or self._wanted_settings is not None
 
     def is_typing_possible(self, kinds: tuple[SourceKind, ...]) -> bool:
         """Return whether what the operator uses is one of these."""
@@ -144,11 +155,16 @@ class Session:
         self._time += dt
         self.state = state
         self._commands.poll()
+        self._set_up_in -= dt
         if self._setting_up is not None and self._setting_up.done():
             answer = self._setting_up.result()
             self._setting_up = None
             if not answer.ok:
                 self.complain(answer.message)
+        may_set_up = self._setting_up is None and self._set_up_in <= 0.0
+        if self._wanted_settings is not None and may_set_up and not self.has_open_trial:
+            self._setting_up = self._surroundings.use_settings(self._wanted_settings)
+            self._wanted_settings = None
 
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
         """Have a command carried out."""
@@ -165,8 +181,9 @@ class Session:
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
         wanted = preferences.applied_to(before)
-        if wanted != before or self._setting_up is not None:
-            self._setting_up = self._surroundings.use_settings(wanted)
+        is_needed = wanted != before or self._setting_up is not None
+        self._wanted_settings = wanted if is_needed else None
+        self._set_up_in = SET_UP_AFTER_S
         path = self._surroundings.config / PREFERENCES_FILE
         self._save(lambda: write_preferences(path, preferences))
 

@@ -294,7 +294,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "work.complete": "{trainee}, all {count} points are touched. Press {touch} to register "
         "them.",
         "work.off the way": "{trainee}, you are off the way to point {point}.",
-        "warning.contact": "Contact: lift the tool off the head.",
+        "warning.contact": "Contact: the tool is on the head. Do not press.",
         "warning.reach": "The arm cannot reach farther this way.",
         "warning.obstacle.links": "The arm is at the head: come from another side.",
         "warning.obstacle.self": "The arm is at itself: go another way.",

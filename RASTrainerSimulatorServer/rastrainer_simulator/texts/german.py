@@ -306,7 +306,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "work.complete": "{trainee}, alle {count} Punkte sind berührt. Drücke {touch}, um sie zu "
         "registrieren.",
         "work.off the way": "{trainee}, du bist abseits des Weges zu Punkt {point}.",
-        "warning.contact": "Kontakt: Heb das Werkzeug vom Kopf ab.",
+        "warning.contact": "Kontakt: Das Werkzeug ist auf dem Kopf. Nicht drücken.",
         "warning.reach": "Weiter reicht der Arm in diese Richtung nicht.",
         "warning.obstacle.links": "Der Arm ist am Kopf: Komm von einer anderen Seite.",
         "warning.obstacle.self": "Der Arm ist an sich selbst: Nimm einen anderen Weg.",

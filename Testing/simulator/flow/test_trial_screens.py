@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from rastrainer_simulator.flow import working
 from rastrainer_simulator.flow.progress import Progress
+from rastrainer_simulator.simulation import Simulation
 
 
 def test_a_trial_that_slicer_starts_pauses_and_aborts_leads_to_the_same_screens(trainee):
@@ -172,9 +175,10 @@ def test_what_the_arm_s_settings_would_change_waits_for_the_end_of_a_trial(train
     trainee.choose("settings")
     trainee.until_menu("settings")
     trainee.focus("fine")
-    trainee.tap("right")
-    trainee.step()
-    assert outside.settings[-1].teleoperation.fine_speed == 0.04
+    trainee.tap("right", "right", "left")
+    trainee.until(lambda: outside.settings, "the new simulation")
+    trainee.step(300)
+    assert [settings.teleoperation.fine_speed for settings in outside.settings] == [0.04]
 
 
 def test_quitting_is_asked_for(trainee, outside):
@@ -188,3 +192,41 @@ def test_quitting_is_asked_for(trainee, outside):
     trainee.choose("leave")
     trainee.step()
     assert outside.has_quit
+
+
+def test_another_simulation_after_a_trial_leaves_the_settings_open(trainee, loop, setup):
+    trainee.start("task-1")
+    trainee.submit("Abort")
+    trainee.until_menu("experiment")
+    trainee.tap("back")
+    trainee.until_menu("start")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    handover = loop.replace_simulation(Simulation(setup, 4))
+    trainee.until(handover.done)
+    trainee.step(5)
+    assert trainee.menu.name == "settings"
+
+
+def test_leaving_the_way_to_the_next_point_is_told_and_keeping_to_it_is_not(pilot):
+    pilot.start("task-1")
+    truth = pilot.loop.truth
+    center, first, second = (
+        truth.in_world(point) / 1000.0
+        for point in (truth.target, truth.fiducials["1"], truth.fiducials["2"])
+    )
+    pilot.touch(first, center)
+    pilot.touch(second, center)
+    told = [screen.instruction.text for screen in pilot.watcher.screens]
+    assert [text for text in told if "off the way" in text] == []
+    aside = np.cross(second - center, truth.in_world(truth.fiducials["3"]) / 1000.0 - center)
+    aside *= 0.09 / np.linalg.norm(aside)
+    pilot.steer_to(1.4 * (second - center) + center, 0.02)
+    pilot.steer_to(1.4 * (second - center) + center + aside, 0.02)
+    pilot.hands.push(0.0, 0.0, 0.0, False)
+    pilot.step(20)
+    assert pilot.desk.screen.instruction.text == "P07, you are off the way to point 3."
+    assert pilot.desk.screen.instruction.tone == "warning"
+    pilot.steer_to(1.4 * (second - center) + center, 0.02)
+    pilot.step(20)
+    assert pilot.desk.screen.instruction.text.endswith("Now touch point 3.")

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from rastrainer.protocol import Phase
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.preferences import OF_THE_SIMULATION, OPTIONS
 from rastrainer_simulator.flow.screen import Item, Menu
-
-_OPEN = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
 
 
 class SettingsPage(Page):
@@ -30,8 +27,7 @@ class SettingsPage(Page):
         self.session.prefer(self.session.preferences.stepped(item, direction))
 
     def _item(self, name: str) -> Item:
-        is_open = self.session.training.phase in _OPEN
-        waits = is_open and name in OF_THE_SIMULATION
+        waits = self.session.has_open_trial and name in OF_THE_SIMULATION
         help_ = self.say("settings.waits") if waits else self.say(f"settings.{name} help")
         return self.choice(name, self._value(name), is_enabled=not waits, help=help_)
 
