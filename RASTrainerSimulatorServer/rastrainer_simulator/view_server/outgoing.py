@@ -11,6 +11,7 @@ import numpy as np
 from rastrainer.scenario import Scenario
 from rastrainer_simulator.flow.screen import Screen, screen_to_json
 from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.view_server.messages import PROTOCOL
 from rastrainer_simulator.view_server.operator_desk import Control, Feedback
 from rastrainer_simulator.view_server.quaternion import quaternion
@@ -33,8 +34,8 @@ def welcome(view: int) -> str:
     return _text(WELCOME, protocol=PROTOCOL, view=view, bodies=BODIES)
 
 
-def scene(sha256: str, scenario: Scenario, task: str) -> str:
-    """Return where the scene is, and what goes with it."""
+def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
+    """Return where the scene is, and what goes with it; `axes` are those of the sticks."""
     cameras = {
         name: {
             "position": (camera.position / MM_IN_M).tolist(),
@@ -50,7 +51,9 @@ def scene(sha256: str, scenario: Scenario, task: str) -> str:
         points = (chosen.fiducials / MM_IN_M).tolist()
         fiducials = dict(zip(chosen.labels, points, strict=True))
     url = f"/scene/{sha256}.glb"
-    return _text(SCENE, url=url, task=task, cameras=cameras, fiducials=fiducials)
+    return _text(
+        SCENE, url=url, task=task, sticks=axes.value, cameras=cameras, fiducials=fiducials
+    )
 
 
 def state(now: SimulationState, delayed: int) -> str:

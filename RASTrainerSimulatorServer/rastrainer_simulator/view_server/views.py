@@ -130,7 +130,7 @@ class Views:
     async def _load_scene(self, setup: SimulationSetup, task: str) -> None:
         try:
             file = await self._scenes.scene(setup, task)
-            self._scene = outgoing.scene(file.sha256, setup.scenario, task)
+            self._scene = outgoing.scene(file.sha256, setup.scenario, task, setup.settings.axes)
             for view in self._views.values():
                 view.outbox.put_latest(outgoing.SCENE, self._scene)
             # The views that have just got this scene need the processor first.

@@ -1,19 +1,21 @@
 /** The page: joins the simulator, shows what it says, and tells what is pressed. */
 
 import { Connection, isPaired } from "./connection";
+import { EnterButton } from "./enter_button";
 import { FlatView } from "./flat_view";
 import { FrameCount } from "./frame_count";
 import { Gamepads } from "./gamepads";
 import { Keyboard } from "./keyboard";
-import type { EventNews, Hello, News, SceneNews, StateNews } from "./messages";
+import type { ControlNews, EventNews, Hello, News, SceneNews, Screen, StateNews } from "./messages";
 import { byId, Overlay } from "./overlay";
 import { pair } from "./pairing";
 import { PoseStream } from "./pose_stream";
-import { loadScene } from "./scene_model";
+import { loadScene, type SceneModel } from "./scene_model";
 import { Sounds } from "./sounds";
 import { Stage } from "./stage";
 import { TargetArrow } from "./target_arrow";
 import { say, useLanguage } from "./texts";
+import { Headset } from "./xr/headset";
 
 export class Page {
   private readonly connection = new Connection(PAGE, {
@@ -29,6 +31,10 @@ export class Page {
   private readonly sounds = new Sounds();
   private readonly frames = new FrameCount(this.connection);
   private readonly arrow = new TargetArrow();
+  private readonly enter = new EnterButton((session) => void this.enterHeadset(session));
+  private headset: Headset | null = null;
+  private screen: Screen | null = null;
+  private control: ControlNews | null = null;
   private bodies: readonly string[] = [];
   private poses = new PoseStream(0);
   private state: StateNews | null = null;
@@ -37,11 +43,13 @@ export class Page {
   private isDue = true;
 
   constructor() {
-    this.connection.isHolding = () => this.keyboard.isHolding || this.pads.isHolding;
+    this.connection.isHolding = () =>
+      this.keyboard.isHolding || this.pads.isHolding || (this.headset?.isHolding ?? false);
     document.addEventListener("visibilitychange", () => {
-      this.connection.send("visibility", { isVisible: !document.hidden });
+      const isSeen = this.headset !== null || !document.hidden;
+      this.connection.send("visibility", { isVisible: isSeen });
     });
-    this.stage.renderer.setAnimationLoop((now) => this.turn(now));
+    this.stage.renderer.setAnimationLoop((now, frame) => this.turn(now, frame));
   }
 
   /** Pair if need be, and join. */
@@ -52,7 +60,9 @@ export class Page {
   }
 
   private connected(isConnected: boolean): void {
-    this.overlay.setNotice(isConnected ? "" : say("lost"));
+    const notice = isConnected ? "" : say("lost");
+    this.overlay.setNotice(notice);
+    this.headset?.setNotice(notice);
     this.lastEvent = 0;
   }
 
@@ -69,12 +79,17 @@ export class Page {
         this.takeState(news);
         break;
       case "screen":
+        this.screen = news.screen;
         useLanguage(news.screen.language);
+        this.enter.label();
         this.overlay.show(news.screen);
+        this.headset?.showScreen(news.screen);
         break;
       case "control":
+        this.control = news;
         this.pads.takeControl(news);
         this.overlay.showControl(news);
+        this.headset?.showControl(news);
         break;
       case "event":
         this.happen(news);
@@ -108,9 +123,35 @@ export class Page {
     this.lastEvent = event.number;
     this.sounds.play(event.sound, event.volume);
     this.pads.feel(event);
+    this.headset?.feel(event);
   }
 
-  private turn(nowMs: number): void {
+  private async enterHeadset(session: XRSession): Promise<void> {
+    const { stage, connection, sounds, frames } = this;
+    sounds.unlock();
+    stage.setQuality("low");
+    const leave = () => void session.end();
+    const headset = new Headset(stage, connection, sounds, frames, session, leave);
+    session.addEventListener("end", () => this.leaveHeadset());
+    this.headset = headset;
+    if (this.screen !== null) headset.showScreen(this.screen);
+    if (this.control !== null) headset.showControl(this.control);
+    await headset.begin();
+    this.enter.setInside(true);
+    document.body.dataset.headset = "inside";
+  }
+
+  private leaveHeadset(): void {
+    this.headset?.end();
+    this.headset = null;
+    this.frames.reset();
+    this.connection.rejoin(PAGE);
+    this.enter.setInside(false);
+    this.isDue = true;
+    delete document.body.dataset.headset;
+  }
+
+  private turn(nowMs: number, frame?: XRFrame): void {
     const now = nowMs / 1000;
     this.pads.poll();
     this.frames.asked(nowMs);
@@ -118,6 +159,19 @@ export class Page {
     const { state } = this;
     const { model } = this.stage;
     if (state === null || model === null) return;
+    if (this.headset !== null) {
+      if (frame === undefined) return;
+      this.poses.place(model.bodies, performance.now() / 1000);
+      model.mark(state);
+      model.pulse(now);
+      this.headset.draw(now, frame, model, state);
+      this.frames.drawn();
+    } else {
+      this.drawFlat(now, model, state);
+    }
+  }
+
+  private drawFlat(now: number, model: SceneModel, state: StateNews): void {
     this.flat.choose(state.camera, now);
     const hasMoved = this.flat.fit() || this.flat.advance(now) || this.isDue;
     if (!model.pulse(now) && !hasMoved) return;
@@ -126,7 +180,7 @@ export class Page {
     model.mark(state);
     this.overlay.showInset(this.flat.insetName);
     this.overlay.showContact(state.proximity === "contact");
-    this.arrow.show(model, this.flat.camera, document.body.dataset.menu === "" ? state.next : null);
+    this.arrow.show(model, this.flat.camera, this.screen?.menu == null ? state.next : null);
     this.flat.draw();
     this.frames.drawn();
   }

@@ -68,6 +68,8 @@ export interface SceneNews {
   readonly type: "scene";
   readonly url: string;
   readonly task: string;
+  /** Whose right, forward and up the sticks follow. */
+  readonly sticks: "camera" | "robot";
   readonly cameras: Readonly<Record<string, CameraPlace>>;
   readonly fiducials: Readonly<Record<string, Triple>>;
 }

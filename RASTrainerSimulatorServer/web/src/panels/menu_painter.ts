@@ -1,0 +1,80 @@
+/** Paint a menu; where each of its items lies is returned, for pointing at it. */
+
+import type { Item, Menu } from "../messages";
+import { COLORS, TONES, type Pen } from "./pen";
+import type { Region } from "./board";
+
+const PAD = 48;
+const ROW = 68;
+const GAP = 8;
+const FACT = 46;
+const TITLE = { size: 52, color: COLORS.text, isBold: true };
+const BODY = { size: 33, color: COLORS.soft };
+const VALUE = { size: 34, color: COLORS.text, isBold: true };
+const LABEL = { size: 34, color: COLORS.text };
+const PALE = { size: 34, color: COLORS.pale };
+const HELP = { size: 29, color: COLORS.soft };
+
+export function paintMenu(pen: Pen, menu: Menu, width: number, height: number, hovered: string): Region[] {
+  const room = width - 2 * PAD;
+  pen.box(0, 0, width, height, COLORS.night, 40);
+  let y = PAD - 6;
+  y += pen.paragraph(menu.title, PAD, y, TITLE, room) + 14;
+  for (const text of menu.paragraphs) y += pen.paragraph(text, PAD, y, BODY, room) + 12;
+  for (const fact of menu.facts) {
+    pen.line(fact.label, PAD, y + FACT / 2, BODY, 0.72 * room);
+    const color = fact.tone === "plain" ? COLORS.text : TONES[fact.tone];
+    pen.lineTo(fact.value, width - PAD, y + FACT / 2, { ...VALUE, size: 32, color });
+    pen.box(PAD, y + FACT - 2, room, 2, COLORS.edge, 0);
+    y += FACT;
+  }
+  y += 10;
+  const help = menu.items.find((item) => item.name === menu.focus)?.help ?? "";
+  const helpHeight = help === "" ? 0 : pen.wrapped(help, HELP, room).length * 38;
+  const fitting = Math.floor((height - y - helpHeight - PAD + GAP) / (ROW + GAP));
+  const regions: Region[] = [];
+  for (const item of aroundFocus(menu, Math.max(1, fitting))) {
+    const isFocus = item.name === menu.focus;
+    paintItem(pen, item, PAD, y, room, isFocus, item.name === hovered);
+    if (item.is_enabled) regions.push({ name: item.name, x: PAD, y, width: room, height: ROW });
+    y += ROW + GAP;
+  }
+  if (help !== "") pen.paragraph(help, PAD, y + 4, HELP, room);
+  return regions;
+}
+
+/** Return the items that fit, the focus among them. */
+function aroundFocus(menu: Menu, most: number): readonly Item[] {
+  if (menu.items.length <= most) return menu.items;
+  const focus = Math.max(0, menu.items.findIndex((item) => item.name === menu.focus));
+  const first = Math.min(menu.items.length - most, Math.max(0, focus - Math.floor(most / 2)));
+  return menu.items.slice(first, first + most);
+}
+
+function paintItem(
+  pen: Pen,
+  item: Item,
+  x: number,
+  y: number,
+  width: number,
+  isFocus: boolean,
+  isHovered: boolean,
+): void {
+  pen.box(x, y, width, ROW, isFocus ? COLORS.accent : COLORS.row);
+  if (isFocus || isHovered) pen.frame(x, y, width, ROW, COLORS.accentEdge);
+  const middle = y + ROW / 2 + 2;
+  pen.line(item.label, x + 26, middle, item.is_enabled ? LABEL : PALE, 0.62 * width);
+  if (item.kind === "axis") {
+    paintAxis(pen, Number(item.value), x + width - 300, middle);
+    return;
+  }
+  if (item.kind === "text") pen.box(x + width - 380, y + 10, 360, ROW - 20, COLORS.field, 10);
+  const value = item.kind === "choice" ? `◀ ${item.value} ▶` : item.value;
+  if (item.kind === "text") pen.line(value + (isFocus ? "▏" : ""), x + width - 366, middle, VALUE, 340);
+  else pen.lineTo(value, x + width - 26, middle, VALUE);
+}
+
+function paintAxis(pen: Pen, position: number, x: number, middle: number): void {
+  pen.box(x, middle - 5, 270, 10, COLORS.field, 5);
+  pen.box(x + 135 + 120 * (position || 0) - 13, middle - 13, 26, 26, TONES.plain, 13);
+}

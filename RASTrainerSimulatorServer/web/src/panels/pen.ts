@@ -1,0 +1,112 @@
+/** Text and boxes on a canvas, in its pixels, with the colors of the flat page. */
+
+import type { Tone } from "../messages";
+
+export const COLORS = {
+  night: "#0e1726",
+  row: "#1f2837",
+  accent: "#1f74e8",
+  accentEdge: "#bfdbff",
+  field: "#0a111d",
+  edge: "#37445a",
+  text: "#f4f7fb",
+  soft: "#c3cede",
+  pale: "#74839a",
+};
+
+export const TONES: Readonly<Record<Tone, string>> = {
+  plain: "#5aa2ff",
+  good: "#3ccb7f",
+  warning: "#ffb92e",
+  error: "#ff5252",
+};
+
+export const BANNERS: Readonly<Record<Tone, string>> = {
+  plain: "#23457a",
+  good: "#16653d",
+  warning: "#8a5600",
+  error: "#b3141e",
+};
+
+const FAMILY = 'system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif';
+const LINE = 1.28;
+
+export interface TextStyle {
+  readonly size: number;
+  readonly color: string;
+  readonly isBold?: boolean;
+}
+
+export class Pen {
+  constructor(private readonly context: CanvasRenderingContext2D) {
+    context.textBaseline = "middle";
+  }
+
+  box(x: number, y: number, width: number, height: number, color: string, radius = 20): void {
+    this.context.fillStyle = color;
+    this.context.beginPath();
+    this.context.roundRect(x, y, width, height, radius);
+    this.context.fill();
+  }
+
+  frame(x: number, y: number, width: number, height: number, color: string, radius = 20): void {
+    this.context.strokeStyle = color;
+    this.context.lineWidth = 4;
+    this.context.beginPath();
+    this.context.roundRect(x + 2, y + 2, width - 4, height - 4, radius);
+    this.context.stroke();
+  }
+
+  width(text: string, style: TextStyle): number {
+    this.use(style);
+    return this.context.measureText(text).width;
+  }
+
+  /** Write one line, its middle at `y`; the text is cut where it is wider than `room`. */
+  line(text: string, x: number, y: number, style: TextStyle, room = Infinity): void {
+    this.use(style);
+    this.context.fillText(this.cut(text, room), x, y);
+  }
+
+  /** Write one line that ends at `right`. */
+  lineTo(text: string, right: number, y: number, style: TextStyle): void {
+    this.line(text, right - this.width(text, style), y, style);
+  }
+
+  /** Return a text's lines, each within a width. */
+  wrapped(text: string, style: TextStyle, room: number): string[] {
+    this.use(style);
+    const lines: string[] = [];
+    let line = "";
+    for (const word of text.split(" ")) {
+      const longer = line === "" ? word : `${line} ${word}`;
+      if (line !== "" && this.context.measureText(longer).width > room) {
+        lines.push(line);
+        line = word;
+      } else {
+        line = longer;
+      }
+    }
+    return [...lines, line];
+  }
+
+  /** Write a text in as many lines as it needs; return the height that they take. */
+  paragraph(text: string, x: number, y: number, style: TextStyle, room: number): number {
+    const lines = this.wrapped(text, style, room);
+    const step = LINE * style.size;
+    lines.forEach((line, index) => this.line(line, x, y + (index + 0.5) * step, style));
+    return lines.length * step;
+  }
+
+  private use(style: TextStyle): void {
+    this.context.font = `${style.isBold ? "700 " : ""}${style.size}px ${FAMILY}`;
+    this.context.fillStyle = style.color;
+  }
+
+  private cut(text: string, room: number): string {
+    if (this.context.measureText(text).width <= room) return text;
+    let end = text.length;
+    while (end > 1 && this.context.measureText(`${text.slice(0, end)}…`).width > room) end--;
+    return `${text.slice(0, end)}…`;
+  }
+}

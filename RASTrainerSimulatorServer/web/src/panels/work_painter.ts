@@ -1,0 +1,57 @@
+/** Paint what is read while the arm is driven: the instruction, short facts and the controls. */
+
+import type { Screen } from "../messages";
+import { BANNERS, COLORS, type Pen } from "./pen";
+
+const PAD = 40;
+const INSTRUCTION = { size: 46, color: COLORS.text, isBold: true };
+const FACT = { size: 36, color: COLORS.text };
+const HINT = { size: 32, color: COLORS.soft };
+const CAP = { size: 32, color: COLORS.text, isBold: true };
+const NOTICE = { size: 32, color: COLORS.text };
+
+export function paintWork(pen: Pen, screen: Screen, holder: string, width: number, height: number): void {
+  const room = width - 2 * PAD;
+  pen.box(0, 0, width, height, COLORS.night, 40);
+  let y = paintBanner(pen, screen, width);
+  for (const notice of screen.warnings.slice(0, 2)) {
+    const lines = pen.wrapped(notice.text, NOTICE, room - 40).length;
+    pen.box(PAD, y, room, lines * 41 + 22, BANNERS[notice.tone], 16);
+    pen.paragraph(notice.text, PAD + 20, y + 12, NOTICE, room - 40);
+    y += lines * 41 + 34;
+  }
+  screen.status.forEach((fact, index) => {
+    pen.line(fact, PAD + (index % 2) * 0.5 * room, y + 26 + 52 * Math.floor(index / 2), FACT, room);
+  });
+  y += 52 * Math.ceil(screen.status.length / 2) + 20;
+  paintHints(pen, screen, y, width);
+  pen.line(holder, PAD, height - 42, HINT, room);
+}
+
+function paintBanner(pen: Pen, screen: Screen, width: number): number {
+  const { text, tone } = screen.instruction;
+  const room = width - 2 * PAD;
+  const lines = Math.max(1, pen.wrapped(text, INSTRUCTION, room - 48).length);
+  const height = lines * 59 + 44;
+  pen.box(PAD, PAD, room, height, BANNERS[tone]);
+  pen.paragraph(text, PAD + 24, PAD + 22, INSTRUCTION, room - 48);
+  return PAD + height + 24;
+}
+
+function paintHints(pen: Pen, screen: Screen, top: number, width: number): void {
+  let x = PAD;
+  let y = top;
+  for (const hint of screen.hints) {
+    const cap = pen.width(hint.control, CAP) + 32;
+    const total = cap + pen.width(hint.action, HINT) + 46;
+    if (x + total > width - PAD && x > PAD) {
+      x = PAD;
+      y += 66;
+    }
+    pen.box(x, y, cap, 52, COLORS.row, 12);
+    pen.frame(x, y, cap, 52, COLORS.edge, 12);
+    pen.line(hint.control, x + 16, y + 28, CAP);
+    pen.line(hint.action, x + cap + 14, y + 28, HINT);
+    x += total;
+  }
+}

@@ -1,0 +1,175 @@
+/** The panels in the room: what is read stands beside the head, warnings go with the eyes. */
+
+import { Group, Vector3, type Object3D } from "three";
+
+import type { ControlNews, Message, Screen } from "../messages";
+import { Board, type Region } from "../panels/board";
+import { paintMenu } from "../panels/menu_painter";
+import { BANNERS, COLORS, type Pen } from "../panels/pen";
+import { paintWork } from "../panels/work_painter";
+import { say, sayHolder, type TextName } from "../texts";
+import { CloseUp } from "./close_up";
+import type { Placement } from "./placement";
+
+/** Beside the direction of the head, in rad, and away from the eyes, in m. */
+const ASIDE = 0.5;
+const AWAY = 1.1;
+const WIDE = 0.86;
+const WARNING_AWAY = 1.0;
+const WARNING_BELOW = 0.2;
+const BUTTON = { size: 32, color: COLORS.text, isBold: true };
+const WARNING = { size: 40, color: COLORS.text, isBold: true };
+
+/** Names of what the headset does itself; an item of a menu never has such a name. */
+export const LOCAL = ["recenter", "higher", "lower", "grab", "leave"] as const;
+export type Local = (typeof LOCAL)[number];
+const PREFIX = "local ";
+
+export class Boards {
+  /** In the room. */
+  readonly room = new Group();
+  readonly closeUp = new CloseUp(WIDE);
+  private readonly menu = new Board(1024, 1024, WIDE);
+  private readonly work = new Board(1024, 560, WIDE);
+  private readonly actions = new Board(1024, 190, WIDE);
+  private readonly warning = new Board(1024, 256, 0.6);
+  private screen: Screen | null = null;
+  private control: ControlNews | null = null;
+  private notice = "";
+  private hovered = "";
+  private mayGrab = true;
+
+  constructor(eyes: Object3D) {
+    this.room.add(this.menu.mesh, this.work.mesh, this.actions.mesh, this.closeUp.mesh);
+    this.warning.mesh.position.set(0, -WARNING_BELOW, -WARNING_AWAY);
+    this.warning.mesh.renderOrder = 10;
+    this.warning.mesh.material.depthTest = false;
+    eyes.add(this.warning.mesh);
+  }
+
+  /** Those that can be pointed at. */
+  get pointable(): readonly Board[] {
+    return [this.menu, this.actions];
+  }
+
+  get isInMenu(): boolean {
+    return this.screen?.menu != null;
+  }
+
+  /** Stand where somebody at the place of the eyes reads them well. */
+  arrange(placement: Placement): void {
+    const { forward, eyes } = placement;
+    const toBoard = new Vector3().copy(forward).applyAxisAngle(UP, -ASIDE);
+    this.room.position.copy(eyes).addScaledVector(toBoard, AWAY);
+    this.room.lookAt(eyes);
+    this.menu.mesh.position.y = -0.06;
+    this.actions.mesh.position.set(0, -0.06 - 0.43 - 0.1, 0.02);
+    this.work.mesh.position.y = 0.16;
+    this.closeUp.mesh.position.set(0, -0.37, 0.02);
+    this.work.mesh.rotation.x = 0;
+    this.closeUp.mesh.rotation.x = -0.3;
+    this.actions.mesh.rotation.x = -0.3;
+  }
+
+  show(screen: Screen): void {
+    this.screen = screen;
+    this.paint();
+  }
+
+  showControl(control: ControlNews): void {
+    this.control = control;
+    this.paint();
+  }
+
+  setNotice(text: string): void {
+    this.notice = text;
+    this.paint();
+  }
+
+  hover(name: string): void {
+    this.hovered = name;
+    this.paint();
+  }
+
+  setGrab(mayGrab: boolean): void {
+    this.mayGrab = mayGrab;
+    this.paint();
+  }
+
+  /** Return which of its own actions a chosen name is, null for an item of the menu. */
+  localAction(name: string): Local | null {
+    return LOCAL.find((action) => PREFIX + action === name) ?? null;
+  }
+
+  dispose(): void {
+    for (const board of [this.menu, this.work, this.actions, this.warning]) board.dispose();
+    this.closeUp.dispose();
+    this.room.removeFromParent();
+  }
+
+  private paint(): void {
+    const { screen } = this;
+    if (screen === null) return;
+    const { menu } = screen;
+    const holder = sayHolder(this.control?.holder ?? "", this.control?.isYou ?? false);
+    this.menu.mesh.visible = this.actions.mesh.visible = menu !== null;
+    this.work.mesh.visible = this.closeUp.mesh.visible = menu === null;
+    if (menu !== null) {
+      this.menu.show(JSON.stringify([menu, this.hovered]), (pen) =>
+        paintMenu(pen, menu, this.menu.width, this.menu.height, this.hovered),
+      );
+      const content = JSON.stringify([this.hovered, this.mayGrab, holder, screen.language]);
+      this.actions.show(content, (pen) => this.paintActions(pen, holder));
+    } else {
+      const plain = screen.warnings.filter((warning) => !isUrgent(warning));
+      const read = { ...screen, warnings: plain };
+      this.work.show(JSON.stringify([read, holder]), (pen) =>
+        paintWork(pen, read, holder, this.work.width, this.work.height),
+      );
+    }
+    this.paintWarning(screen);
+  }
+
+  private paintWarning(screen: Screen): void {
+    const own: Message[] = this.notice === "" ? [] : [{ text: this.notice, tone: "error" }];
+    const first = [...own, ...screen.warnings.filter(isUrgent)][0];
+    this.warning.mesh.visible = first !== undefined;
+    if (first === undefined) return;
+    const { width } = this.warning;
+    this.warning.show(JSON.stringify(first), (pen) => {
+      const lines = Math.min(4, pen.wrapped(first.text, WARNING, width - 80).length);
+      pen.box(0, 0, width, lines * 51 + 48, BANNERS[first.tone], 28);
+      pen.paragraph(first.text, 40, 24, WARNING, width - 80);
+    });
+  }
+
+  private paintActions(pen: Pen, holder: string): Region[] {
+    const { width, height } = this.actions;
+    pen.box(0, 0, width, height, COLORS.night, 40);
+    const labels: readonly TextName[] = ["recenter", "higher", "lower", this.mayGrab ? "grab" : "noGrab", "leave"];
+    const regions: Region[] = [];
+    let x = 32;
+    let y = 20;
+    LOCAL.forEach((action, index) => {
+      const name = PREFIX + action;
+      const text = say(labels[index]!);
+      const wide = pen.width(text, BUTTON) + 44;
+      if (x + wide > width - 24) {
+        x = 32;
+        y += 74;
+      }
+      pen.box(x, y, wide, 62, name === this.hovered ? COLORS.accent : COLORS.row, 16);
+      pen.line(text, x + 22, y + 33, BUTTON);
+      regions.push({ name, x, y, width: wide, height: 62 });
+      x += wide + 14;
+    });
+    pen.line(holder, x + 12, y + 33, { size: 27, color: COLORS.soft }, width - x - 40);
+    return regions;
+  }
+}
+
+function isUrgent(message: Message): boolean {
+  return message.tone === "warning" || message.tone === "error";
+}
+
+const UP = new Vector3(0, 1, 0);

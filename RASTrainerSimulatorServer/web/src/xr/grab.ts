@@ -1,0 +1,58 @@
+/** Grab and move: while the grip is held, the tool's tip follows the hand. */
+
+import { Vector3, type Object3D } from "three";
+
+import type { SceneNews } from "../messages";
+import { yUp } from "../viewpoint";
+
+/** How far the tip may lag behind the hand before the stick is fully pushed. */
+const FULL_M = 0.03;
+const REST_M = 0.0015;
+
+export class Grab {
+  isAllowed = true;
+  private hand: Object3D | null = null;
+  private readonly axes = [new Vector3(), new Vector3(), new Vector3(0, 1, 0)] as const;
+  private readonly handBegan = new Vector3();
+  private readonly tipBegan = new Vector3();
+  private readonly lag = new Vector3();
+  private readonly now = new Vector3();
+  private tool: Object3D | undefined;
+
+  /** Know the tool's node, and where right, forward and up of the sticks point. */
+  take(tool: Object3D | undefined, scene: SceneNews, camera: string): void {
+    this.tool = tool;
+    const [right, forward] = this.axes;
+    const place = scene.cameras[camera];
+    if (scene.sticks === "robot" || place === undefined) {
+      forward.set(1, 0, 0);
+    } else {
+      yUp(forward.fromArray(place.focalPoint).sub(right.fromArray(place.position)));
+      forward.setY(0).normalize();
+    }
+    right.crossVectors(forward, this.axes[2]);
+  }
+
+  begin(hand: Object3D): void {
+    if (!this.isAllowed || this.tool === undefined) return;
+    this.hand = hand;
+    hand.getWorldPosition(this.handBegan);
+    this.tool.getWorldPosition(this.tipBegan);
+  }
+
+  end(): void {
+    this.hand = null;
+  }
+
+  /** Push the stick so that the tip follows; leaves it as it is while nothing is grabbed. */
+  steer(translation: number[]): void {
+    if (this.hand === null || this.tool === undefined) return;
+    this.hand.getWorldPosition(this.lag).sub(this.handBegan).add(this.tipBegan);
+    this.lag.sub(this.tool.getWorldPosition(this.now));
+    const size = this.lag.length();
+    const push = size < REST_M ? 0 : Math.min(1, size / FULL_M) / size;
+    for (let index = 0; index < 3; index++) {
+      translation[index] = push * this.lag.dot(this.axes[index]!);
+    }
+  }
+}

@@ -1,0 +1,237 @@
+/** The headset's controllers: what they send, where they point, and how they pulse. */
+
+import {
+  BufferGeometry,
+  CapsuleGeometry,
+  Float32BufferAttribute,
+  Line,
+  LineBasicMaterial,
+  Mesh,
+  MeshLambertMaterial,
+  Raycaster,
+  type Intersection,
+  type Object3D,
+  type WebXRManager,
+  type XRTargetRaySpace,
+} from "three";
+
+import type { Connection } from "../connection";
+import type { EventNews } from "../messages";
+import type { Board } from "../panels/board";
+import type { Grab } from "./grab";
+
+const DEAD = 0.12;
+const CHANGE = 0.01;
+const PRESSED = 0.6;
+const RELEASED = 0.4;
+const REPEAT_AFTER_S = 0.4;
+const REPEAT_EVERY_S = 0.15;
+/** Of the gamepad in the mapping "xr-standard". */
+const TRIGGER = 0;
+const SQUEEZE = 1;
+const NEAR_BUTTON = 4;
+const FAR_BUTTON = 5;
+const STICK_X = 2;
+const STICK_Y = 3;
+
+interface Hand {
+  readonly ray: XRTargetRaySpace;
+  readonly line: Line;
+  source: XRInputSource | null;
+  readonly down: boolean[];
+  pointed: string;
+}
+
+/** What the hands do to the page itself. */
+export interface HandsListener {
+  /** A part of a board was chosen by pointing at it. */
+  onChosen(name: string): void;
+  /** The pointed-at part has changed. */
+  onHovered(name: string): void;
+}
+
+export class Hands {
+  private readonly hands: readonly Hand[];
+  private readonly raycaster = new Raycaster();
+  private readonly hits: Intersection[] = [];
+  private readonly message = {
+    translation: [0, 0, 0],
+    rotation: [0, 0],
+    fine: false,
+  };
+  private readonly told = new Float32Array(6);
+  private hovered = "";
+  private repeated = "";
+  private repeatIn = 0;
+  isHolding = false;
+  /** Whether a menu is open: sticks then step through it. */
+  isInMenu = false;
+
+  constructor(
+    xr: WebXRManager,
+    parent: Object3D,
+    private readonly boards: readonly Board[],
+    private readonly connection: Connection,
+    private readonly grab: Grab,
+    private readonly listener: HandsListener,
+  ) {
+    this.hands = [0, 1].map((index) => makeHand(xr.getController(index), parent));
+  }
+
+  /** Look at the controllers `passed` seconds after the last look. */
+  poll(passed: number): void {
+    this.message.translation.fill(0);
+    this.message.rotation.fill(0);
+    this.message.fine = false;
+    let hovered = "";
+    let step = "";
+    for (const hand of this.hands) {
+      hand.pointed = this.point(hand);
+      if (hand.pointed !== "") hovered = hand.pointed;
+      const pad = hand.source?.gamepad;
+      if (!pad) continue;
+      this.takeSticks(hand, pad);
+      this.takeButtons(hand, pad);
+      step = step || stepOf(pad);
+    }
+    if (hovered !== this.hovered) {
+      this.hovered = hovered;
+      this.listener.onHovered(hovered);
+    }
+    this.grab.steer(this.message.translation);
+    this.tellSticks();
+    this.repeat(this.isInMenu ? step : "", passed);
+  }
+
+  /** Let both hands feel something. */
+  feel(event: EventNews): void {
+    if (event.rumble <= 0) return;
+    for (const hand of this.hands) {
+      const pad = hand.source?.gamepad as PulsingPad | undefined;
+      void pad?.hapticActuators?.[0]?.pulse(event.rumble, event.data.rumbleMs ?? 100);
+    }
+  }
+
+  release(): void {
+    this.isHolding = false;
+    this.told.fill(0);
+    for (const hand of this.hands) hand.down.fill(false);
+  }
+
+  private point(hand: Hand): string {
+    hand.line.visible = false;
+    if (hand.source === null || hand.source.targetRayMode !== "tracked-pointer") return "";
+    this.raycaster.setFromXRController(hand.ray);
+    this.hits.length = 0;
+    for (const board of this.boards) {
+      if (board.mesh.visible) this.raycaster.intersectObject(board.mesh, false, this.hits);
+    }
+    const hit = this.hits[0];
+    if (hit?.uv === undefined) return "";
+    hand.line.visible = true;
+    hand.line.scale.z = hit.distance;
+    return (hit.object.userData.board as Board).at(hit.uv);
+  }
+
+  private takeSticks(hand: Hand, pad: Gamepad): void {
+    const x = alive(pad.axes[STICK_X] ?? 0);
+    const y = -alive(pad.axes[STICK_Y] ?? 0);
+    if (hand.source?.handedness === "left") {
+      this.message.translation[0] = x;
+      this.message.translation[1] = y;
+    } else {
+      this.message.translation[2] = y;
+      this.message.rotation[0] = x;
+    }
+    if (hand.pointed === "" && (pad.buttons[TRIGGER]?.value ?? 0) > PRESSED) this.message.fine = true;
+  }
+
+  private takeButtons(hand: Hand, pad: Gamepad): void {
+    const isLeft = hand.source?.handedness === "left";
+    if (this.pressed(hand, pad, TRIGGER) && hand.pointed !== "") this.listener.onChosen(hand.pointed);
+    if (this.pressed(hand, pad, NEAR_BUTTON)) this.press(isLeft ? "menu" : "touch");
+    if (this.pressed(hand, pad, FAR_BUTTON)) this.press(isLeft ? "camera" : "undo");
+    if (isLeft) return;
+    if (this.pressed(hand, pad, SQUEEZE)) this.grab.begin(hand.ray);
+    if (!hand.down[SQUEEZE]) this.grab.end();
+  }
+
+  /** Return whether a button has just been pressed. */
+  private pressed(hand: Hand, pad: Gamepad, index: number): boolean {
+    const value = pad.buttons[index]?.value ?? 0;
+    const was = hand.down[index]!;
+    hand.down[index] = was ? value > RELEASED : value > PRESSED;
+    return hand.down[index]! && !was;
+  }
+
+  private press(control: string): void {
+    this.connection.send("press", { control });
+  }
+
+  private tellSticks(): void {
+    const { translation, rotation, fine } = this.message;
+    let differs = false;
+    let isPushed = fine;
+    for (let index = 0; index < 6; index++) {
+      const value = index < 3 ? translation[index]! : index < 5 ? rotation[index - 3]! : Number(fine);
+      const isEnd = value === 0 && this.told[index] !== 0;
+      if (Math.abs(value - this.told[index]!) > CHANGE || isEnd) differs = true;
+      if (value !== 0) isPushed = true;
+    }
+    this.isHolding = isPushed;
+    if (!differs) return;
+    this.told.set(translation);
+    this.told.set(rotation, 3);
+    this.told[5] = Number(fine);
+    this.connection.send("sticks", this.message);
+  }
+
+  private repeat(step: string, passed: number): void {
+    if (step === "") {
+      this.repeated = "";
+      return;
+    }
+    this.repeatIn -= passed;
+    const isNew = step !== this.repeated;
+    if (!isNew && this.repeatIn > 0) return;
+    this.repeatIn = isNew ? REPEAT_AFTER_S : REPEAT_EVERY_S;
+    this.repeated = step;
+    this.press(step);
+  }
+}
+
+/** The older name of what three's types know as `vibrationActuator`; headsets have only this. */
+interface PulsingPad {
+  readonly hapticActuators?: readonly { pulse(value: number, duration: number): Promise<boolean> }[];
+}
+
+function makeHand(ray: XRTargetRaySpace, parent: Object3D): Hand {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new Float32BufferAttribute([0, 0, 0, 0, 0, -1], 3));
+  const line = new Line(geometry, new LineBasicMaterial({ color: 0xbfdbff }));
+  const body = new Mesh(
+    new CapsuleGeometry(0.018, 0.09, 4, 10).rotateX(Math.PI / 2),
+    new MeshLambertMaterial({ color: 0x2a3444 }),
+  );
+  body.position.z = 0.05;
+  ray.add(line, body);
+  parent.add(ray);
+  const hand: Hand = { ray, line, source: null, down: new Array<boolean>(8).fill(false), pointed: "" };
+  ray.addEventListener("connected", (event) => (hand.source = event.data));
+  ray.addEventListener("disconnected", () => (hand.source = null));
+  return hand;
+}
+
+function alive(position: number): number {
+  const size = Math.abs(position);
+  return size < DEAD ? 0 : Math.sign(position) * Math.min(1, (size - DEAD) / (1 - DEAD));
+}
+
+function stepOf(pad: Gamepad): string {
+  const x = pad.axes[STICK_X] ?? 0;
+  const y = pad.axes[STICK_Y] ?? 0;
+  if (Math.max(Math.abs(x), Math.abs(y)) < PRESSED) return "";
+  if (Math.abs(y) >= Math.abs(x)) return y > 0 ? "down" : "up";
+  return x > 0 ? "right" : "left";
+}
+

@@ -1,0 +1,180 @@
+/** The view in a headset, from entering immersive VR to leaving it. */
+
+import { PerspectiveCamera, Vector3 } from "three";
+
+import type { Connection } from "../connection";
+import type { FrameCount } from "../frame_count";
+import type { ControlNews, EventNews, Hello, Screen, StateNews } from "../messages";
+import type { SceneModel } from "../scene_model";
+import type { Sounds } from "../sounds";
+import type { Stage } from "../stage";
+import { Boards } from "./boards";
+import { headsetModel } from "./device";
+import { Grab } from "./grab";
+import { Hands } from "./hands";
+import { Placement } from "./placement";
+
+const HIGHEST_HZ = 90;
+const MOST_FOVEATION = 1;
+
+export class Headset {
+  private readonly camera = new PerspectiveCamera(70, 1, 0.05, 20);
+  private readonly placement = new Placement();
+  private readonly boards = new Boards(this.camera);
+  private readonly grab = new Grab();
+  private readonly hands: Hands;
+  private base: XRReferenceSpace | null = null;
+  private mustRecenter = false;
+  private looked = 0;
+  private told = "";
+  private readonly ears = { place: new Vector3(), forward: new Vector3(), up: new Vector3() };
+  private readonly tip = new Vector3();
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly connection: Connection,
+    private readonly sounds: Sounds,
+    private readonly frames: FrameCount,
+    private readonly session: XRSession,
+    private readonly leave: () => void,
+  ) {
+    const { scene, renderer } = stage;
+    scene.add(this.camera, this.boards.room);
+    this.hands = new Hands(renderer.xr, scene, this.boards.pointable, connection, this.grab, {
+      onChosen: (name) => this.choose(name),
+      onHovered: (name) => this.boards.hover(name),
+    });
+  }
+
+  /** Take over the picture. */
+  async begin(): Promise<void> {
+    const { xr } = this.stage.renderer;
+    xr.enabled = true;
+    xr.setReferenceSpaceType("local-floor");
+    xr.setFoveation(MOST_FOVEATION);
+    await xr.setSession(this.session);
+    xr.setFoveation(MOST_FOVEATION);
+    this.base = xr.getReferenceSpace();
+    this.base?.addEventListener("reset", () => (this.mustRecenter = true));
+    this.mustRecenter = true;
+    await this.setFrameRate();
+    this.session.addEventListener("visibilitychange", () => {
+      this.connection.send("visibility", { isVisible: this.session.visibilityState === "visible" });
+    });
+    this.sounds.setSpatial(true);
+    this.connection.rejoin(this.hello());
+  }
+
+  /** Leave the picture to the flat view. */
+  end(): void {
+    this.boards.dispose();
+    this.hands.release();
+    this.camera.removeFromParent();
+    this.stage.renderer.xr.enabled = false;
+    this.sounds.setSpatial(false);
+  }
+
+  get isHolding(): boolean {
+    return this.hands.isHolding;
+  }
+
+  showScreen(screen: Screen): void {
+    this.boards.show(screen);
+    this.hands.isInMenu = this.boards.isInMenu;
+  }
+
+  showControl(control: ControlNews): void {
+    this.boards.showControl(control);
+  }
+
+  setNotice(text: string): void {
+    this.boards.setNotice(text);
+  }
+
+  feel(event: EventNews): void {
+    this.hands.feel(event);
+  }
+
+  /** Take a scene that is new to it. */
+  takeScene(model: SceneModel, state: StateNews): void {
+    const camera = model.news.cameras["close-up"] ?? Object.values(model.news.cameras)[0];
+    if (camera === undefined) return;
+    this.placement.take(camera);
+    this.boards.arrange(this.placement);
+    this.grab.take(model.node("tool"), model.news, state.camera);
+    this.applySpace();
+  }
+
+  /** Draw for both eyes, `now` in s. */
+  draw(now: number, frame: XRFrame, model: SceneModel, state: StateNews): void {
+    const key = `${model.news.url} ${model.news.sticks} ${state.camera}`;
+    if (key !== this.told) {
+      this.told = key;
+      this.takeScene(model, state);
+    }
+    this.lookAround(frame);
+    this.hands.poll(Math.min(0.1, now - this.looked));
+    this.looked = now;
+    this.hear(model);
+    this.boards.closeUp.draw(this.stage, [this.boards.room]);
+    this.stage.renderer.render(this.stage.scene, this.camera);
+  }
+
+  private lookAround(frame: XRFrame): void {
+    if (!this.mustRecenter || this.base === null) return;
+    const pose = frame.getViewerPose(this.base);
+    if (!pose) return;
+    this.mustRecenter = false;
+    this.placement.recenter(pose);
+    this.applySpace();
+  }
+
+  private applySpace(): void {
+    const space = this.base === null ? null : this.placement.space(this.base);
+    if (space !== null) this.stage.renderer.xr.setReferenceSpace(space);
+  }
+
+  private hear(model: SceneModel): void {
+    const { place, forward, up } = this.ears;
+    this.camera.getWorldDirection(forward);
+    this.camera.getWorldPosition(place);
+    up.set(0, 1, 0).applyQuaternion(this.camera.quaternion);
+    model.node("tool")?.getWorldPosition(this.tip);
+    this.sounds.locate(place, forward, up, this.tip);
+  }
+
+  private choose(name: string): void {
+    switch (this.boards.localAction(name)) {
+      case "recenter":
+        this.mustRecenter = true;
+        break;
+      case "higher":
+      case "lower":
+        this.placement.raise(name.endsWith("higher") ? 1 : -1);
+        this.boards.arrange(this.placement);
+        this.applySpace();
+        break;
+      case "grab":
+        this.grab.isAllowed = !this.grab.isAllowed;
+        this.boards.setGrab(this.grab.isAllowed);
+        break;
+      case "leave":
+        this.leave();
+        break;
+      default:
+        this.connection.send("item", { name });
+    }
+  }
+
+  private async setFrameRate(): Promise<void> {
+    const rates = [...(this.session.supportedFrameRates ?? [])].filter((hz) => hz <= HIGHEST_HZ);
+    const wanted = Math.max(0, ...rates);
+    if (wanted > 0) await this.session.updateTargetFrameRate(wanted).catch(() => undefined);
+    this.frames.reset(this.session.frameRate ?? wanted);
+  }
+
+  private hello(): Hello {
+    const device = headsetModel(this.session, navigator.userAgent);
+    return { kind: "headset", device, refreshHz: this.frames.fixedHz };
+  }
+}
