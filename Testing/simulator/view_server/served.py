@@ -134,11 +134,15 @@ class ViewClient:
     def next(self, kind: str | None = None) -> dict:
         """Return the next message, or the next of a kind."""
         while True:
-            message = self._receive()
-            assert message.type is aiohttp.WSMsgType.TEXT, message
-            decoded = json.loads(message.data)
+            decoded = json.loads(self.next_text())
             if kind in (None, decoded["type"]):
                 return decoded
+
+    def next_text(self) -> str:
+        """Return the next message as it came."""
+        message = self._receive()
+        assert message.type is aiohttp.WSMsgType.TEXT, message
+        return message.data
 
     def all_until(self, is_last) -> list[dict]:
         """Return the messages up to the first for which `is_last` is true."""

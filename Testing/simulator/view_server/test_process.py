@@ -1,35 +1,14 @@
 """The view server as a user starts it: in the simulator's process, by the command."""
 
-import os
-import re
 import secrets
 import socket
 
 import pytest
 
 from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.simulator.igtl.servers import HOST, LoopThread
 from Testing.simulator.view_server.served import ViewClient, request
-
-LINE = re.compile(
-    r"RASTrainer simulator serves views on (http://127\.0\.0\.1:(\d+)), pairing code (\d{6})\n"
-)
-
-
-class ViewedSimulator(SimulatorProcess):
-    """A simulator whose views a test can join.
-
-    Attributes:
-        url, view_port, code: as it prints them.
-    """
-
-    def __init__(self, records, *arguments, key=None):
-        environment = dict(os.environ)
-        if key is not None:
-            environment["RASTRAINER_VIEW_KEY"] = key
-        super().__init__(records, "--no-gamepad", *arguments, env=environment)
-        line = LINE.fullmatch(self._process.stdout.readline())
-        self.url, self.view_port, self.code = line[1], int(line[2]), line[3]
 
 
 @pytest.fixture

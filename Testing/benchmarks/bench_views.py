@@ -1,0 +1,82 @@
+"""What a view costs: the stream, the scene, and the simulator's process while one watches."""
+
+from __future__ import annotations
+
+import secrets
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer_simulator.scene.scene_glb import scene_glb
+from rastrainer_simulator.setup import load_setup
+from Testing.benchmarks.process_cost import cpu_share, resident_mb
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.scene.glb_reader import Glb
+from Testing.simulator.view_server.served import ViewClient
+
+
+def rows(quick: bool) -> list[dict]:
+    """Return the rows `views.*` of the stream and the process, and `scene.*` of all six tasks."""
+    return [*_stream_rows(2.0 if quick else 10.0), *_scene_rows(quick)]
+
+
+def _stream_rows(seconds: float) -> list[dict]:
+    key = secrets.token_urlsafe()
+    thread = LoopThread()
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = (Path(folder) / "records", "--view-port", "0")
+        with (
+            ViewedSimulator(*arguments, key=key) as simulator,
+            ViewClient(thread, simulator.url, key) as view,
+        ):
+            view.join()
+            view.next("scene")
+            sizes, states = [], 0
+            end = time.monotonic() + seconds
+            while time.monotonic() < end:
+                text = view.next_text()
+                sizes.append(len(text.encode()))
+                states += text.startswith('{"type":"state"')
+            cpu = [cpu_share(simulator.pid, 0.5) for _ in range(int(seconds))]
+            rss = resident_mb(simulator.pid)
+    thread.stop()
+    return [
+        _row("views.stream", [sum(sizes) / seconds / 1000], "kB/s"),
+        _row("views.states", [states / seconds], "1/s"),
+        _row("views.rss", [rss], "MB"),
+        _row("views.cpu", 100.0 * np.array(cpu), "%"),
+    ]
+
+
+def _scene_rows(quick: bool) -> list[dict]:
+    setup = load_setup()
+    times, contents = [], []
+    for task in setup.scenario.tasks[: 2 if quick else None]:
+        begin = time.perf_counter()
+        contents.append(scene_glb(setup.scenario, setup.robot, task))
+        times.append(time.perf_counter() - begin)
+    parts = [Glb(content).primitives("world") for content in contents]
+    triangles = [sum(len(part[2]) for part in primitives) for primitives in parts]
+    return [
+        _row("scene.build", times, "s"),
+        _row("scene.size", [len(content) / 1e6 for content in contents], "MB"),
+        _row("scene.triangles", triangles, ""),
+        _row("scene.draw_calls", [len(primitives) for primitives in parts], ""),
+    ]
+
+
+def _row(name: str, values, unit: str) -> dict:
+    return {
+        "name": name,
+        "median": float(np.median(values)),
+        "p99": float(np.percentile(values, 99)),
+        "unit": unit,
+        "peer": None,
+        "peer_median": None,
+        "peer_p99": None,
+        "success": None,
+        "n": len(values),
+    }
