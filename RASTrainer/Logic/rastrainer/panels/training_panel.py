@@ -23,12 +23,12 @@ from rastrainer.slicer.training_desk import Progress
 from rastrainer.slicer.translation import _
 
 PHASES = {
-    Phase.IDLE.value: _("no trial is open."),
-    Phase.RUNNING.value: _("running."),
-    Phase.PAUSED.value: _("paused."),
-    Phase.COMPLETE.value: _("all points are touched, to be registered."),
-    Phase.REGISTERED.value: _("registered, being scored."),
-    Phase.SCORED.value: _("scored."),
+    Phase.IDLE.value: _("no trial is open"),
+    Phase.RUNNING.value: _("the trial is running"),
+    Phase.PAUSED.value: _("the trial is paused"),
+    Phase.COMPLETE.value: _("all points are touched"),
+    Phase.REGISTERED.value: _("registered, being scored"),
+    Phase.SCORED.value: _("the trial is scored"),
 }
 NEARNESS = {
     Proximity.FREE.value: (GREEN, _("free")),
@@ -104,21 +104,19 @@ class TrainingPanel:
             _("{count}, all kept in the study").format(count=received) if received else _("none")
         )
         if not isConnected:
-            ui.phaseText.text = _("Not connected; no touch is lost meanwhile.")
-            for label in (ui.nextPointText, ui.elapsedText, ui.clearanceText, ui.instructionText):
+            ui.phaseText.text = _("not connected; no touch is lost")
+            for label in (ui.trialText, ui.nextPointText, ui.elapsedText, ui.clearanceText):
                 label.text = "–"
+            setSentence(ui.instructionText, "")
             return
-        phase = PHASES.get(progress.phase, progress.phase)
-        if progress.trainee:
-            phase = _("{trainee}, {task}: {phase}").format(
-                trainee=progress.trainee, task=progress.task, phase=phase
-            )
-        ui.phaseText.text = phase
+        ui.trialText.text = f"{progress.trainee}, {progress.task}" if progress.trainee else "–"
+        ui.phaseText.text = PHASES.get(progress.phase, progress.phase)
         ui.pointsProgressBar.value = min(progress.touched, progress.total)
         ui.nextPointText.text = progress.nextPoint or "–"
         ui.elapsedText.text = _clock(progress.elapsedS)
         ui.clearanceText.text = _clearance(progress)
-        ui.instructionText.text = progress.instruction
+        told = _("Told the trainee: {sentence}").format(sentence=progress.instruction)
+        setSentence(ui.instructionText, told if progress.instruction else "")
 
     def _start(self, task: str) -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):

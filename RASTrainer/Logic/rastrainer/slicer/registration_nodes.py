@@ -78,6 +78,9 @@ def setApplied(transformNode: Any, applied: bool) -> None:
     moving = movingNode(transformNode)
     if moving is not None:
         moving.SetAndObserveTransformNodeID(transformNode.GetID() if applied else None)
+        if moving.GetDisplayNode() is not None:
+            # On the head, the fiducials beside them have the same numbers.
+            moving.GetDisplayNode().SetPointLabelsVisibility(not applied)
 
 
 def matrixOf(transformNode: Any) -> np.ndarray:
