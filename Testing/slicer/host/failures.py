@@ -33,8 +33,9 @@ class Failures:
         isTold = any(exception is told for told in self._told)
         if not (isTold and isinstance(exception, InputError)):
             text = "".join(traceback.format_exception(exception))
-            self.texts.append(text)
-            print(text, file=sys.stderr)
+            if text not in self.texts:  # A timer would repeat it ten times a second.
+                self.texts.append(text)
+                print(text, file=sys.stderr)
 
 
 FAILURES = Failures()

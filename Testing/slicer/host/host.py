@@ -247,11 +247,14 @@ class Host:
         """Let events pass until something is so.
 
         Raises:
-            AssertionError: it is not so in time; `what` says what was awaited.
+            AssertionError: it is not so in time, or something went wrong meanwhile; `what` says
+                what was awaited.
         """
         deadline = time.monotonic() + timeout_s
         while not condition():
             self.process_events()
+            if self.errors:
+                raise AssertionError(f"While waiting until {what}: {self.errors[0]}")
             if time.monotonic() > deadline:
                 raise AssertionError(f"In {timeout_s} s it did not happen: {what}.")
             time.sleep(0.002)
@@ -274,17 +277,23 @@ class Host:
         widget = self._frame._qt if name is None else self.find(name)._qt
         _save(widget.grab(), path)
 
-    def window_screenshot(self, path: Path, width: int = 430, views: tuple = (420, 330)) -> None:
+    def window_screenshot(self, path: Path, width: int = 430) -> None:
         """Save a picture of Slicer's window: the panel, the 3D view and the slices."""
         self._fit(width)
-        _save(pictures.window(self._frame._qt, self._layout, views), path)
+        _save(pictures.window(self._frame._qt, self._layout), path)
+
+    def look_from(self, azimuth: float, elevation: float, zoom: float = 1.0) -> None:
+        """Turn the 3D view, degrees from the front, to all that is visible."""
+        self._layout.three_d_view_of_host().look_from(azimuth, elevation, zoom)
 
     def _fit(self, width: int) -> None:
-        frame = self._frame._qt
-        frame.resize(width, max(frame.layout().totalHeightForWidth(width), 100))
-        self.process_events()
-        frame.resize(width, max(frame.layout().totalHeightForWidth(width), 100))
-        self.process_events()
+        """Make the panel as high as its contents; layouts within layouts settle one by one."""
+        frame, heights = self._frame._qt, [0, -1]
+        while heights[-1] != heights[-2]:
+            heights.append(max(frame.layout().totalHeightForWidth(width), 100))
+            frame.resize(width, heights[-1])
+            for _round in range(5):
+                self.process_events()
 
     def _usable(self, name: str) -> Any:
         self.process_events()  # A widget that has just been added is shown by an event.

@@ -10,9 +10,10 @@ from Testing.slicer.host.stand_ins.plot_view import draw_chart
 GAP = 4
 
 
-def window(panel: QtWidgets.QWidget, layout: LayoutManager, size: tuple) -> QtGui.QPixmap:
-    """Return the panel beside the four views; `size` is that of one view, in pixels."""
-    width, height = size
+def window(panel: QtWidgets.QWidget, layout: LayoutManager) -> QtGui.QPixmap:
+    """Return the panel beside the four views, which are as high as the panel, within reason."""
+    height = min(max(panel.height() // 2, 240), 420)
+    width = height * 4 // 3
     left = panel.width() + GAP
     total = QtCore.QSize(left + 2 * width + GAP, max(panel.height(), 2 * height + GAP))
     picture = QtGui.QPixmap(total)

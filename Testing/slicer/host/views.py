@@ -86,6 +86,17 @@ class ThreeDView(View):
         manager = self._group.GetDisplayableManagerByClassName("vtkMRMLCameraDisplayableManager")
         return manager.GetCameraNode()
 
+    def look_from(self, azimuth: float, elevation: float, zoom: float) -> None:
+        """Look at everything from an angle, degrees from the front."""
+        camera = self.renderer.GetActiveCamera()
+        camera.SetPosition(0, 1, 0)
+        camera.SetFocalPoint(0, 0, 0)
+        camera.SetViewUp(0, 0, 1)
+        camera.Azimuth(azimuth)
+        camera.Elevation(elevation)
+        self.look_at_everything()
+        camera.Zoom(zoom)
+
     def look_at_everything(self) -> None:
         """Move the camera so that all visible models are in the picture."""
         self.renderer.ResetCamera()

@@ -1,0 +1,57 @@
+"""Save a picture of each section at work: `python -m Testing.end_to_end.module.screenshots DIR`."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from Testing.end_to_end.module.story import Story
+from Testing.slicer.host.host import Host
+
+SECTIONS = ("simulator", "trainees", "scenario", "training", "registration", "plan", "score")
+# Which section is shown after which step.
+SHOWN_AFTER = {
+    "start_simulator": ("simulator",),
+    "show_scenario": ("scenario",),
+    "touch_some": ("training",),
+    "look_at_registration": ("registration",),
+    "plan_a_target": ("plan",),
+    "look_at_score": ("score", "trainees"),
+}
+AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.5
+
+
+def save_all(folder: Path) -> None:
+    """Play the session and save the pictures."""
+    with tempfile.TemporaryDirectory() as temporary:
+        host = Host(Path(temporary, "slicer"))
+        try:
+            story = Story(host, Path(temporary))
+            for step in Story.STEPS:
+                step(story)
+                for section in SHOWN_AFTER.get(step.__name__, ()):
+                    show_only(host, section)
+                    host.look_from(AZIMUTH, ELEVATION, ZOOM)
+                    host.window_screenshot(folder / f"module-{section}.png")
+                    show_all(host)
+        finally:
+            host.close()
+
+
+def show_only(host: Host, shown: str) -> None:
+    """Fold every section but one."""
+    for section in SECTIONS:
+        host.find(f"{section}CollapsibleButton").collapsed = section != shown
+    host.process_events()
+
+
+def show_all(host: Host) -> None:
+    """Unfold every section."""
+    for section in SECTIONS:
+        host.find(f"{section}CollapsibleButton").collapsed = False
+    host.process_events()
+
+
+if __name__ == "__main__":
+    save_all(Path(sys.argv[1]))
