@@ -6,9 +6,10 @@ from scipy.spatial.transform import Rotation
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration import KINDS, register
 from rastrainer.registration_fits import fit
-from rastrainer.target_error import estimated_fle, expected_tre, target_error
+from rastrainer.target_error import expected_tre, target_error
 
 TILT = Rotation.from_euler("xyz", [25, -40, 70], degrees=True).as_matrix()
 
@@ -55,7 +56,7 @@ def test_rigid_expectation_is_fitzpatricks_equation_46():
     fixed = fiducials(15)
     registration = noisy(fixed)
     targets = np.random.default_rng(3).normal(size=(20, 3)) * 100 + fixed.mean(axis=0)
-    expected = [eq_46(fixed, target, estimated_fle(registration)) for target in targets]
+    expected = [eq_46(fixed, target, isotropic_error(registration).fle_mm) for target in targets]
     np.testing.assert_allclose(expected_tre(registration, targets), expected, rtol=1e-10)
 
 
@@ -65,7 +66,7 @@ def test_the_error_is_smallest_at_the_centroid():
     center, away = expected_tre(
         registration, np.array([[0, 0, 0], [60, 0, 0]]) + fixed.mean(axis=0)
     )
-    assert center == pytest.approx(estimated_fle(registration) / np.sqrt(15))
+    assert center == pytest.approx(isotropic_error(registration).fle_mm / np.sqrt(15))
     assert away > center
 
 
@@ -75,9 +76,9 @@ def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
     target = np.array([70, -50, 40]) + fixed.mean(axis=0)
     fre, tre = simulated(fixed, target, kind, deviation=0.5, trials=4000)
     registration = noisy(fixed, kind)
-    per_fle = expected_tre(registration, target[None])[0] / estimated_fle(registration)
+    per_fle = expected_tre(registration, target[None])[0] / isotropic_error(registration).fle_mm
     assert np.sqrt(np.mean(tre**2)) == pytest.approx(per_fle * 0.5 * np.sqrt(3), rel=0.03)
-    fle = fre * estimated_fle(registration) / registration.fre_mm
+    fle = fre * isotropic_error(registration).fle_mm / registration.fre_mm
     assert np.sqrt(np.mean(fle**2)) == pytest.approx(0.5 * np.sqrt(3), rel=0.03)
 
 
@@ -115,6 +116,81 @@ def test_heads_touched_with_noise_have_their_true_error_inside_the_interval(touc
         inside += error.interval_mm[0] <= true_mm <= error.interval_mm[1]
     # 95 % give or take two and a half standard errors of 200 trials.
     assert 0.91 <= inside / 200 <= 0.99
+
+
+def ball_cap(count, seed):
+    """Fiducials on one side of a ball of 90 mm about the origin, with their normals."""
+    rng = np.random.default_rng(seed)
+    normals = rng.normal(size=(count, 3)) * 0.45 + [0.0, 1.0, 0.0]
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    return 90.0 * normals, normals
+
+
+def slipping(normals, along, across, rng):
+    """Errors of touches that the skin stops: `along` it and `across` it, mm each coordinate."""
+    errors = rng.normal(size=normals.shape) * along
+    part = (errors * normals).sum(axis=1)
+    return errors + (rng.normal(size=len(normals)) * across - part)[:, None] * normals
+
+
+@pytest.mark.parametrize(("along", "across"), [(0.8, 0.2), (0.8, 0.8), (0.2, 0.9)])
+def test_the_parts_of_the_localization_error_along_and_across_the_skin_are_recovered(along, across):
+    rng = np.random.default_rng(5)
+    found = []
+    for seed in range(100):
+        fixed, normals = ball_cap(15, seed)
+        registration = register(fixed + slipping(normals, along, across, rng), fixed)
+        covariances = error_along_surface(registration, normals).covariances
+        variance_across = np.einsum("ni,nij,nj->n", normals, covariances, normals)
+        total = np.trace(covariances, axis1=1, axis2=2)
+        found.append([variance_across.mean(), (total - variance_across).mean() / 2])
+    variances = np.mean(found, axis=0)
+    np.testing.assert_allclose(np.sqrt(variances), [across, along], rtol=0.1)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_interval_holds_the_true_error_of_touches_that_slip_along_the_skin(kind):
+    rng = np.random.default_rng(6)
+    target = np.zeros(3)
+    inside = 0
+    for seed in range(120):
+        fixed, normals = ball_cap(15, seed)
+        registration = register(fixed + slipping(normals, 0.8, 0.1, rng), fixed, kind)
+        true_mm = np.linalg.norm(transforms.apply(registration.matrix, target) - target)
+        error = target_error(registration, target, error_along_surface(registration, normals))
+        inside += error.interval_mm[0] <= true_mm <= error.interval_mm[1]
+    # 95 % give or take two and a half standard errors of 120 trials.
+    assert 0.90 <= inside / 120 <= 1.0
+
+
+def test_touches_on_one_side_of_a_head_are_worth_more_than_an_isotropic_error_says():
+    rng = np.random.default_rng(7)
+    target = np.zeros((1, 3))
+    true_mm, known_mm, ignored_mm = [], [], []
+    for seed in range(300):
+        fixed, normals = ball_cap(15, seed)
+        registration = register(fixed + slipping(normals, 0.8, 0.1, rng), fixed)
+        true_mm.append(np.linalg.norm(transforms.apply(registration.matrix, target)))
+        slips = error_along_surface(registration, normals)
+        known_mm.append(expected_tre(registration, target, slips)[0])
+        ignored_mm.append(expected_tre(registration, target)[0])
+    true, known, ignored = (np.sqrt(np.mean(np.square(v))) for v in (true_mm, known_mm, ignored_mm))
+    assert known == pytest.approx(true, rel=0.1)
+    assert ignored > 1.3 * true
+
+
+def test_an_isotropic_error_of_the_same_size_gives_the_same_answer_by_either_way():
+    fixed, _ = ball_cap(12, 3)
+    registration = noisy(fixed)
+    error = isotropic_error(registration)
+    assert target_error(registration, [1, 2, 3], error) == target_error(registration, [1, 2, 3])
+    assert error.degrees_of_freedom == 3 * 12 - 6
+
+
+@pytest.mark.parametrize("normals", [np.eye(3), 2.0 * np.ones((8, 3)), np.full((8, 3), np.nan)])
+def test_normals_that_are_none_are_refused(normals):
+    with pytest.raises(InputError, match="8 normals of length 1"):
+        error_along_surface(noisy(fiducials(8)), normals)
 
 
 def test_the_interval_holds_the_expectation_and_grows_with_confidence():

@@ -12,9 +12,12 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
+from rastrainer.head_mesh import read_head_mesh
 from rastrainer.journal.journal_reader import read_journal
+from rastrainer.localization_error import error_along_surface
 from rastrainer.registration import register
 from rastrainer.scripted_trainee import Skill
+from rastrainer.surface_queries import outward_normals
 from rastrainer.target_error import target_error
 from rastrainer_simulator.record.replay import ReplayReport, replay
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
@@ -45,9 +48,11 @@ def played_trials(seeds: list[int]) -> list[Played]:
 
 
 def play(simulation: Simulation, setup: SimulationSetup, seed: int, folder: Path) -> Played:
+    tasks = setup.scenario.tasks
     with ThreadPoolExecutor(max_workers=1) as writer:
         recorder = TrialRecorder(folder, TrialArchive(folder), writer, STEP_S)
-        trial = play_virtual_trial(simulation, "task-1", seed, BRISK, STEP_S, recorder.record)
+        task = tasks[seed % len(tasks)].name
+        trial = play_virtual_trial(simulation, task, seed, BRISK, STEP_S, recorder.record)
         recorder.stop(simulation.state)
     (journal,) = folder.glob(f"*{SUFFIX}")
     report = replay(read_journal(journal), setup)
@@ -60,7 +65,9 @@ def is_within_interval(trial: VirtualTrial, setup: SimulationSetup) -> bool:
     registration = register(trial.touches_mm, trial.fiducials_mm)
     there_and_back = transforms.apply(registration.matrix @ trial.head_to_world, target[None])
     true_tre_mm = np.linalg.norm(there_and_back[0] - target)
-    low, high = target_error(registration, target).interval_mm
+    normals = outward_normals(read_head_mesh(setup.scenario.head_mesh), trial.fiducials_mm)
+    error = target_error(registration, target, error_along_surface(registration, normals))
+    low, high = error.interval_mm
     return bool(low <= true_tre_mm <= high)
 
 

@@ -46,6 +46,11 @@ def outward_normal(mesh: HeadMesh, point: np.ndarray) -> np.ndarray:
     return normal / np.linalg.norm(normal)
 
 
+def outward_normals(mesh: HeadMesh, points: np.ndarray) -> np.ndarray:
+    """Return the outward unit normals (n, 3) where the surface is nearest to `points` (n, 3)."""
+    return np.array([outward_normal(mesh, point) for point in points])
+
+
 def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 1.0) -> bool:
     """Tell whether the surface comes between `eye` and `point`, both (3,).
 

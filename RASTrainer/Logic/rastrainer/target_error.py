@@ -1,8 +1,8 @@
 """What error to expect at a target: TRE from the residuals of a registration.
 
-The fiducial localization error (FLE) is taken as independent, isotropic and normal. FRE tells the
-size of FLE over the whole set; it does not predict the TRE of a single case (Fitzpatrick 2009),
-which is why an interval goes with every expectation.
+The fiducial localization error (FLE) is taken as independent and normal. FRE tells the size of FLE
+over the whole set; it does not predict the TRE of a single case (Fitzpatrick 2009), which is why an
+interval goes with every expectation.
 """
 
 from __future__ import annotations
@@ -14,8 +14,13 @@ import numpy as np
 
 from rastrainer.distributions import ratio_quantile
 from rastrainer.errors import InputError
-from rastrainer.registration import AFFINE, SIMILARITY, Registration
-from rastrainer.registration_fits import PARAMETERS
+from rastrainer.localization_error import (
+    LocalizationError,
+    fit_of_errors,
+    isotropic_error,
+    motions,
+)
+from rastrainer.registration import Registration
 
 CONFIDENCE = 0.95
 
@@ -39,55 +44,33 @@ class TargetError:
     confidence: float
 
 
-def degrees_of_freedom(registration: Registration) -> int:
-    """Return how many residual coordinates are left after the fit: 3N minus its parameters.
-
-    Raises:
-        InputError: none is left, so that the residuals tell nothing.
-    """
-    count = len(registration.labels)
-    dof = 3 * count - PARAMETERS[registration.kind]
-    if dof < 1:
-        raise InputError(
-            f"Any {count} pairs of points fit a registration of type {registration.kind} exactly, "
-            "so its residuals tell nothing about the target error; add a point."
-        )
-    return dof
-
-
-def estimated_fle(registration: Registration) -> float:
-    """Return the RMS length of the localization error that explains the FRE, in mm.
-
-    From E[FRE²] = (1 − p/3N) E[FLE²] with p parameters: 1 − 2/N rigid (Sibson 1979),
-    1 − 7/(3N) similarity, 1 − 4/N affine.
-
-    Raises:
-        InputError: the fit leaves no residuals to estimate from.
-    """
-    share = degrees_of_freedom(registration) / (3 * len(registration.labels))
-    return registration.fre_mm / math.sqrt(share)
-
-
-def expected_tre(registration: Registration, targets: np.ndarray) -> np.ndarray:
+def expected_tre(
+    registration: Registration,
+    targets: np.ndarray,
+    localization: LocalizationError | None = None,
+) -> np.ndarray:
     """Return √E[TRE²] at targets of the fixed space, (m,) float, in mm.
 
-    For a rigid registration this is Fitzpatrick's equation 46 (1998),
+    For a rigid registration with isotropic FLE this is Fitzpatrick's equation 46 (1998),
     E[TRE²] = E[FLE²]/N · (1 + ⅓ Σₖ dₖ²/fₖ²).
 
     Args:
         registration: The registration whose errors are asked for.
         targets: (m, 3) float, in mm.
+        localization: The FLE; by default the isotropic one that explains the residuals.
 
     Raises:
         InputError: the fit leaves no residuals, or a target is not finite.
     """
-    covariances = tre_covariances(registration, targets)
-    variance = estimated_fle(registration) ** 2 / 3
-    return np.sqrt(variance * np.trace(covariances, axis1=1, axis2=2))
+    covariances = _tre_covariances(registration, targets, localization)
+    return np.sqrt(np.trace(covariances, axis1=1, axis2=2))
 
 
 def target_error(
-    registration: Registration, target: np.ndarray, confidence: float = CONFIDENCE
+    registration: Registration,
+    target: np.ndarray,
+    localization: LocalizationError | None = None,
+    confidence: float = CONFIDENCE,
 ) -> TargetError:
     """Return the error to expect at a target, with the interval that holds it.
 
@@ -97,37 +80,33 @@ def target_error(
     Args:
         registration: The registration whose error is asked for.
         target: (3,) float, in the fixed space, in mm.
+        localization: The FLE; by default the isotropic one that explains the residuals.
         confidence: Probability that the error lies in the interval; outside it, both sides are
             equally likely.
 
     Raises:
         InputError: the fit leaves no residuals, or the target is not finite.
     """
-    covariance = tre_covariances(registration, np.reshape(target, (1, -1)))[0]
-    weights = np.linalg.eigvalsh(covariance)
-    dof = degrees_of_freedom(registration)
-    fle = estimated_fle(registration)
-    deviation = fle / math.sqrt(3)
-    tail = (1 - confidence) / 2
-    low, high = (
-        deviation * math.sqrt(ratio_quantile(probability, weights, dof))
-        for probability in (tail, 1 - tail)
-    )
+    localization = localization or isotropic_error(registration)
+    covariance = _tre_covariances(registration, np.reshape(target, (1, -1)), localization)[0]
+    expected = math.sqrt(np.trace(covariance))
+    low, high = (0.0, 0.0)
+    if expected > 0.0:
+        tail = (1 - confidence) / 2
+        weights = np.linalg.eigvalsh(covariance).clip(min=0.0)
+        dof = localization.degrees_of_freedom
+        low, high = (math.sqrt(ratio_quantile(p, weights, dof)) for p in (tail, 1 - tail))
     return TargetError(
         target_mm=tuple(float(value) for value in target),
-        fle_mm=fle,
-        expected_mm=deviation * math.sqrt(np.trace(covariance)),
+        fle_mm=localization.fle_mm,
+        expected_mm=expected,
         interval_mm=(low, high),
         confidence=confidence,
     )
 
 
 def tre_covariances(registration: Registration, targets: np.ndarray) -> np.ndarray:
-    """Return the covariance of TRE at each target for an FLE of variance 1 a coordinate.
-
-    To first order, with r the target and p the fiducials about their centroid: the translation
-    gives I/N, the rotation [r]ₓ J⁻¹ [r]ₓᵀ with J the inertia of the fiducials, the scale of a
-    similarity r rᵀ/Σ|p|²; an affine fit gives (1/N + rᵀ(Σ p pᵀ)⁻¹ r) I.
+    """Return the covariance of TRE at each target for an isotropic FLE of variance 1 a coordinate.
 
     Args:
         registration: Its fixed points and kind are used.
@@ -139,21 +118,29 @@ def tre_covariances(registration: Registration, targets: np.ndarray) -> np.ndarr
     Raises:
         InputError: a target is not three finite numbers.
     """
-    r = _checked_targets(targets) - registration.fixed_mm.mean(axis=0)
-    p = registration.fixed_mm - registration.fixed_mm.mean(axis=0)
-    scatter = p.T @ p
-    total = np.trace(scatter)
-    identity = np.eye(3)
-    translation = identity / len(p)
-    if registration.kind == AFFINE:
-        spread = np.einsum("mi,ij,mj->m", r, np.linalg.inv(scatter), r)
-        return translation + spread[:, None, None] * identity
-    cross = np.cross(r[:, None, :], identity)
-    inertia = total * identity - scatter
-    covariances = translation + np.swapaxes(cross, 1, 2) @ np.linalg.inv(inertia) @ cross
-    if registration.kind == SIMILARITY:
-        covariances = covariances + r[:, :, None] * r[:, None, :] / total
-    return covariances
+    unit = np.tile(np.eye(3), (len(registration.labels), 1, 1))
+    return _propagated(registration, targets, unit)
+
+
+def _tre_covariances(
+    registration: Registration, targets: np.ndarray, localization: LocalizationError | None
+) -> np.ndarray:
+    localization = localization or isotropic_error(registration)
+    return _propagated(registration, targets, localization.covariances)
+
+
+def _propagated(
+    registration: Registration, targets: np.ndarray, covariances: np.ndarray
+) -> np.ndarray:
+    """Return the covariance (m, 3, 3) of TRE that FLE of covariances (n, 3, 3) causes.
+
+    To first order: the errors change the fit's parameters, and these move the target.
+    """
+    fit = fit_of_errors(registration)
+    of_parameters = np.einsum("pni,nij,qnj->pq", fit, covariances, fit)
+    center = registration.fixed_mm.mean(axis=0)
+    moved = motions(registration.kind, _checked_targets(targets) - center)
+    return moved @ of_parameters @ np.swapaxes(moved, 1, 2)
 
 
 def _checked_targets(targets: np.ndarray) -> np.ndarray:

@@ -8,10 +8,11 @@ from typing import Any
 
 from rastrainer.commands.text_table import text_table
 from rastrainer.errors import InputError
+from rastrainer.localization_error import degrees_of_freedom
 from rastrainer.point_files import read_points
 from rastrainer.point_list import pair
 from rastrainer.registration import KINDS, RIGID, Registration, register
-from rastrainer.target_error import TargetError, degrees_of_freedom, target_error
+from rastrainer.target_error import TargetError, target_error
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
