@@ -118,7 +118,7 @@ class Picture:
         if self._scene is None or state is None:
             return
         self._scene.mark(state["next"], state["touched"], state["proximity"])
-        if state["next"] is None:
+        if state["next"] is None or self._inbox.problem:
             return
         step = math.floor(now * PULSE_HZ[self.stage.quality])
         if step != self._pulse_step:

@@ -1,0 +1,96 @@
+"""A window without a display, and a small scene of which every color is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from rastrainer_simulator.flow.screen import Hint, Item, ItemKind, Menu, Message, Screen, Tone
+from rastrainer_simulator.scene.glb import to_glb
+from rastrainer_simulator.scene.materials import ARROW, SKIN, TIP_FREE, WAITING, WALL
+from rastrainer_simulator.scene.nodes import Node
+from rastrainer_simulator.scene.shading import shaded
+
+SIZE = (960, 540)
+BODIES = ("tool", "head")
+HERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+FIDUCIALS = {"1": (-0.06, -0.09, 0.0), "2": (0.0, -0.1, 0.0), "3": (0.06, -0.09, 0.0)}
+CAMERA = {
+    "position": [0.0, -0.8, 0.0],
+    "focalPoint": [0.0, 0.0, 0.0],
+    "viewUp": [0.0, 0.0, 1.0],
+    "viewAngleDeg": 30.0,
+}
+FAR = {**CAMERA, "position": [0.0, -2.4, 0.0]}
+CAMERAS = {"close-up": CAMERA, "far": FAR}
+
+
+def ball(name, radius, center, material, children=()):
+    sphere = trimesh.creation.icosphere(subdivisions=2, radius=radius)
+    vertices = sphere.vertices + np.asarray(center)
+    return Node(name, (shaded(vertices, sphere.faces, material, 80.0),), children)
+
+
+def make_glb() -> bytes:
+    """A head with three fiducials and an arrow, a tool whose tip is its origin, and a wall."""
+    marks = [ball(f"fiducial_{name}", 0.012, place, WAITING) for name, place in FIDUCIALS.items()]
+    skin = ball("skin", 0.1, (0, 0, 0), SKIN)
+    arrow = ball("arrow_1", 0.005, (-0.03, -0.1, 0.0), ARROW)
+    head = Node("head", children=(skin, *marks, arrow))
+    tool = Node("tool", children=(ball("tip_marker", 0.01, (0, 0, 0.01), TIP_FREE),))
+    wall = trimesh.creation.box(bounds=[[-3, 0.5, -3], [3, 0.6, 3]])
+    room = Node("room", (shaded(wall.vertices, wall.faces, WALL),))
+    return to_glb([tool, head, room])
+
+
+def state(**changes):
+    """Return the members of a state message, with the tool above the head."""
+    poses = {"tool": (0.0, -0.05, 0.13, 0.0, 0.0, 0.0, 1.0), "head": HERE}
+    return {
+        "tick": 1,
+        "time": 0.0,
+        "poses": poses,
+        "proximity": "free",
+        "camera": "close-up",
+        "phase": "running",
+        "next": "2",
+        "touched": ["1"],
+        **changes,
+    }
+
+
+MENU = Menu(
+    "experiment",
+    "Experiment",
+    ("A paragraph that tells the trainee what there is to be chosen, and why.",),
+    items=(
+        Item("trainee", "Your ID", ItemKind.TEXT, "P07", help="Your instructor gives you this."),
+        Item("mode", "Mode", ItemKind.CHOICE, "Desktop"),
+        Item("axis", "Left stick", ItemKind.AXIS, "0.5"),
+        Item("task-1", "Task 1", value="done"),
+        Item("task-2", "Task 2", is_enabled=False, help="Task 1 comes first."),
+    ),
+    focus="mode",
+)
+SCREEN = Screen(
+    instruction=Message("P07, touch point 2.", Tone.GOOD),
+    status=("Task 1", "1 of 3", "00:12"),
+    hints=(Hint("A", "Touch"), Hint("B", "Undo")),
+)
+
+
+@pytest.fixture(scope="session")
+def glb() -> bytes:
+    return make_glb()
+
+
+@pytest.fixture(scope="session")
+def gl_window():
+    from rastrainer_simulator.desktop.gl_window import GlWindow
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SDL_VIDEODRIVER", "offscreen")
+        window = GlWindow(SIZE, is_fullscreen=False)
+        yield window
+        window.close()

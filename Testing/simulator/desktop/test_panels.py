@@ -1,0 +1,119 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.desktop import theme
+from rastrainer_simulator.desktop.panels import strips
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
+from rastrainer_simulator.desktop.panels.target_arrow import target_arrow
+from rastrainer_simulator.flow.screen import Fact, Hint, Item, Menu, Message, Tone
+from Testing.simulator.desktop.conftest import MENU
+
+SIZES = [(1280, 720), (1920, 1080), (2560, 1440), (3840, 2160), (1024, 768)]
+LONG = Menu(
+    "bindings",
+    "Controls",
+    items=tuple(Item(f"row{n}", f"Control {n}", value="ShiftLeft") for n in range(30)),
+    focus="row21",
+)
+WORDY = Menu(
+    "result",
+    "Result of a trainee with a very long identification",
+    ("Sentence after sentence tells what came of it. " * 4,) * 2,
+    tuple(Fact(f"Figure {n}", f"{n}.25 mm", Tone.GOOD) for n in range(8)),
+    (Item("next", "Next", help="Goes on."), Item("menu", "Menu")),
+    "next",
+    "controls",
+)
+
+
+def paint(menu, size, hovered=""):
+    return menu_panel(menu, theme.scale_of(*size), (size[0] - 64, size[1] - 160), hovered)
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("menu", [MENU, LONG, WORDY], ids=lambda menu: menu.name)
+def test_no_menu_is_larger_than_its_room_and_its_focus_is_always_seen(menu, size):
+    picture = paint(menu, size)
+    height, width = picture.pixels.shape[:2]
+    assert width <= size[0] - 64
+    assert height <= size[1] - 160
+    row = picture.rows[menu.focus]
+    assert 0 <= row.top
+    assert row.top + row.height < height
+    # Its corners are empty, so that nothing painted reaches the edge.
+    assert picture.pixels[0, 0, 3] == 0
+
+
+def test_a_click_finds_the_item_in_whose_row_it_is():
+    picture = paint(MENU, (1920, 1080))
+    for name, row in picture.rows.items():
+        assert picture.item_at(row.left + 3, row.top + row.height / 2) == name
+    assert picture.item_at(1, 1) == ""
+
+
+def test_focus_hover_and_disabled_items_look_different():
+    picture = paint(MENU, (1920, 1080), hovered="task-1")
+    pixels = picture.pixels.astype(int)
+
+    def ground(name):
+        row = picture.rows[name]
+        return pixels[row.top + row.height // 2, row.left + 8, :3]
+
+    def brightest(name):
+        row = picture.rows[name]
+        inside = pixels[row.top + 8 : row.top + row.height - 8, row.left + 20 : row.left + 200]
+        return inside[..., :3].sum(axis=2).max()
+
+    assert ground("mode").tolist() == [31, 116, 232]
+    assert ground("task-1").sum() > ground("task-2").sum() + 10
+    assert brightest("task-2") < 0.6 * brightest("task-1")
+
+
+def test_the_smallest_letters_are_readable_from_a_meter():
+    # 0.3 degrees of sight (ISO 9241-303) is 5 mm at 1 m: 19 pixels of a 24-inch screen of 1080.
+    sizes = [getattr(theme, name).size for name in ("BODY", "SMALL", "HEADING", "TITLE")]
+    assert min(sizes) >= 19
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_long_sentences_and_many_hints_stay_in_their_room(size):
+    brush = Brush(theme.scale_of(*size))
+    room = size[0] // 2
+    message = Message("A sentence that goes on and on about what is to be done. " * 3, Tone.ERROR)
+    hints = [Hint("D-pad up / D-pad down", f"Action {n}") for n in range(7)]
+    painted = (
+        strips.instruction(message, brush, room),
+        strips.warning(message, brush, room),
+        strips.status([f"Fact number {n}" for n in range(9)], brush, room),
+        strips.hints(hints, brush, room),
+    )
+    assert max(pixels.shape[1] for pixels in painted) <= room
+
+
+def test_tones_are_told_by_color():
+    brush = Brush(1.0)
+    banners = [
+        strips.warning(Message("Text", tone), brush, 900)[5, 40, :3].astype(int)
+        for tone in (Tone.WARNING, Tone.ERROR)
+    ]
+    assert np.abs(banners[0] - banners[1]).max() > 50
+
+
+@pytest.mark.parametrize(("angle", "side"), [(0, (0, 1)), (90, (-1, 0)), (180, (0, -1))])
+def test_the_arrow_points_where_the_target_is(angle, side):
+    pixels = target_arrow(angle, 43, Brush(1.0)).astype(int)
+    yellow = (pixels[..., 0] > 200) & (pixels[..., 2] < 80) & (pixels[..., 3] > 200)
+    rows, columns = np.nonzero(yellow)
+    middle = (pixels.shape[0] - 1) / 2
+    away = np.array([rows.mean() - middle, columns.mean() - middle])
+    assert away @ side > 0.9 * np.linalg.norm(away) > 2.0
+
+
+def test_a_typed_text_shows_its_end_however_long_it_is():
+    name = "N" * 200
+    item = replace(MENU.items[0], value=name)
+    picture = paint(replace(MENU, items=(item,), focus="trainee"), (1280, 720))
+    assert picture.pixels.shape[1] <= 1280 - 64
