@@ -157,24 +157,12 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
     """What the module can do without its widgets; the parts stand in `rastrainer.slicer`."""
 
     def __init__(self) -> None:
+        from rastrainer.panels.places import findPlaces
         from rastrainer.slicer.connector_kit import desktopKit
-        from rastrainer.slicer.session import Places, Session
-        from rastrainer.slicer.simulator_place import defaultPackage, pythonSlicer
+        from rastrainer.slicer.session import Session
 
         ScriptedLoadableModuleLogic.__init__(self)
-        paths = qt.QStandardPaths
-        documents = paths.writableLocation(paths.DocumentsLocation)
-        data = paths.writableLocation(paths.GenericDataLocation)
-        study = slicer.util.settingsValue("RASTrainer/Study", "")
-        places = Places(
-            assets=self.assetsFolder(),
-            python=pythonSlicer(Path(slicer.app.slicerHome)),
-            simulator=Path(data, "RASTrainer", "simulator"),
-            study=Path(study) if study else Path(documents, "RASTrainer", "study.db"),
-            records=Path.home() / "RASTrainer" / "trials",
-            package=defaultPackage(Path(__file__).parent),
-        )
-        self.session = Session(slicer.mrmlScene, places, desktopKit)
+        self.session = Session(slicer.mrmlScene, findPlaces(Path(__file__)), desktopKit)
 
     def getParameterNode(self):
         return RASTrainerParameterNode(super().getParameterNode())
@@ -186,11 +174,6 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
     def close(self) -> None:
         """Disconnect, close the study, end the simulator that was started from here."""
         self.session.close()
-
-    def assetsFolder(self) -> Path:
-        """Return where scenarios and studies are: installed with the module, or in a checkout."""
-        installed = Path(__file__).parent / "Resources" / "RASTrainer"
-        return installed if installed.is_dir() else Path(__file__).parents[1] / "assets"
 
 
 #
@@ -234,10 +217,9 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         self.assertEqual(link.status.state, LinkState.OFF)
 
     def test_theBuiltInScenarioIsShown(self):
-        from rastrainer.scenario import load_scenario
         from rastrainer.slicer.scenario import showScenario, showTask
 
-        scenario = load_scenario(RASTrainerLogic().assetsFolder() / "scenarios" / "colin27")
+        scenario = RASTrainerLogic().session.scenario.find("colin27")
         showScenario(slicer.mrmlScene, scenario)
         node = showTask(slicer.mrmlScene, scenario, "task-1")
         self.assertEqual(node.GetNumberOfControlPoints(), 15)

@@ -224,6 +224,20 @@ def test_a_deleted_trainee_does_not_come_back_with_a_trial_that_is_offered_again
     assert study.add_trial(record(2, trainee="gone"))
 
 
+def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, results):
+    study.add_trial(record(1), *results)
+    study.add_trial(record(2, trainee="b", completionTimeS=90.0))
+    study.add_trial(record(3, mode="hmd"))
+    study.add_trial(record(4, task="task-2"))
+    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    better = score_trial(50.0, 0.2, task_reference("task-1"))
+    study.add_results(record(1)["trialId"], score=better)
+    first, second = study.outcomes("task-1", "desktop")
+    assert (first.trainee, first.score, first.true_tre_mm) == ("T-001", better.score, 0.5)
+    assert (second.trainee, second.completion_time_s) == ("b", 90.0)
+    assert (second.score, second.true_tre_mm) == (None, None)
+
+
 def test_motion_metrics_are_stored_once_and_finite(study):
     study.add_trial(record())
     study.set_motion(record()["trialId"], {"path_mm": 2500.5, "sparc": -1.9})

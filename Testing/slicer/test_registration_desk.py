@@ -9,13 +9,18 @@ from rastrainer.registration import AFFINE, KINDS, RIGID, register
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.head_colors import SCALARS
 from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.slicer.registration_desk import RegistrationDesk, rememberedLists
-from rastrainer.slicer.registration_nodes import isApplied, matrixOf, setApplied
+from rastrainer.slicer.registration_desk import RegistrationDesk
+from rastrainer.slicer.registration_nodes import (
+    fixedNode,
+    isApplied,
+    matrixOf,
+    movingNode,
+    setApplied,
+)
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.target_error import expected_tre, target_error
 from rastrainer.tasks import LABELS
-
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
 
@@ -91,7 +96,8 @@ def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
     table.desk.chooseKind(AFFINE)
     transform = table.desk.transform()
     np.testing.assert_allclose(matrixOf(transform), table.desk.comparison.fits[AFFINE].matrix)
-    assert rememberedLists(transform) == (capturedPointsNode(table.scene), table.fixed)
+    assert movingNode(transform) is capturedPointsNode(table.scene)
+    assert fixedNode(transform) is table.fixed
     assert isApplied(transform)
     setApplied(transform, False)
     table.touch(table.touched + 0.1)

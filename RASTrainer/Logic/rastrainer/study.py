@@ -16,7 +16,7 @@ from rastrainer.registration import Registration
 from rastrainer.scoring import TrialScore
 from rastrainer.study_database import StudyDatabase
 from rastrainer.study_tombstones import DeletedTrialError
-from rastrainer.study_values import StoredRegistration, StoredTrial, Trainee
+from rastrainer.study_values import StoredRegistration, StoredTrial, Trainee, TrialOutcome
 from rastrainer.target_error import TargetError
 from rastrainer.trial_record import TrialRecord
 
@@ -187,6 +187,11 @@ class Study:
         """
         with self._database.reading() as connection:
             return study_trials.history(connection, pseudonym)
+
+    def outcomes(self, task: str, mode: str) -> tuple[TrialOutcome, ...]:
+        """Return what all trials of a task and mode are compared by, as they were stored."""
+        with self._database.reading() as connection:
+            return study_trials.outcomes(connection, task, mode)
 
     def unrevealed(self) -> tuple[TrialRecord, ...]:
         """Return the trials whose truth the simulator has not told yet, oldest first."""

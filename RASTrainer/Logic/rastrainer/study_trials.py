@@ -16,7 +16,7 @@ from rastrainer.scoring import TrialScore
 from rastrainer.study_clock import utc_now
 from rastrainer.study_tombstones import check_not_buried
 from rastrainer.study_trainees import TRAINEE_ID
-from rastrainer.study_values import StoredRegistration, StoredTrial
+from rastrainer.study_values import StoredRegistration, StoredTrial, TrialOutcome
 from rastrainer.target_error import TargetError
 from rastrainer.trial_record import TrialRecord
 
@@ -215,6 +215,25 @@ def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
         (RIGID, protocol.TRIAL_RUN, mode, mode),
     ).fetchall()
     return [Trial(*row) for row in rows]
+
+
+def outcomes(connection: sqlite3.Connection, task: str, mode: str) -> tuple[TrialOutcome, ...]:
+    """Return the outcomes of all trials of a task and mode, in the order they were stored."""
+    rows = connection.execute(
+        """
+        SELECT trials.trial_id, pseudonym, completion_time_s,
+            (SELECT score FROM scores WHERE scores.trial_id = trials.trial_id
+             ORDER BY scores.id DESC LIMIT 1),
+            true_tre_mm
+        FROM trials
+        JOIN trainees ON trainees.id = trainee_id
+        LEFT JOIN truths ON truths.trial_id = trials.trial_id
+        WHERE task = ? AND mode = ?
+        ORDER BY trials.rowid
+        """,
+        (task, mode),
+    ).fetchall()
+    return tuple(TrialOutcome(*row) for row in rows)
 
 
 def json_text(value: object) -> str:

@@ -88,6 +88,25 @@ class StoredRegistration:
 
 
 @dataclass(frozen=True)
+class TrialOutcome:
+    """What trials are compared by.
+
+    Attributes:
+        trial_id: UUID.
+        trainee: Pseudonym.
+        completion_time_s: As recorded.
+        score: The latest; None until the trial is scored.
+        true_tre_mm: None until the simulator reveals it.
+    """
+
+    trial_id: str
+    trainee: str
+    completion_time_s: float
+    score: float | None
+    true_tre_mm: float | None
+
+
+@dataclass(frozen=True)
 class StoredTrial:
     """A trial with the latest of everything that was computed from it.
 

@@ -14,7 +14,7 @@ from rastrainer.registration import KINDS, RIGID, Registration, register
 from rastrainer.slicer.control_points import localPoints
 from rastrainer.slicer.head_colors import colorHead, uncolorHead
 from rastrainer.slicer.registration_input import Choices, Pairs, readPairs, snapshot
-from rastrainer.slicer.registration_nodes import fixedNode, movingNode, showRegistration
+from rastrainer.slicer.registration_nodes import showRegistration
 from rastrainer.slicer.registration_remedies import Remedy, remedies
 from rastrainer.slicer.residual_glyphs import clearResidualArrows, showResidualArrows
 from rastrainer.slicer.result_tables import showFits, showResiduals
@@ -216,8 +216,3 @@ class RegistrationDesk:
 
     def _chosen(self, nodeId: str) -> Any | None:
         return self._scene.GetNodeByID(nodeId) if nodeId else None
-
-
-def rememberedLists(transform: Any | None) -> tuple[Any | None, Any | None]:
-    """Return the moving and fixed lists that a result remembers, such as one of a saved scene."""
-    return (None, None) if transform is None else (movingNode(transform), fixedNode(transform))

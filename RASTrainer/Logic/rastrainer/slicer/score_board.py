@@ -115,18 +115,15 @@ def standings(study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()) ->
         InputError: the study cannot be read.
     """
     record = trial.record
-    own, others = [], []
-    for trainee in (*study.trainees(), *study.trainees(archived=True)):
-        isOwn = trainee.pseudonym == record.trainee
-        for other in study.history(trainee.pseudonym):
-            isSame = (other.record.task, other.record.mode) == (record.task, record.mode)
-            if isSame and other.record.trial_id != record.trial_id:
-                (own if isOwn else others).append(other)
+    outcomes = study.outcomes(record.task, record.mode)
+    (this,) = (o for o in outcomes if o.trial_id == record.trial_id)
+    own = [o for o in outcomes if o.trainee == record.trainee and o is not this]
+    others = [o for o in outcomes if o.trainee != record.trainee]
     found = []
-    for group, trials in ((_("own trials"), own), (_("other trainees"), others)):
-        for title, unit, better, read in _COMPARED:
-            value = read(trial)
-            values = [v for v in map(read, trials) if v is not None]
+    for group, members in ((_("own trials"), own), (_("other trainees"), others)):
+        for title, unit, better, name in _COMPARED:
+            value = getattr(this, name)
+            values = [v for v in (getattr(o, name) for o in members) if v is not None]
             if value is not None and values:
                 found.append(_standing(title, unit, value, group, values, better))
     return found + _besideCohort(trial, cohort)
@@ -225,21 +222,9 @@ def _besideCohort(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Standing]
     return found
 
 
-def _score(trial: StoredTrial) -> float | None:
-    return None if trial.score is None else trial.score.score
-
-
-def _time(trial: StoredTrial) -> float | None:
-    return trial.record.completion_time_s
-
-
-def _trueTre(trial: StoredTrial) -> float | None:
-    return trial.true_tre_mm
-
-
 _COMPARED = (
-    (_("Score"), "", 1, _score),
-    (_("Completion time"), "s", -1, _time),
-    (_("True TRE"), "mm", -1, _trueTre),
+    (_("Score"), "", 1, "score"),
+    (_("Completion time"), "s", -1, "completion_time_s"),
+    (_("True TRE"), "mm", -1, "true_tre_mm"),
 )
-"""What is compared: title, unit, 1 where more is better and −1 where less is, and its reading."""
+"""Title, unit, 1 where more is better and −1 where less is, and the outcome's attribute."""

@@ -15,6 +15,7 @@ from rastrainer.slicer.link import Link
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
 from rastrainer.slicer.world_placement import showPlannedPlace
 
 OPEN = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
@@ -118,9 +119,9 @@ class TrainingDesk:
             InputError: no trainee or no task is chosen.
         """
         if not trainee:
-            raise InputError("Choose a trainee in the section Trainees first.")
+            raise InputError(_("Choose a trainee in the section Trainees first."))
         if not task:
-            raise InputError("Choose a task first.")
+            raise InputError(_("Choose a task first."))
         self._send(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": mode})
 
     def pauseOrResume(self) -> None:

@@ -28,18 +28,30 @@ class Volume:
 
 
 def volume_from_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
-    """Return the image of a volume node."""
+    """Return the image of a volume node.
+
+    Raises:
+        InputError: it has none, or one with colors.
+    """
     image = node.GetImageData()
+    if image is None:
+        raise InputError("The volume is empty: it has no image.")
     matrix = vtk.vtkMatrix4x4()
     node.GetIJKToRASMatrix(matrix)
-    scalars = vtk_to_numpy(image.GetPointData().GetScalars())
-    values = scalars.reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    ijk_to_ras = [[matrix.GetElement(row, column) for column in range(4)] for row in range(4)]
-    return Volume(values.astype(np.float32), np.array(ijk_to_ras))
+    array = image.GetPointData().GetScalars()
+    if array is None or array.GetNumberOfComponents() != 1:
+        raise InputError("The volume must have one value a voxel, not none and not a color.")
+    values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
+    return Volume(values.astype(np.float32), matrix_of(matrix))
+
+
+def matrix_of(matrix: vtk.vtkMatrix4x4) -> np.ndarray:
+    """Return VTK's matrix as (4, 4) float."""
+    return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
 
 
 def read_volume(path: Path) -> Volume:
-    """Read a volume of any format that Slicer's volume reader knows.
+    """Read a volume of any format that Slicer's volume reader knows, such as NRRD or NIfTI.
 
     Raises:
         InputError: the file is missing or is no such volume.
