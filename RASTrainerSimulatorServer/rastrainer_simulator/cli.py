@@ -14,6 +14,7 @@ from rastrainer.errors import RASTrainerError
 SUBCOMMANDS = {
     "register": "rastrainer.commands.register_command",
     "score": "rastrainer.commands.score_command",
+    "measure": "rastrainer.commands.measure_command",
     "report": "rastrainer.commands.report_command",
     "export": "rastrainer.commands.export_command",
     "delete-trainee": "rastrainer.commands.delete_command",

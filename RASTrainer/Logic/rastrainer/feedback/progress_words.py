@@ -1,0 +1,104 @@
+"""How a trial stands among the trainee's own earlier ones, and against the marks to pass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.learning.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
+from rastrainer.learning.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
+from rastrainer.number_text import fixed
+from rastrainer.study_values import StoredTrial
+
+ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4
+"""A competent trainee fails in 5 of 100 trials, an incompetent one in 40."""
+TRAINING_TRIALS = 30
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A trainee's way so far, this trial included.
+
+    Attributes:
+        scores: Of the trials of this task in this mode, in their order.
+        is_best: Whether this trial is the best of them (and not the first).
+        passes: Whether this trial reached the pass mark.
+        competence: LC-CUSUM over the trainee's trials of all tasks in this mode.
+        curve: Of the completion times of this task; None with fewer than five trials.
+        sentences: The same in words.
+    """
+
+    scores: tuple[float, ...]
+    is_best: bool
+    passes: bool
+    competence: LcCusum
+    curve: LearningCurve | None
+    sentences: tuple[str, ...]
+
+
+def progress_of(history: Sequence[StoredTrial], trial: StoredTrial, pass_mark: float) -> Progress:
+    """Return how a trial stands.
+
+    Args:
+        history: All trials of the trainee in their order; later ones than this do not count.
+        trial: One of them, which has a score.
+        pass_mark: Score to reach, such as that of contrasting groups.
+
+    Raises:
+        InputError: the trial is not in the history, or has no score.
+    """
+    ids = [other.record.trial_id for other in history]
+    if trial.record.trial_id not in ids or trial.score is None:
+        raise InputError("Progress is told of a scored trial of the trainee's own history.")
+    until = history[: ids.index(trial.record.trial_id) + 1]
+    record = trial.record
+    scored = [other for other in until if other.score and other.record.mode == record.mode]
+    same = [other for other in scored if other.record.task == record.task]
+    scores = tuple(other.score.score for other in same)
+    failures = [not _passes(other, pass_mark) for other in scored]
+    limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
+    competence = lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
+    times = [other.record.completion_time_s for other in same]
+    curve = fit_learning_curve(times) if len(times) >= FEWEST_TRIALS else None
+    is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
+    passes = _passes(trial, pass_mark)
+    sentences = (
+        *_about_scores(scores, is_best),
+        _about_mark(trial.score.score, trial.score.acceptable, pass_mark),
+        _about_competence(competence, len(failures)),
+    )
+    return Progress(scores, is_best, passes, competence, curve, sentences)
+
+
+def _passes(trial: StoredTrial, pass_mark: float) -> bool:
+    return trial.score.acceptable and trial.score.score >= pass_mark
+
+
+def _about_scores(scores: Sequence[float], is_best: bool) -> list[str]:
+    if len(scores) == 1:
+        return ["This is your first trial of this task in this mode."]
+    change = scores[-1] - float(np.mean(scores[:-1][-3:]))
+    words = "more" if change >= 0 else "less"
+    best = " It is your best so far." if is_best else ""
+    return [
+        f"{fixed(abs(change), 0)} points {words} than the mean of your last "
+        f"{min(3, len(scores) - 1)} trials of this task.{best}"
+    ]
+
+
+def _about_mark(score: float, acceptable: bool, pass_mark: float) -> str:
+    if not acceptable:
+        return "Not passed: the expected target error is beyond what is acceptable."
+    if score >= pass_mark:
+        return f"Passed: the mark is {fixed(pass_mark, 0)}."
+    return f"Not passed yet: {fixed(pass_mark - score, 0)} points to the mark of {pass_mark:.0f}."
+
+
+def _about_competence(chart: LcCusum, trials: int) -> str:
+    if chart.competent_at is not None:
+        return f"Your trials show competence since number {chart.competent_at} (LC-CUSUM)."
+    share = chart.scores[-1] / chart.limit
+    return f"{100 * share:.0f} % of the way to proven competence after {trials} trials (LC-CUSUM)."

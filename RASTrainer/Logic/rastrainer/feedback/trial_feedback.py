@@ -1,0 +1,110 @@
+"""The feedback on one trial, as data and as sentences for any view."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer.feedback.advice import Advice, advise
+from rastrainer.feedback.progress_words import Progress
+from rastrainer.feedback.touch_findings import TouchFinding, touch_findings
+from rastrainer.motion.trajectory import Trajectory
+from rastrainer.number_text import fixed
+from rastrainer.registration import Registration
+from rastrainer.scoring import TrialScore
+
+
+@dataclass(frozen=True)
+class TrialFeedback:
+    """What a trainee is told.
+
+    Attributes:
+        score: With its parts.
+        touches: Every touch, in the order of touching.
+        worst: The touch with the largest error; its `replay_s` is what to look at again.
+        advice: Up to three things to improve, the first first.
+        progress: None where there is no history.
+    """
+
+    score: TrialScore
+    touches: tuple[TouchFinding, ...]
+    worst: TouchFinding
+    advice: tuple[Advice, ...]
+    progress: Progress | None
+
+    @property
+    def score_sentences(self) -> tuple[str, ...]:
+        """The score and what it is made of."""
+        score = self.score
+        return (
+            f"Score {fixed(score.score, 0)} of 100.",
+            f"Time: {fixed(score.completion_time_s, 0)} s, worth "
+            f"{fixed(100 * score.time_desirability, 0)} of 100.",
+            f"Accuracy: {fixed(score.expected_tre_mm, 2)} mm expected at the target, worth "
+            f"{fixed(100 * score.accuracy_desirability, 0)} of 100"
+            + (
+                "."
+                if score.acceptable
+                else f"; more than {score.reference.limit_mm:g} mm is not acceptable."
+            ),
+        )
+
+    @property
+    def touch_sentences(self) -> tuple[str, ...]:
+        """The touches that hurt, the worst first; or that none stands out."""
+        hurting = sorted((t for t in self.touches if t.hurts), key=lambda t: -t.residual_mm)
+        if not hurting:
+            return ("No touch stands out: the errors are spread evenly.",)
+        return tuple(touch.sentence for touch in hurting)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Everything, in the order in which it is told."""
+        progress = () if self.progress is None else self.progress.sentences
+        improve = tuple(f"{i}. {a.sentence}" for i, a in enumerate(self.advice, start=1))
+        return (*self.score_sentences, *self.touch_sentences, *improve, *progress)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the feedback as a JSON object, such as for `details` of TrialScored."""
+        return {
+            "score": self.score.to_json(),
+            "touches": [
+                {**vars(touch), "reasons": [reason.value for reason in touch.reasons]}
+                for touch in self.touches
+            ],
+            "worst": self.worst.label,
+            "replayS": None if self.worst.replay_s is None else list(self.worst.replay_s),
+            "advice": [vars(advice) for advice in self.advice],
+            "sentences": list(self.sentences),
+        }
+
+
+def trial_feedback(
+    score: TrialScore,
+    registration: Registration,
+    normals: np.ndarray | None = None,
+    motion: Mapping[str, float] | None = None,
+    trajectory: Trajectory | None = None,
+    progress: Progress | None = None,
+) -> TrialFeedback:
+    """Return the feedback on a trial; what is not known is left out.
+
+    Args:
+        score: Of the trial.
+        registration: That was scored.
+        normals: (n, 3) float, outward unit normals of the skin at the fiducials, RAS.
+        motion: Motion metrics; those with `path_efficiency` tell of detours too.
+        trajectory: Of the trial, from its journal.
+        progress: Of the trainee.
+    """
+    findings = touch_findings(registration, normals, trajectory)
+    return TrialFeedback(
+        score=score,
+        touches=findings,
+        worst=max(findings, key=lambda finding: finding.residual_mm),
+        advice=advise(score, findings, motion or {}),
+        progress=progress,
+    )

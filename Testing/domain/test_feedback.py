@@ -1,0 +1,204 @@
+"""After a trial the trainee learns what it was worth, what hurt and why, and what to improve."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rastrainer.errors import InputError
+from rastrainer.feedback.advice import advise
+from rastrainer.feedback.progress_words import progress_of
+from rastrainer.feedback.touch_findings import Reason, touch_findings
+from rastrainer.feedback.trial_feedback import trial_feedback
+from rastrainer.motion.trajectory import Touch, Trajectory
+from rastrainer.registration import register
+from rastrainer.scoring import score_trial, task_reference
+from rastrainer.study_values import StoredTrial
+from rastrainer.trial_record import TrialRecord
+from Testing.domain.conftest import head_points
+from Testing.domain.trial_records import make_record
+
+LABELS = tuple(str(i + 1) for i in range(15))
+REFERENCE = task_reference("task-1")
+FIXED = head_points(np.random.default_rng(2))
+NORMALS = FIXED / np.linalg.norm(FIXED, axis=1, keepdims=True)
+TANGENTS = np.cross(NORMALS, [0.3, 0.2, 0.9])
+TANGENTS /= np.linalg.norm(TANGENTS, axis=1, keepdims=True)
+
+
+def registered(errors, seed=0):
+    """A registration of touches that are off by (15, 3) errors and a little noise."""
+    noise = np.random.default_rng(seed).normal(0, 0.15, (15, 3))
+    return register(FIXED + errors + noise, FIXED, labels=LABELS)
+
+
+def recording(hurried=(), shaking=()):
+    """Two seconds a point, the tip resting at the point for the second half."""
+    rng = np.random.default_rng(1)
+    times = np.arange(0, 30, 0.02)
+    tip = np.zeros((len(times), 3))
+    touches, positions = [], 100.0 * rng.normal(size=(15, 3))
+    for i in range(15):
+        part = slice(i * 100, (i + 1) * 100)
+        tip[part] = positions[i]
+        came = 97 if i in hurried else 50
+        tip[part.start : part.start + came] += [60.0, 0, 0]
+        if i in shaking:
+            tip[part.start + came : part.stop] += rng.normal(0, 0.7, (100 - came, 3))
+        touches.append(Touch(LABELS[i], tuple(positions[i]), (part.stop - 1) * 0.02))
+    return Trajectory(times, tip, np.full(len(times), 5.0), tuple(touches))
+
+
+def test_an_error_in_depth_is_told_from_one_along_the_skin():
+    errors = np.zeros((15, 3))
+    errors[3] = 4.0 * NORMALS[3]
+    errors[9] = 4.0 * TANGENTS[9]
+    findings = {f.label: f for f in touch_findings(registered(errors), NORMALS)}
+    assert {label for label, f in findings.items() if f.hurts} == {"4", "10"}
+    assert findings["4"].reasons == (Reason.DEPTH,)
+    assert findings["10"].reasons == (Reason.ASIDE,)
+    assert "mm above the skin" in findings["4"].sentence
+    assert "mostly along the skin" in findings["10"].sentence
+    assert sum(f.share for f in findings.values()) == pytest.approx(1.0)
+    assert findings["4"].aside_mm ** 2 + findings["4"].depth_mm ** 2 == pytest.approx(
+        findings["4"].residual_mm ** 2
+    )
+
+
+def test_hurry_and_tremor_are_seen_in_the_recording():
+    errors = np.zeros((15, 3))
+    errors[[4, 11]] = 4.0 * TANGENTS[[4, 11]]
+    findings = touch_findings(registered(errors), NORMALS, recording(hurried=[4], shaking=[11]))
+    assert Reason.HURRY in findings[4].reasons
+    assert Reason.TREMOR in findings[11].reasons
+    assert Reason.HURRY not in findings[11].reasons
+    assert findings[7].reasons == ()
+    assert findings[11].replay_s == pytest.approx((21.98, 23.98))
+    assert findings[4].dwell_s < 0.15 < findings[7].dwell_s
+
+
+def test_without_recording_and_skin_only_the_residuals_are_told():
+    findings = touch_findings(registered(np.zeros((15, 3))))
+    assert all(f.depth_mm is None and f.replay_s is None for f in findings)
+    feedback = trial_feedback(score_trial(100.0, 0.4, REFERENCE), registered(np.zeros((15, 3))))
+    assert feedback.score_sentences[0] == "Score 52 of 100."
+
+
+def test_the_most_rewarding_advice_comes_first_and_safety_before_all():
+    errors = np.zeros((15, 3))
+    errors[3] = 6.0 * TANGENTS[3]
+    findings = touch_findings(registered(errors), NORMALS)
+    motion = {
+        "idle_time_s": 4.0,
+        "path_efficiency": 0.5,
+        "refused_touches": 1,
+        "unintended_contacts": 2,
+    }
+    advice = advise(score_trial(110.0, 1.2, REFERENCE), findings, motion)
+    assert len(advice) == 3
+    assert advice[0].topic == "contacts"
+    assert "2 times" in advice[0].sentence
+    assert advice[1].topic == "worst touches"
+    assert advice[1].gain > advice[2].gain > 0
+
+
+def test_a_slow_and_exact_trial_is_told_to_be_faster():
+    findings = touch_findings(registered(np.zeros((15, 3))))
+    motion = {"idle_time_s": 150.0, "path_efficiency": 0.2}
+    topics = [a.topic for a in advise(score_trial(400.0, 0.1, REFERENCE), findings, motion)]
+    assert set(topics) == {"idle time", "detours", "pace"}
+
+
+def test_depth_is_advised_where_most_of_the_error_is_in_depth():
+    errors = NORMALS * np.random.default_rng(4).normal(0, 3.0, (15, 1))
+    findings = touch_findings(registered(errors), NORMALS)
+    topics = [a.topic for a in advise(score_trial(100.0, 1.0, REFERENCE), findings, {})]
+    assert "depth" in topics
+
+
+@given(
+    st.floats(20, 1000),
+    st.floats(0.05, 5),
+    st.floats(0, 0.9),
+    st.floats(0.05, 1.2),
+    st.integers(0, 20),
+)
+def test_advice_never_promises_more_than_the_whole_score(time, error, idle, efficiency, refused):
+    score = score_trial(time, error, REFERENCE)
+    motion = {"idle_time_s": idle * time, "path_efficiency": efficiency, "refused_touches": refused}
+    advice = advise(score, touch_findings(registered(np.zeros((15, 3)))), motion)
+    assert len(advice) <= 3
+    for one in advice:
+        assert 0 <= one.gain <= 100 - score.score
+
+
+def stored(number, score, task="task-1", mode="desktop", time=110.0):
+    record = TrialRecord.from_json(
+        make_record(
+            trialId=f"00000000-0000-0000-0000-{number:012d}",
+            task=task,
+            mode=mode,
+            completionTimeS=time,
+        )
+    )
+    trial_score = replace(score_trial(time, 0.4, REFERENCE), score=score)
+    return StoredTrial(record, {}, trial_score, None, None)
+
+
+def test_progress_tells_best_mark_and_competence():
+    history = [stored(i, 40.0 + i) for i in range(12)]
+    progress = progress_of(history, history[-1], pass_mark=45.0)
+    assert progress.is_best
+    assert progress.passes
+    assert progress.curve is not None
+    assert progress.sentences[0].endswith("It is your best so far.")
+    assert progress.sentences[1] == "Passed: the mark is 45."
+    early = progress_of(history, history[2], pass_mark=45.0)
+    assert not early.passes
+    assert early.scores == (40.0, 41.0, 42.0)
+    assert early.sentences[1] == "Not passed yet: 3 points to the mark of 45."
+    assert early.sentences[2].startswith("0 % of the way to proven competence after 3 trials")
+
+
+def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
+    history = [stored(i, 80.0) for i in range(20)]
+    progress = progress_of(history, history[-1], pass_mark=60.0)
+    assert progress.competence.competent_at is not None
+    assert progress.competence.false_discovery <= 0.05
+    assert "show competence since number" in progress.sentences[2]
+    other = [stored(i, 80.0, mode="hmd") for i in range(19)] + [stored(19, 80.0)]
+    assert progress_of(other, other[-1], 60.0).competence.competent_at is None
+
+
+def test_a_trial_with_an_unacceptable_error_never_passes():
+    bad = stored(1, 99.0)
+    bad = replace(bad, score=replace(bad.score, acceptable=False))
+    progress = progress_of([bad], bad, pass_mark=10.0)
+    assert not progress.passes
+    assert progress.sentences[1].startswith("Not passed: the expected target error")
+    with pytest.raises(InputError, match="scored trial of the trainee's own"):
+        progress_of([], bad, 10.0)
+
+
+def test_the_feedback_goes_through_json_and_reads_in_order():
+    errors = np.zeros((15, 3))
+    errors[3] = 5.0 * NORMALS[3]
+    history = [stored(1, 50.0), stored(2, 60.0)]
+    feedback = trial_feedback(
+        score_trial(150.0, 2.5, REFERENCE),
+        registered(errors),
+        NORMALS,
+        {"idle_time_s": 40.0},
+        recording(),
+        progress_of(history, history[1], 55.0),
+    )
+    told = json.loads(json.dumps(feedback.to_json(), allow_nan=False))
+    assert told["worst"] == "4"
+    assert told["replayS"] == pytest.approx([5.98, 7.98])
+    assert "more than 2 mm is not acceptable" in told["sentences"][2]
+    assert told["sentences"][3].startswith("Point 4 was")
+    assert told["sentences"][4].startswith("1. ")
+    assert "10 points more than the mean of your last 1 trials" in told["sentences"][-3]
