@@ -35,6 +35,9 @@ def registered(errors, seed=0):
     return register(FIXED + errors + noise, FIXED, labels=LABELS)
 
 
+EVEN = touch_findings(registered(np.zeros((15, 3))))
+
+
 def recording(hurried=(), shaking=()):
     """Two seconds a point, the tip resting at the point for the second half."""
     rng = np.random.default_rng(1)
@@ -129,7 +132,7 @@ def test_depth_is_advised_where_most_of_the_error_is_in_depth():
 def test_advice_never_promises_more_than_the_whole_score(time, error, idle, efficiency, refused):
     score = score_trial(time, error, REFERENCE)
     motion = {"idle_time_s": idle * time, "path_efficiency": efficiency, "refused_touches": refused}
-    advice = advise(score, touch_findings(registered(np.zeros((15, 3)))), motion)
+    advice = advise(score, EVEN, motion)
     assert len(advice) <= 3
     for one in advice:
         assert 0 <= one.gain <= 100 - score.score

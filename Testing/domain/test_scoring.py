@@ -1,6 +1,7 @@
 """Our score keeps each word it promises."""
 
 import inspect
+import json
 import math
 
 import pytest
@@ -9,7 +10,13 @@ from hypothesis import strategies as st
 
 from rastrainer import scoring
 from rastrainer.errors import InputError
-from rastrainer.scoring import TASK_REFERENCES, ScoreReference, score_trial, task_reference
+from rastrainer.scoring import (
+    TASK_REFERENCES,
+    ScoreReference,
+    TrialScore,
+    score_trial,
+    task_reference,
+)
 
 # Differences of a millisecond and of a nanometer count, from a second to a day, up to a meter.
 times = st.floats(1.0, 86_400.0)
@@ -59,6 +66,24 @@ def test_one_trial_is_enough_and_the_mode_plays_no_part():
         "reference",
     ]
     assert list(inspect.signature(task_reference).parameters) == ["task"]
+
+
+@given(times, times, errors, errors)
+def test_what_is_better_in_both_is_better_whatever_the_references(time, more, error, worse):
+    """Mode, cohort and task only choose a reference; the order of trials is the same with all."""
+    better, worse_trial = (min(time, more), min(error, worse)), (max(time, more), max(error, worse))
+    for reference in TASK_REFERENCES.values():
+        assert score(*better, reference) >= score(*worse_trial, reference)
+
+
+@given(times, errors, references)
+def test_a_score_survives_json_with_its_version_and_references(time, error, reference):
+    trial = score_trial(time, error, reference)
+    again = TrialScore.from_json(json.loads(json.dumps(trial.to_json())))
+    assert again == trial
+    assert again.version == scoring.SCORE_VERSION
+    recomputed = score_trial(again.completion_time_s, again.expected_tre_mm, again.reference)
+    assert recomputed.score == trial.score
 
 
 def test_the_score_is_the_geometric_mean_of_its_parts():

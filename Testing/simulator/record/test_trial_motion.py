@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -11,6 +12,7 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.scripted_trainee import Skill
 from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.cli import main
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.simulation import Simulation
@@ -58,3 +60,13 @@ def test_what_comes_after_the_trial_changes_nothing(journal):
     assert trial_motion(again.trajectory()) == trial_motion(
         Recording.of(journal.entries).trajectory()
     )
+
+
+def test_the_command_measures_a_journal(journal, capsys):
+    assert main(["measure", str(journal.path), "--json"]) == 0
+    (registered,) = journal.of_kind("registered")
+    assert json.loads(capsys.readouterr().out) == registered["record"]["motion"]
+    assert main(["measure", str(journal.path), "--explain"]) == 0
+    text = capsys.readouterr().out
+    assert "Smoothness, SPARC" in text
+    assert "Balasubramanian" in text

@@ -1,0 +1,69 @@
+"""Virtual trainees: time a trial, and how much faster a cohort is on all cores."""
+
+from __future__ import annotations
+
+import functools
+import os
+import time
+
+import numpy as np
+
+from rastrainer.cohort.jobs import trial_jobs
+from rastrainer.cohort.population import Population
+from rastrainer.experiment.study_protocol import StudyProtocol
+from rastrainer_simulator.cohort.engines import run_jobs
+from rastrainer_simulator.cohort.play import PlayedTrial, PlaySettings, play_job
+
+TASKS = ("task-1", "task-2", "task-3", "task-4", "task-5")
+PROTOCOL = StudyProtocol("bench", "Bench", ("desktop", "hmd"), "balanced", TASKS, "fixed")
+
+
+def rows(quick: bool) -> list[dict]:
+    """Return the rows `cohort.trial`, `cohort.faster` and `cohort.speed_up`.
+
+    `faster` is simulated over wall time of each trial on one core. `speed_up` is the time of all
+    trials one after the other over that on all cores, the start of the processes included.
+    """
+    jobs = list(trial_jobs(PROTOCOL, Population(), 1 if quick else 6, 0))
+    play = functools.partial(play_job, settings=PlaySettings())
+    for job in jobs[: len(TASKS)]:
+        # The ways over the head are computed once a process and task.
+        play(job)
+    played, seconds = zip(*(_timed(play, job) for job in jobs), strict=True)
+    finished = [trial for trial in played if trial.analysis is not None]
+    success = len(finished) / len(jobs)
+    faster = [
+        trial.record.completion_time_s / wall
+        for trial, wall in zip(played, seconds, strict=True)
+        if trial.analysis is not None
+    ]
+    began = time.perf_counter()
+    there = list(run_jobs(play, jobs))
+    speed_up = sum(seconds) / (time.perf_counter() - began)
+    return [
+        _row("cohort.trial", np.array(seconds), "s", success),
+        _row("cohort.faster", np.array(faster), "×", success),
+        _row(f"cohort.speed_up.{os.cpu_count()}", np.array([speed_up]), "×", success)
+        | {"n": len(there)},
+    ]
+
+
+def _timed(play, job) -> tuple[PlayedTrial, float]:
+    began = time.perf_counter()
+    trial = play(job)
+    return trial, time.perf_counter() - began
+
+
+def _row(name: str, values: np.ndarray, unit: str, success: float) -> dict:
+    slowest = 1 if name == "cohort.faster" else 99
+    return {
+        "name": name,
+        "median": float(np.median(values)),
+        "p99": float(np.percentile(values, slowest)),
+        "unit": unit,
+        "peer": None,
+        "peer_median": None,
+        "peer_p99": None,
+        "success": success,
+        "n": values.size,
+    }
