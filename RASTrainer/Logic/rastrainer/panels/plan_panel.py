@@ -11,6 +11,7 @@ from rastrainer.panels.widgets import GRAY, GREEN, RED, light, millimeters, setU
 from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.placing import startPlacing
 from rastrainer.slicer.plan_desk import Plan
+from rastrainer.slicer.registration_input import snapshot
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
 
@@ -22,6 +23,8 @@ class PlanPanel:
         self._ui = ui
         self._session = session
         self._desk = session.plan
+        self._seen: tuple = ()
+        self._known: tuple[Plan | None, str] = (None, "")
         ui.placeTargetButton.connect("clicked()", self.placeTarget)
         ui.placeTrajectoryButton.connect("clicked()", self.placeTrajectory)
         ui.sendPlanButton.connect("clicked()", self.send)
@@ -79,10 +82,18 @@ class PlanPanel:
         )
 
     def _read(self) -> tuple[Plan | None, str]:
-        try:
-            return self._desk.read(self._ui.planComboBox.currentNode()), ""
-        except InputError as error:
-            return None, str(error)
+        """Return the plan, or why there is none; computed anew only where something changed."""
+        node = self._ui.planComboBox.currentNode()
+        placed = node.GetNumberOfDefinedControlPoints() if node is not None else 0
+        registration = self._session.registration
+        seen = (snapshot(node), placed, registration.shown, registration.problem)
+        if seen != self._seen:
+            self._seen = seen
+            try:
+                self._known = self._desk.read(node), ""
+            except InputError as error:
+                self._known = None, str(error)
+        return self._known
 
     def _place(self, node: Any) -> None:
         self._ui.planComboBox.setCurrentNode(node)

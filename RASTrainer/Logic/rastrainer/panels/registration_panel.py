@@ -8,12 +8,10 @@ from typing import Any
 import qt
 import slicer
 
-from rastrainer.errors import InputError
 from rastrainer.panels.widgets import (
     chosenData,
     fillComboBox,
     fillTable,
-    millimeters,
     setChecked,
     setSentence,
     setUsable,
@@ -102,7 +100,7 @@ class RegistrationPanel:
         setSentence(ui.treText, _treText(comparison) if comparison else "")
         fillTable(ui.fitsTable, [] if comparison is None else _fitRows(comparison))
         shown = self._desk.shown
-        fillTable(ui.residualsTable, [] if shown is None else _residualRows(shown))
+        fillTable(ui.residualsTable, [] if shown is None else self._residualRows(shown))
         self._showRemedies(() if comparison is None else comparison.remedies)
         self._showButtons()
         self.showState()
@@ -122,6 +120,17 @@ class RegistrationPanel:
             _("Take the last change of the pairs back."),
             _("No pair was changed."),
         )
+
+    def _residualRows(self, shown: Registration) -> list[tuple[str, ...]]:
+        without = self._desk.leaveOneOut
+        if without is None:
+            without = [None] * len(shown.labels)
+        return [
+            (label, _number(residual), _number(alone))
+            for label, residual, alone in zip(
+                shown.labels, shown.residuals_mm, without, strict=True
+            )
+        ]
 
     def _showRemedies(self, remedies: tuple[Remedy, ...]) -> None:
         """Show each warning with its button, in place of those before."""
@@ -192,10 +201,5 @@ def _fitRows(comparison: Comparison) -> list[tuple[str, ...]]:
     return rows
 
 
-def _residualRows(shown: Registration) -> list[tuple[str, ...]]:
-    try:
-        without = [f"{value:.2f}" for value in shown.leave_one_out_mm()]
-    except InputError:
-        without = ["–"] * len(shown.labels)
-    residuals = [millimeters(value).removesuffix(" mm") for value in shown.residuals_mm]
-    return list(zip(shown.labels, residuals, without, strict=True))
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2f}"

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.registration import KINDS, RIGID, Registration, register
+from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration, register
 from rastrainer.slicer.control_points import localPoints
 from rastrainer.slicer.head_colors import colorHead, uncolorHead
 from rastrainer.slicer.registration_input import Choices, Pairs, readPairs, snapshot
@@ -49,6 +49,8 @@ class RegistrationDesk:
         changed: emits nothing, whenever `comparison` or `problem` has changed.
         comparison: the present fits; None where there are none.
         problem: why there are none, a sentence; empty otherwise.
+        leaveOneOut: of the shown fit, how far each touch lies from where the other pairs put it,
+            mm; None where they are too few to tell.
         kind: of the fit that the transform and the arrows show.
         isHeadColored: the head shows the target error to expect.
     """
@@ -57,6 +59,7 @@ class RegistrationDesk:
         self.changed = Signal()
         self.comparison: Comparison | None = None
         self.problem = ""
+        self.leaveOneOut: Sequence[float] | None = None
         self.kind = RIGID
         self.isHeadColored = False
         self._scene = scene
@@ -158,7 +161,7 @@ class RegistrationDesk:
         self._compute()
 
     def _compute(self) -> None:
-        self.comparison, self.problem = None, ""
+        self.comparison, self.problem, self.leaveOneOut = None, "", None
         try:
             pairs = readPairs(self.moving(), self.fixed(), self.choices)
             self.comparison = self._compare(pairs)
@@ -172,10 +175,10 @@ class RegistrationDesk:
 
     def _compare(self, pairs: Pairs) -> Comparison:
         fits = {RIGID: register(pairs.moving, pairs.fixed, RIGID, pairs.labels)}
-        for kind in KINDS:
+        for kind in (SIMILARITY, AFFINE):
             # Points in one plane allow no affine fit; it is only looked at anyway.
             with contextlib.suppress(InputError):
-                fits.setdefault(kind, register(pairs.moving, pairs.fixed, kind, pairs.labels))
+                fits[kind] = register(pairs.moving, pairs.fixed, kind, pairs.labels)
         errors = {}
         position = self.targetPosition()
         for kind, fit in fits.items():
@@ -193,8 +196,10 @@ class RegistrationDesk:
 
     def _show(self) -> None:
         comparison, shown = self.comparison, self.shown
+        with contextlib.suppress(InputError):
+            self.leaveOneOut = shown.leave_one_out_mm()
         showRegistration(self._scene, shown, self.moving(), self.fixed())
-        showResiduals(self._scene, shown)
+        showResiduals(self._scene, shown, self.leaveOneOut)
         fits = comparison.fits
         showFits(self._scene, list(fits.values()), [comparison.errors.get(k) for k in fits])
         showResidualArrows(self._scene, shown)

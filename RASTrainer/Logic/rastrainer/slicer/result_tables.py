@@ -5,24 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rastrainer.errors import InputError
 from rastrainer.registration import Registration
 from rastrainer.slicer.scene import Role
 from rastrainer.slicer.tables import Column, showTable
 from rastrainer.target_error import TargetError
 
 
-def showResiduals(scene: Any, registration: Registration) -> Any:
+def showResiduals(
+    scene: Any, registration: Registration, leaveOneOut: Sequence[float] | None = None
+) -> Any:
     """Show the residual of each fiducial in a `vtkMRMLTableNode` and return it.
 
-    The column without the fiducial is its distance from where the other fiducials put it; it is
-    left empty where they are too few to tell.
+    Args:
+        scene: the scene.
+        registration: whose residuals are shown.
+        leaveOneOut: how far each touch lies from where the other pairs put it, mm; None where
+            they are too few to tell.
     """
     vectors = registration.residual_vectors_mm
-    try:
-        leftOut = registration.leave_one_out_mm()
-    except InputError:
-        leftOut = [None] * len(registration.labels)
+    leftOut = [None] * len(registration.labels) if leaveOneOut is None else leaveOneOut
     return showTable(
         scene,
         Role.RESIDUALS,

@@ -25,7 +25,7 @@ def showTrial(scene: Any, scenario: Scenario, analysis: TrialAnalysis) -> None:
     moving = capturedPointsNode(scene)
     setPoints(moving, analysis.record.labels, analysis.record.positions_mm)
     showRegistration(scene, analysis.rigid, moving, fixed)
-    showResiduals(scene, analysis.rigid)
+    showResiduals(scene, analysis.rigid, analysis.rigid.leave_one_out_mm())
     kinds = list(analysis.fits)
     showFits(
         scene,

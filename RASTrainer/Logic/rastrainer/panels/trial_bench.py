@@ -1,0 +1,88 @@
+"""The panels on a study of their own, for the module's self tests: no user's study is touched."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import slicer
+
+from rastrainer import transforms
+from rastrainer.panels.panel_stack import PanelStack
+from rastrainer.panels.places import findPlaces
+from rastrainer.slicer.connector_kit import desktopKit
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.slicer.session import Session
+from rastrainer.tasks import LABELS
+
+SCENARIO = "colin27"
+TASK = "task-1"
+SEED = 3
+NOISE_MM = 0.5
+
+
+class TrialBench:
+    """A session and its panels, driven without a timer; to be used in a `with` statement.
+
+    Attributes:
+        session: the logic.
+        ui: the panels' widgets by name.
+        study: file of the study, in a folder that goes with the bench.
+    """
+
+    def __init__(self, moduleFile: Path, resourcePath: Callable[[str], str]) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="RASTrainer-")
+        folder = Path(self._folder.name)
+        self.study = folder / "study.db"
+        places = replace(findPlaces(moduleFile), study=self.study, records=folder / "trials")
+        self.session = Session(slicer.mrmlScene, places, desktopKit)
+        self._container = slicer.util.loadUI(resourcePath("UI/RASTrainer.ui"))
+        self._container.setMRMLScene(slicer.mrmlScene)
+        self._panels = PanelStack(self._container, resourcePath, self.session)
+        self.ui = self._panels.ui
+
+    def __enter__(self) -> TrialBench:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self._panels.close()
+        self.session.close()
+        self._container.deleteLater()
+        self._folder.cleanup()
+
+    def process(self) -> None:
+        """Do what the module's timer does."""
+        self.session.process()
+        self._panels.showState()
+
+    def clearScene(self) -> None:
+        """Close the scene, and tell the session as the module's widget does."""
+        slicer.mrmlScene.Clear()
+        self.session.sceneWasCleared()
+        self.process()
+
+    def touches(self) -> np.ndarray:
+        """Return good touches of task 1, (15, 3) float, World, mm."""
+        scenario = self.session.scenario.find(SCENARIO)
+        noise = np.random.default_rng(SEED).normal(0.0, NOISE_MM, (len(LABELS), 3))
+        return transforms.apply(
+            scenario.perturbed_head_to_world(SEED), scenario.task(TASK).fiducials + noise
+        )
+
+    def touch(self, points: np.ndarray) -> None:
+        """Put touches (n, 3) float, World, mm into the scene, as the simulator sends them."""
+        setPoints(capturedPointsNode(slicer.mrmlScene), LABELS[: len(points)], points)
+        self.process()
+
+    def child(self, name: str) -> Any:
+        """Return a widget that came later than the `.ui` files.
+
+        Raises:
+            RuntimeError: there is none of that name.
+        """
+        return slicer.util.findChild(self._container, name)
