@@ -19,6 +19,8 @@ NUMBERS_APART = 3.0
 """Two numbers keep so many times as far from each other: 5 beside 2 must not read as 52."""
 OWN_SHARE = 0.8
 """A number's distance to its own dot is at most so much of that to any other: no mistaking."""
+ENOUGH = 16
+"""Places to choose from, after which none farther from the fiducial is looked at."""
 MOST_TRIES = 20_000
 _COLUMNS, _ROWS = 7, 5
 _RELIEF = 0.3
@@ -76,7 +78,7 @@ def _choices(
     obstacles: np.ndarray,
     radii: np.ndarray,
 ) -> list[Place]:
-    """Return the places around one fiducial, the best first."""
+    """Return places around one fiducial, the best first; as far out as it takes to have enough."""
     point = points[index]
     frame = skin.frame(point)
     others = np.delete(points, index, axis=0)
@@ -84,7 +86,7 @@ def _choices(
     obstacles, radii = obstacles[near], radii[near]
     least = size.min() / 2.0 + MARGINS[-1]
     rectangle = _rectangle(size)
-    places = []
+    places: list[Place] = []
     for distance in DISTANCES:
         for angle in ANGLES:
             aside = np.cos(angle) * frame[0] + np.sin(angle) * frame[1]
@@ -100,6 +102,8 @@ def _choices(
             crowded = max(0.0, _ROOM_ENOUGH - clearance)
             cost = distance - DISTANCES[0] + _RELIEF * relief + crowded
             places.append(Place(middle, covers, clearance, cost))
+        if sum(place.clearance >= MARGINS[0] for place in places) >= ENOUGH:
+            break
     return sorted(places, key=lambda place: place.cost)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
-import logging
 import os
 import struct
 import subprocess
@@ -18,8 +17,6 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.scene.cache_folder import forget_oldest
 from rastrainer_simulator.scene.scene_key import scene_key, setup_digest
 from rastrainer_simulator.setup import SimulationSetup
-
-_log = logging.getLogger(__name__)
 
 NO_TASK = ""
 SECRETS = ("RASTRAINER_VIEW_KEY",)
@@ -62,8 +59,10 @@ class SceneFiles:
         Who cancels the wait ends the building, too.
 
         Raises:
-            InputError: it cannot be built; the sentence says why.
+            InputError: there is no such task, or it cannot be built; the sentence says why.
         """
+        if task != NO_TASK:
+            setup.scenario.task(task)
         path = (await self._paths_of(setup))[task]
         if path not in self._ready:
             async with self._one_at_a_time:
@@ -113,16 +112,7 @@ class SceneFiles:
             "task": task,
             "path": str(path),
         }
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "rastrainer_simulator.scene.build_process",
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            env={name: value for name, value in os.environ.items() if name not in SECRETS},
-            creationflags=_BELOW_NORMAL,
-        )
+        process = await _start()
         try:
             _, errors = await process.communicate(json.dumps(wanted).encode())
         finally:
@@ -133,6 +123,22 @@ class SceneFiles:
         if process.returncode:
             sentence = errors.decode(errors="replace").strip() or f"status {process.returncode}"
             raise InputError(f"The scene could not be built: {sentence}")
+
+
+async def _start() -> asyncio.subprocess.Process:
+    try:
+        return await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "rastrainer_simulator.scene.build_process",
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            env={name: value for name, value in os.environ.items() if name not in SECRETS},
+            creationflags=_BELOW_NORMAL,
+        )
+    except OSError as error:
+        raise InputError(f"The scene cannot be built: {error}.") from error
 
 
 def read_scene(file: SceneFile) -> bytes | None:

@@ -51,9 +51,7 @@ def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
         points = (chosen.fiducials / MM_IN_M).tolist()
         fiducials = dict(zip(chosen.labels, points, strict=True))
     url = f"/scene/{sha256}.glb"
-    return _text(
-        SCENE, url=url, task=task, sticks=axes.value, cameras=cameras, fiducials=fiducials
-    )
+    return _text(SCENE, url=url, task=task, sticks=axes.value, cameras=cameras, fiducials=fiducials)
 
 
 def state(now: SimulationState, delayed: int) -> str:

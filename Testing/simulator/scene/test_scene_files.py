@@ -70,6 +70,11 @@ def test_a_scene_that_cannot_be_built_is_told_in_one_sentence(setup, tmp_path):
         asyncio.run(SceneFiles(tmp_path).scene(replace(setup, scenario=scenario), ""))
 
 
+def test_a_task_that_the_scenario_does_not_have_has_no_scene(setup, tmp_path):
+    with pytest.raises(InputError, match="no such task"):
+        asyncio.run(SceneFiles(tmp_path).scene(setup, "task-99"))
+
+
 def test_the_key_changes_with_task_scenario_and_robot(setup):
     digest = setup_digest(setup)
     others = [
