@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,6 +16,7 @@ FULL = 32767
 INIT_JOYSTICK = 0x200
 _TRIGGERS = ("lefttrigger", "righttrigger")
 
+_Update = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
 _Rumble = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_uint16, ctypes.c_uint16)
 
 
@@ -28,7 +30,7 @@ class _Description(ctypes.Structure):
         ("axis_mask", ctypes.c_uint32),
         ("name", ctypes.c_char_p),
         ("userdata", ctypes.c_void_p),
-        ("update", ctypes.c_void_p),
+        ("update", _Update),
         ("set_player_index", ctypes.c_void_p),
         ("rumble", _Rumble),
         ("rumble_triggers", ctypes.c_void_p),
@@ -77,6 +79,11 @@ class VirtualGamepad:
             felt(low / 65535.0, high / 65535.0)
             return 0
 
+        def update(_data: object) -> None:
+            self._updates += 1
+
+        self._updates = 0
+        self._update = _Update(update)
         self._rumble = _Rumble(rumble)
 
     @property
@@ -96,6 +103,7 @@ class VirtualGamepad:
             button_mask=(1 << len(BUTTONS)) - 1,
             axis_mask=(1 << len(AXES)) - 1,
             name=self._name,
+            update=self._update,
             rumble=self._rumble,
         )
         index = self._sdl.SDL_JoystickAttachVirtualEx(ctypes.byref(description))
@@ -123,3 +131,12 @@ class VirtualGamepad:
         """Press a button by SDL's name, or let it go."""
         number = BUTTONS.index(name)
         self._sdl.SDL_JoystickSetVirtualButton(self._joystick, number, int(is_down))
+
+    def tap(self, name: str) -> None:
+        """Press a button and let it go, each until SDL, in another thread, has looked at it."""
+        for is_down in (True, False):
+            self.press(name, is_down)
+            # The second look has begun: the first is over.
+            seen = self._updates + 2
+            while self._updates < seen and self._joystick is not None:
+                time.sleep(0.001)

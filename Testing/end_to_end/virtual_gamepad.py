@@ -24,8 +24,8 @@ REPOSITORY = Path(__file__).parents[2]
 class SimulatorWithGamepad(SimulatorProcess):
     """`rastrainer simulator` with a gamepad.
 
-    Every move is on its way when the call returns; the simulator looks at its gamepads 200 times a
-    second, so a press has to be held for some milliseconds: `tap` does.
+    Every move is on its way when the call returns, and they are made in their order. `tap` holds
+    its button until the simulator has looked at it, however busy the computer is.
     """
 
     command = (sys.executable, "-m", "Testing.end_to_end.virtual_gamepad")
@@ -56,12 +56,9 @@ class SimulatorWithGamepad(SimulatorProcess):
         """Press a button by SDL's name ("a", "dpdown", …), or let it go."""
         self._send({"press": button, "isDown": is_down})
 
-    def tap(self, button: str, seconds: float = 0.05) -> None:
-        """Press a button for a moment."""
-        self.press(button)
-        time.sleep(seconds)
-        self.press(button, False)
-        time.sleep(seconds)
+    def tap(self, button: str) -> None:
+        """Press a button and let it go."""
+        self._send({"tap": button})
 
     def felt(self) -> list[tuple[float, float]]:
         """Return the strengths (0 to 1) of both motors at each of SDL's calls so far."""
@@ -94,6 +91,8 @@ def _obey(path: Path) -> None:
                 (gamepad.plug_in if order["plug"] else gamepad.plug_out)()
             elif "move" in order:
                 gamepad.move(**order["move"])
+            elif "tap" in order:
+                gamepad.tap(order["tap"])
             else:
                 gamepad.press(order["press"], order["isDown"])
 
