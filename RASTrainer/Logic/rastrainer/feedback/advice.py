@@ -57,8 +57,8 @@ def _safety(motion: Mapping[str, float]) -> Iterator[Advice]:
         times = "once" if count == 1 else f"{count} times"
         yield Advice(
             "contacts",
-            f"You touched the head {times} without recording a point. Lift off before you travel "
-            "to the next point.",
+            f"You bumped into the head {times} on the way. Lift off before you travel to the next "
+            "point.",
             0.0,
         )
 

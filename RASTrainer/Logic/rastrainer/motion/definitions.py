@@ -178,9 +178,10 @@ DEFINITIONS: dict[str, MetricDefinition] = {
         ),
         MetricDefinition(
             "unintended_contacts",
-            "Contacts without a touch",
+            "Contacts away from a touch",
             "",
-            "Contacts during which, and 0.1 s before and after which, no fiducial was touched.",
+            f"Contacts that began farther than {ACCEPTANCE_MM:g} mm from the place that was "
+            "touched next and from the one touched last.",
             OWN,
             -1,
         ),

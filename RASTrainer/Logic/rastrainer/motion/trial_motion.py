@@ -17,13 +17,14 @@ from rastrainer.motion.path_metrics import idle_time, path_efficiency, path_leng
 from rastrainer.motion.signals import low_pass, resample, speeds
 from rastrainer.motion.smoothness import log_dimensionless_jerk, sparc
 from rastrainer.motion.throughput import effective_throughput
-from rastrainer.motion.trajectory import Touch, Trajectory
+from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 
 RATE_HZ = 50.0
 """Samples a second after resampling; the journal holds as many."""
 DWELL_RADIUS_MM = 2.0
 ACCEPTANCE_MM = 10.0
-"""A refused touch within this distance of another fiducial was at the wrong one."""
+"""A refused touch within this distance of another fiducial was at the wrong one; a contact within
+this distance of a touch belongs to it."""
 SHORTEST_MOVEMENT = 10
 """Movements of fewer samples (0.2 s) tell nothing about smoothness."""
 
@@ -71,10 +72,7 @@ def with_path_efficiency(
 def _counts(trajectory: Trajectory) -> dict[str, float]:
     contacts = trajectory.contacts
     touch_times = trajectory.touch_times_s
-    meant = [
-        bool(((touch_times >= c.start_s - 0.1) & (touch_times <= c.end_s + 0.1)).any())
-        for c in contacts
-    ]
+    meant = [_is_meant(contact, trajectory) for contact in contacts]
     metrics = {
         "proximity_time_s": sum(interval.duration_s for interval in trajectory.near),
         "contact_time_s": sum(contact.duration_s for contact in contacts),
@@ -93,6 +91,17 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
             _is_wrong(touch, trajectory) for touch in trajectory.refused
         )
     return {name: float(value) for name, value in metrics.items()}
+
+
+def _is_meant(contact: Interval, trajectory: Trajectory) -> bool:
+    """Tell whether a contact began near the fiducial that was touched next or last."""
+    if not len(trajectory.times_s):
+        return False
+    row = min(np.searchsorted(trajectory.times_s, contact.start_s), len(trajectory.times_s) - 1)
+    following = int(np.searchsorted(trajectory.touch_times_s, contact.start_s))
+    neighbors = trajectory.touches[max(following - 1, 0) : following + 1]
+    distances = [np.linalg.norm(trajectory.tip_mm[row] - t.position_mm) for t in neighbors]
+    return min(distances, default=np.inf) <= ACCEPTANCE_MM
 
 
 def _is_wrong(touch: Touch, trajectory: Trajectory) -> bool:

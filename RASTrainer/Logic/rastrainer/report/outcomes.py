@@ -48,7 +48,7 @@ MAIN_OUTCOMES = (
     Outcome("score", "RASTrainer score", "", 1, 1),
 )
 MOTION_OUTCOMES = tuple(
-    Outcome(d.name, d.title, d.unit, d.better, 2 if d.unit in ("", "s", "mm") else 1)
+    Outcome(d.name, d.title, d.unit, d.better, 0 if d.name.startswith("path_") and d.unit else 2)
     for d in DEFINITIONS.values()
     if d.name != "completion_time_s"
 )
