@@ -53,27 +53,24 @@ class GlWindow:
             pygame.display.init()
             for attribute, value in _CORE_PROFILE.items():
                 pygame.display.gl_set_attribute(attribute, value)
-            flags = pygame.OPENGL | pygame.DOUBLEBUF | pygame.RESIZABLE
-            pygame.display.set_mode(size or _roomy_size(), flags)
+            self._window = pygame.Window(TITLE, size or _roomy_size(), opengl=True, resizable=True)
         except pygame.error as error:
             raise RASTrainerError(NO_WINDOW.format(reason=error)) from None
-        pygame.display.set_caption(TITLE)
         pygame.key.set_repeat(REPEAT_AFTER_MS, REPEAT_EVERY_MS)
-        self._window = pygame.Window.from_display_module()
         self._window.minimum_size = tuple(
             min(least, own) for least, own in zip(LEAST_SIZE, self.size, strict=True)
         )
         self._is_fullscreen = False
         if is_fullscreen:
             self.toggle_fullscreen()
-        self.refresh_hz = float(max(0, pygame.display.get_current_refresh_rate()))
+        self.refresh_hz = float(max([0, *pygame.display.get_desktop_refresh_rates()]))
         self.render_window = self._make_render_window()
         self.renderer_name = _renderer_name(self.render_window)
 
     @property
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
-        width, height = pygame.display.get_window_size()
+        width, height = self._window.size
         return max(1, width), max(1, height)
 
     def toggle_fullscreen(self) -> None:
@@ -104,6 +101,7 @@ class GlWindow:
     def close(self) -> None:
         """Free the graphics resources and take the window away."""
         self.render_window.Finalize()
+        self._window.destroy()
         pygame.display.quit()
 
     def _make_render_window(self) -> vtkGenericOpenGLRenderWindow:
@@ -113,7 +111,7 @@ class GlWindow:
             "WindowIsCurrentEvent": lambda *_event: window.SetIsCurrent(True),
             "WindowSupportsOpenGLEvent": lambda *_event: window.SetSupportsOpenGL(1),
             "WindowIsDirectEvent": lambda *_event: window.SetIsDirect(1),
-            "WindowFrameEvent": lambda *_event: pygame.display.flip(),
+            "WindowFrameEvent": lambda *_event: self._window.flip(),
         }
         for name, answer in answers.items():
             window.AddObserver(name, answer)
@@ -130,8 +128,8 @@ class GlWindow:
 
 def _roomy_size() -> tuple[int, int]:
     """Return a size of 16:9 that leaves room for the desktop's own bars."""
-    info = pygame.display.Info()
-    unit = max(30, min(round(0.86 * info.current_w / 16), round(0.86 * info.current_h / 9)))
+    width, height = pygame.display.get_desktop_sizes()[0]
+    unit = max(30, min(round(0.86 * width / 16), round(0.86 * height / 9)))
     return 16 * unit, 9 * unit
 
 

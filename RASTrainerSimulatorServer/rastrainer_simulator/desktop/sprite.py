@@ -37,7 +37,7 @@ class Sprite:
         self._actor.SetLayerNumber(order)
         self._actor.VisibilityOff()
         self.size = (0, 0)
-        renderer.AddActor2D(self._actor)
+        renderer.AddViewProp(self._actor)
 
     def paint(self, pixels: np.ndarray) -> None:
         """Take a picture, (height, width, 4) uint8, the top row first."""

@@ -45,8 +45,8 @@ def make_glb() -> bytes:
 
 
 def state(**changes):
-    """Return the members of a state message, with the tool above the head."""
-    poses = {"tool": (0.0, -0.05, 0.13, 0.0, 0.0, 0.0, 1.0), "head": HERE}
+    """Return the members of a state message, with the tool in front of the forehead."""
+    poses = {"tool": (0.0, -0.15, 0.05, 0.0, 0.0, 0.0, 1.0), "head": HERE}
     return {
         "tick": 1,
         "time": 0.0,

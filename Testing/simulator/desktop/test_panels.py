@@ -41,7 +41,7 @@ def test_no_menu_is_larger_than_its_room_and_its_focus_is_always_seen(menu, size
     assert width <= size[0] - 64
     assert height <= size[1] - 160
     row = picture.rows[menu.focus]
-    assert 0 <= row.top
+    assert row.top >= 0
     assert row.top + row.height < height
     # Its corners are empty, so that nothing painted reaches the edge.
     assert picture.pixels[0, 0, 3] == 0

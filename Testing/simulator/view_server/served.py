@@ -53,7 +53,7 @@ class ServedViews:
         new_codes: the pairing codes that were to be shown after the first.
     """
 
-    def __init__(self, thread: LoopThread, control_loop: ControlLoop, **limits):
+    def __init__(self, thread: LoopThread, control_loop: ControlLoop, port: int = 0, **limits):
         self.thread = thread
         self.desk = RecordingDesk()
         self.new_codes = []
@@ -65,7 +65,7 @@ class ServedViews:
             self.new_codes.append,
             limits=ViewLimits(**limits),
         )
-        self.port = thread.run(self.server.listen(HOST, 0))
+        self.port = thread.run(self.server.listen(HOST, port))
         self.url = f"http://{HOST}:{self.port}"
 
     @property

@@ -1,0 +1,184 @@
+"""What the window shows of what the simulator says, rendered for real but for a display."""
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.desktop.flight import FLIGHT_S, Viewpoint
+from rastrainer_simulator.desktop.glb_parts import read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
+from rastrainer_simulator.desktop.picture import Picture
+from rastrainer_simulator.desktop.quality import Quality, first_quality
+from Testing.simulator.desktop.conftest import (
+    BODIES,
+    CAMERAS,
+    FIDUCIALS,
+    HERE,
+    MENU,
+    SCREEN,
+    SIZE,
+    state,
+)
+
+BLUE, RED = ((0, 40, 200), (60, 120, 255)), ((220, 0, 0), (255, 70, 70))
+GREEN, YELLOW = ((10, 130, 40), (70, 190, 100)), ((220, 170, 0), (255, 255, 215))
+
+
+@pytest.fixture(scope="module")
+def inbox(glb):
+    inbox = Inbox()
+    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
+    inbox.scene = SceneNews(read_parts(glb, BODIES), views, FIDUCIALS)
+    return inbox
+
+
+@pytest.fixture(scope="module")
+def picture(gl_window, inbox):
+    picture = Picture(gl_window, inbox, Quality.LOW)
+    yield picture
+    for renderer in list(gl_window.render_window.GetRenderers()):
+        gl_window.render_window.RemoveRenderer(renderer)
+
+
+@pytest.fixture
+def show(gl_window, inbox, picture):
+    """Return a function that shows a screen and a state, and returns the pixels."""
+    times = iter(np.arange(0.0, 1e4, 10.0))
+
+    def show(screen=SCREEN, **changes):
+        inbox.screen, inbox.problem = screen, ""
+        inbox.take_state(state(**changes))
+        # Twice: a camera that sets out arrives.
+        for now in (float(next(times)), float(next(times))):
+            picture.is_due(now)
+        picture.draw()
+        return gl_window.pixels().astype(int)
+
+    return show
+
+
+def found(pixels, color):
+    low, high = color
+    return np.argwhere(np.all((pixels >= low) & (pixels <= high), axis=2))
+
+
+def main_view(pixels):
+    """Leave out what is laid over the picture: instruction and inset above, hints below."""
+    return pixels[SIZE[1] // 4 : int(SIZE[1] * 0.86), : int(SIZE[0] * 0.75)]
+
+
+def test_the_tip_is_blue_when_free_and_red_in_proximity_and_contact(show):
+    free = main_view(show())
+    assert len(found(free, BLUE)) > 20
+    assert len(found(free, RED)) == 0
+    near = main_view(show(proximity="proximity"))
+    assert len(found(near, RED)) > 20
+    assert len(found(near, BLUE)) == 0
+
+
+def test_touched_fiducials_are_green_the_next_is_yellow_and_others_wait(show):
+    pixels = main_view(show())
+    green, yellow = (found(pixels, color).mean(axis=0) for color in (GREEN, YELLOW))
+    # Fiducial 1 is to the left of 2, as the camera sees them.
+    assert green[1] < yellow[1] - 20
+    after = main_view(show(next="3", touched=["1", "2"]))
+    assert len(found(after, GREEN)) > 1.5 * len(found(pixels, GREEN))
+
+
+def test_the_tool_is_where_the_stream_says(show):
+    before = found(main_view(show()), BLUE).mean(axis=0)
+    moved = {"tool": (0.05, -0.15, 0.05, 0, 0, 0, 1), "head": HERE}
+    after = found(main_view(show(poses=moved)), BLUE).mean(axis=0)
+    # 50 mm at 0.65 m, 30 degrees of sight over the window's height.
+    pixels_a_meter = SIZE[1] / (2 * 0.65 * np.tan(np.radians(15)))
+    assert after[1] - before[1] == pytest.approx(0.05 * pixels_a_meter, rel=0.1)
+
+
+def test_contact_frames_the_whole_picture_in_red(show):
+    edges = {"top": (1, 480), "bottom": (-2, 300), "left": (270, 1), "right": (300, -2)}
+    calm, alarmed = show(proximity="proximity"), show(proximity="contact")
+    for place in edges.values():
+        assert alarmed[place][0] > 200 > 100 > alarmed[place][1]
+        assert calm[place][1] > 100
+
+
+def test_an_arrow_leads_to_a_target_out_of_sight_and_vanishes_when_it_is_seen(show):
+    aside = {"tool": (0, -0.15, 0.05, 0, 0, 0, 1), "head": (-0.6, 0, 0, 0, 0, 0, 1)}
+    arrow = found(show(poses=aside)[:, : SIZE[0] // 3], YELLOW)
+    assert len(arrow) > 100
+    assert arrow[:, 1].mean() < SIZE[0] / 10
+    assert len(found(show()[:, : SIZE[0] // 5], YELLOW)) == 0
+
+
+def test_the_inset_shows_the_other_camera_in_a_white_frame_and_gives_way_to_a_menu(show):
+    pixels = show()
+    right = pixels[: SIZE[1] // 3, int(SIZE[0] * 0.75) :]
+    white = found(right, ((250, 250, 250), (255, 255, 255)))
+    (top, left), (bottom, end) = white.min(axis=0), white.max(axis=0)
+    assert end - left > 150
+    assert bottom - top > 90
+    assert len(found(right[top + 4 : bottom - 4], BLUE)) > 0
+    without = show(screen=SCREEN.__class__(menu=MENU))
+    assert len(found(without[: SIZE[1] // 3], ((250, 250, 250), (255, 255, 255)))) < 200
+
+
+def test_nothing_is_drawn_twice_while_nothing_changes(show, picture, inbox):
+    show(next=None)
+    assert not picture.is_due(1e5)
+    inbox.take_state(state(next=None, tick=99))
+    assert not picture.is_due(1e5)
+    inbox.take_state(state(next=None, proximity="proximity"))
+    assert picture.is_due(1e5)
+
+
+def test_the_next_fiducial_pulses(show, picture, gl_window):
+    show()
+    shades = []
+    for now in (2e5, 2e5 + 0.35, 2e5 + 0.7):
+        assert picture.is_due(now)
+        picture.draw()
+        # The fiducial is in the middle of the picture.
+        shades.append(int(gl_window.pixels()[SIZE[1] // 2, SIZE[0] // 2, 2]))
+    assert max(shades) - min(shades) > 40
+
+
+def test_the_camera_flies_and_arrives(show, picture, inbox):
+    show()
+    inbox.take_state(state(camera="far"))
+    distances = []
+    for now in (3e5, 3e5 + FLIGHT_S / 2, 3e5 + FLIGHT_S):
+        picture.is_due(now)
+        distances.append(-picture.stage.main.GetActiveCamera().GetPosition()[1])
+    np.testing.assert_allclose(distances, [0.8, 1.6, 2.4], atol=1e-6)
+    assert not picture.stage.is_moving(3e5 + FLIGHT_S)
+
+
+def test_a_lost_connection_is_told(show, picture, gl_window, inbox):
+    before = show()
+    inbox.problem = "window.lost"
+    assert picture.is_due(4e5)
+    picture.draw()
+    panel = gl_window.pixels().astype(int)[SIZE[1] // 2, 100:300]
+    assert panel.mean() < 80 < before[SIZE[1] // 2, 100:300].mean()
+    inbox.problem = ""
+
+
+def test_a_kept_picture_has_the_best_light_and_the_window_goes_on_as_before(show, picture):
+    plain = show()
+    best = picture.still(Quality.HIGH).astype(int)
+    assert np.abs(best - plain).mean() > 3
+    again = show()
+    assert np.abs(again - plain).mean() < 1
+
+
+@pytest.mark.parametrize(
+    ("name", "quality"),
+    [
+        ("llvmpipe (LLVM 15.0.6, 256 bits)", Quality.LOW),
+        ("Google SwiftShader", Quality.LOW),
+        ("GDI Generic", Quality.LOW),
+        ("Mesa Intel(R) UHD Graphics 620 (KBL GT2)", Quality.HIGH),
+        ("NVIDIA GeForce RTX 3060/PCIe/SSE2", Quality.HIGH),
+    ],
+)
+def test_software_rendering_is_recognized(name, quality):
+    assert first_quality(name) is quality

@@ -1,0 +1,163 @@
+"""The window as a process of its own, at a real view server: joining, sounds, and coming back."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import wave
+
+import numpy as np
+import pytest
+from scipy.signal import fftconvolve, resample_poly
+
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli import main
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.view_server.operator_desk import Feedback, Hello
+from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.view_server.served import ServedViews
+
+PATIENCE_S = 60.0
+PLAYED = ("touch", "proximity", "contact", "error", "finish", "undo", "touch")
+PAUSE_S = 1.3
+PLAYED_HZ, STORED_HZ = 44_100, 32_000
+
+
+class Window:
+    """`rastrainer window` without a display, whose loudspeaker is a file."""
+
+    def __init__(self, url, key, folder):
+        self.heard = folder / "heard.raw"
+        self.frames = folder / "frames.jsonl"
+        self.process = subprocess.Popen(
+            [
+                *(sys.executable, "-m", "rastrainer_simulator.cli", "window", "--connect", url),
+                *("--size", "640x360", "--frame-log", str(self.frames)),
+            ],
+            env={
+                **os.environ,
+                "RASTRAINER_VIEW_KEY": key,
+                "SDL_VIDEODRIVER": "offscreen",
+                "SDL_AUDIODRIVER": "disk",
+                "SDL_DISKAUDIOFILE": str(self.heard),
+            },
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def wait_for_picture(self):
+        give_up = time.monotonic() + PATIENCE_S
+        while not self.frames.exists() or not self.frames.read_text():
+            assert self.process.poll() is None, self.process.communicate()[0]
+            assert time.monotonic() < give_up
+            time.sleep(0.02)
+
+
+@pytest.fixture(scope="module")
+def thread():
+    thread = LoopThread()
+    yield thread
+    thread.stop()
+
+
+@pytest.fixture(scope="module")
+def control_loop(setup, tmp_path_factory):
+    records = tmp_path_factory.mktemp("records")
+    with ControlLoop(Simulation(setup, seed=3), records) as loop:
+        yield loop
+
+
+@pytest.fixture(scope="module")
+def session(thread, control_loop, tmp_path_factory):
+    """Have a window hear seven events, lose its server, and find it again."""
+    folder = tmp_path_factory.mktemp("window")
+    served = ServedViews(thread, control_loop)
+    key = served.new_key()
+    window = Window(served.url, key, folder)
+    try:
+        window.wait_for_picture()
+        joined = [call for call in served.desk.calls if call[0] == "view_joined"]
+        for number, name in enumerate(PLAYED, start=1):
+            served.tell(Feedback(number, name, name, 0.8))
+            time.sleep(PAUSE_S)
+        served.tell(Feedback(len(PLAYED) + 1, "touch", "touch", volume=0.0))
+        port = served.port
+        served.close()
+        again = ServedViews(thread, control_loop, port=port)
+        thread.call(again.server.sessions.admit, key)
+        joined += _wait_for_join(again)
+        again.close()
+    finally:
+        window.process.send_signal(signal.SIGKILL)
+        said = window.process.communicate()[0]
+    return {"joined": joined, "said": said, "heard": window.heard}
+
+
+def _wait_for_join(served):
+    give_up = time.monotonic() + PATIENCE_S
+    while not (found := [call for call in served.desk.calls if call[0] == "view_joined"]):
+        assert time.monotonic() < give_up
+        time.sleep(0.02)
+    return found
+
+
+def test_the_window_joins_as_a_desktop_and_joins_again_after_its_server_was_away(session):
+    assert len(session["joined"]) == 2
+    for _name, _view, hello in session["joined"]:
+        assert isinstance(hello, Hello)
+        assert hello.kind == "desktop"
+
+
+def test_the_window_has_nothing_to_complain_about(session):
+    lines = session["said"].splitlines()
+    assert [line for line in lines if "warning" in line.lower() or "error" in line.lower()] == []
+
+
+@pytest.mark.parametrize("name", sorted(set(PLAYED)))
+def test_each_event_is_heard_exactly_once(session, name):
+    """SDL has written what it played: the sound is looked for by matched filter."""
+    samples = np.fromfile(session["heard"], "<i2").reshape(-1, 2)[:, 0].astype(float)
+    with wave.open(str(asset_path("sounds", f"{name}.wav"))) as file:
+        stored = np.frombuffer(file.readframes(file.getnframes()), "<i2").astype(float)
+    pattern = resample_poly(stored, PLAYED_HZ, STORED_HZ)[: PLAYED_HZ // 2]
+    energy = fftconvolve(samples**2, np.ones(len(pattern)), "valid")
+    match = fftconvolve(samples, pattern[::-1], "valid")
+    likeness = match / np.sqrt(np.maximum(energy, 1e6) * (pattern @ pattern))
+    starts = np.flatnonzero(likeness > 0.9)
+    apart = np.count_nonzero(np.diff(starts, prepend=-PLAYED_HZ) > PLAYED_HZ // 10)
+    assert apart == PLAYED.count(name)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "key", "sentence"),
+    [
+        ([], "", "--code must be the pairing code that the simulator shows."),
+        (["--connect", "nowhere"], "k" * 40, "--connect must be an address, such as "),
+        (["--size", "12x7"], "k" * 40, "--size must be WIDTHxHEIGHT in pixels"),
+        (["--connect", "http://127.0.0.1:1", "--code", "1"], "", "There must be a simulator at "),
+    ],
+)
+def test_wrong_arguments_end_with_one_sentence_and_status_2(
+    capsys, monkeypatch, arguments, key, sentence
+):
+    monkeypatch.setenv("RASTRAINER_VIEW_KEY", key)
+    assert main(["window", *arguments]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"rastrainer: {sentence}")
+    assert len(said.splitlines()) == 1
+
+
+def test_without_a_display_the_window_ends_with_one_sentence():
+    environment = {**os.environ, "RASTRAINER_VIEW_KEY": "k" * 40, "SDL_VIDEODRIVER": "none-such"}
+    command = [sys.executable, "-m", "rastrainer_simulator.cli", "window"]
+    done = subprocess.run(
+        command, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("rastrainer: No window can be opened on this machine: ")
+    assert len(done.stderr.splitlines()) == 1
