@@ -132,10 +132,11 @@ class VirtualGamepad:
         number = BUTTONS.index(name)
         self._sdl.SDL_JoystickSetVirtualButton(self._joystick, number, int(is_down))
 
-    def tap(self, name: str) -> None:
+    def tap(self, name: str, seconds: float = 0.0) -> None:
         """Press a button and let it go, each until SDL, in another thread, has looked at it."""
         for is_down in (True, False):
             self.press(name, is_down)
+            time.sleep(seconds)
             # The second look has begun: the first is over.
             seen = self._updates + 2
             while self._updates < seen and self._joystick is not None:

@@ -56,9 +56,9 @@ class SimulatorWithGamepad(SimulatorProcess):
         """Press a button by SDL's name ("a", "dpdown", …), or let it go."""
         self._send({"press": button, "isDown": is_down})
 
-    def tap(self, button: str) -> None:
-        """Press a button and let it go."""
-        self._send({"tap": button})
+    def tap(self, button: str, seconds: float = 0.0) -> None:
+        """Press a button for at least so long, and let it go."""
+        self._send({"tap": button, "seconds": seconds})
 
     def felt(self) -> list[tuple[float, float]]:
         """Return the strengths (0 to 1) of both motors at each of SDL's calls so far."""
@@ -92,7 +92,7 @@ def _obey(path: Path) -> None:
             elif "move" in order:
                 gamepad.move(**order["move"])
             elif "tap" in order:
-                gamepad.tap(order["tap"])
+                gamepad.tap(order["tap"], order["seconds"])
             else:
                 gamepad.press(order["press"], order["isDown"])
 
