@@ -217,9 +217,66 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         self.assertEqual(link.status.state, LinkState.OFF)
 
     def test_theBuiltInScenarioIsShown(self):
-        from rastrainer.slicer.scenario import showScenario, showTask
+        with self.bench() as bench:
+            bench.ui.showScenarioButton.click()
+        fixed = slicer.util.getNode("* fiducials")
+        self.assertEqual(fixed.GetNumberOfControlPoints(), 15)
 
-        scenario = RASTrainerLogic().session.scenario.find("colin27")
-        showScenario(slicer.mrmlScene, scenario)
-        node = showTask(slicer.mrmlScene, scenario, "task-1")
-        self.assertEqual(node.GetNumberOfControlPoints(), 15)
+    def test_aTraineeIsCreatedArchivedAndBroughtBack(self):
+        with self.bench() as bench:
+            ui = bench.ui
+            ui.pseudonymLineEdit.text = "T-001"
+            ui.createTraineeButton.click()
+            self.assertIn("T-001", ui.traineeComboBox.currentText)
+            ui.archiveButton.click()
+            self.assertEqual(bench.session.trainees.trainees(), ())
+            ui.archiveButton.click()
+            self.assertEqual(len(bench.session.trainees.trainees()), 1)
+
+    def test_touchesAreRegisteredAndABadOneIsLeftOutByOneClick(self):
+        with self.bench() as bench:
+            ui = bench.ui
+            ui.showScenarioButton.click()
+            touches = bench.touches()
+            touches[6] += 9.0
+            bench.touch(touches)
+            self.assertEqual(ui.residualsTable.rowCount, 15)
+            self.assertIn("7", bench.child("warning0Text").text)
+            bench.child("remedy0Button").click()
+            self.assertEqual(ui.residualsTable.rowCount, 14)
+            ui.undoButton.click()
+            self.assertEqual(ui.residualsTable.rowCount, 15)
+
+    def test_aPlannedTargetIsCarriedToTheRobot(self):
+        with self.bench() as bench:
+            ui = bench.ui
+            ui.showScenarioButton.click()
+            bench.touch(bench.touches())
+            ui.placeTargetButton.click()
+            ui.planComboBox.currentNode().AddControlPoint(10.0, 20.0, 30.0)
+            bench.process()
+            self.assertIn("mm", ui.planWorldText.text)
+            self.assertFalse(ui.sendPlanButton.enabled)
+            self.assertIn("Connect", ui.sendPlanButton.toolTip)
+
+    def test_theSceneMayBeClearedAndEveryNodeDeleted(self):
+        with self.bench() as bench:
+            bench.ui.showScenarioButton.click()
+            bench.ui.robotCheckBox.checked = True
+            bench.touch(bench.touches())
+            bench.clearScene()
+            self.assertEqual(bench.ui.residualsTable.rowCount, 0)
+            bench.ui.showScenarioButton.click()
+            bench.touch(bench.touches())
+            for node in list(slicer.util.getNodesByClass("vtkMRMLDisplayableNode")):
+                if node.GetScene() is not None and not node.GetSingletonTag():
+                    slicer.mrmlScene.RemoveNode(node)
+                    bench.process()
+            self.assertGreater(len(bench.ui.registrationText.text), 20)
+
+    def bench(self):
+        from rastrainer.panels.trial_bench import TrialBench
+
+        module = slicer.modules.rastrainer.path
+        folder = Path(module).parent / "Resources"
+        return TrialBench(Path(module), lambda name: str(folder / name))

@@ -286,6 +286,10 @@ class Host:
         """Turn the 3D view, degrees from the front, to all that is visible."""
         self._layout.three_d_view_of_host().look_from(azimuth, elevation, zoom)
 
+    def look_at(self, place: tuple, azimuth: float, elevation: float, distance: float) -> None:
+        """Turn the 3D view to a place, RAS mm, from a distance, mm."""
+        self._layout.three_d_view_of_host().look_at(place, azimuth, elevation, distance)
+
     def _fit(self, width: int) -> None:
         """Make the panel as high as its contents; layouts within layouts settle one by one."""
         frame, heights = self._frame._qt, [0, -1]

@@ -88,14 +88,27 @@ class ThreeDView(View):
 
     def look_from(self, azimuth: float, elevation: float, zoom: float) -> None:
         """Look at everything from an angle, degrees from the front."""
+        self._turn(azimuth, elevation)
+        self.look_at_everything()
+        self.renderer.GetActiveCamera().Zoom(zoom)
+
+    def look_at(self, place: tuple, azimuth: float, elevation: float, distance: float) -> None:
+        """Look at a place, RAS mm, from an angle and a distance, mm."""
+        camera = self._turn(azimuth, elevation)
+        direction = camera.GetPosition()
+        camera.SetFocalPoint(*place)
+        camera.SetPosition(*(p + distance * d for p, d in zip(place, direction, strict=True)))
+        self.renderer.ResetCameraClippingRange()
+
+    def _turn(self, azimuth: float, elevation: float) -> Any:
         camera = self.renderer.GetActiveCamera()
-        camera.SetPosition(0, 1, 0)
+        camera.SetViewAngle(30.0)
         camera.SetFocalPoint(0, 0, 0)
+        camera.SetPosition(0, 1, 0)
         camera.SetViewUp(0, 0, 1)
         camera.Azimuth(azimuth)
         camera.Elevation(elevation)
-        self.look_at_everything()
-        camera.Zoom(zoom)
+        return camera
 
     def look_at_everything(self) -> None:
         """Move the camera so that all visible models are in the picture."""
@@ -124,6 +137,8 @@ class SliceView(View):
 
     def picture(self, width: int, height: int) -> QtGui.QImage:
         """Return what the view shows: the slice, and what lies in it."""
+        # Markups place their labels by the window's size.
+        self.window.SetSize(width, height)
         self.logic.ResizeSliceNode(width, height)
         self.logic.FitSliceToAll(width, height)
         self.logic.UpdatePipeline()

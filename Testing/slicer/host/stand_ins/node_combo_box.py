@@ -85,17 +85,15 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
         if self._scene is None:
             return []
         found = []
-        for index in range(self._scene.GetNumberOfNodes()):
-            node = self._scene.GetNthNode(index)
-            isOfType = any(node.IsA(name) for name in self._values["nodeTypes"])
-            isShown = self._values["showHidden"] or not node.GetHideFromEditors()
-            if (
-                isOfType
-                and isShown
-                and node.GetClassName() not in self._values["hideChildNodeTypes"]
-            ):
-                found.append(node)
-        return found
+        for name in self._values["nodeTypes"]:
+            nodes = self._scene.GetNodesByClass(name)
+            nodes.UnRegister(None)
+            found += [nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems())]
+        return [node for node in found if self._is_offered(node)]
+
+    def _is_offered(self, node: Any) -> bool:
+        isShown = self._values["showHidden"] or not node.GetHideFromEditors()
+        return isShown and node.GetClassName() not in self._values["hideChildNodeTypes"]
 
     def nodeCount(self) -> int:
         return len(self.nodes())
@@ -144,6 +142,8 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
         raise NotImplementedError("The host does not filter by attributes yet.")
 
     def _follow(self, event: str, node: Any) -> None:
+        if node is not None and not any(node.IsA(name) for name in self._values["nodeTypes"]):
+            return
         if event == "NodeAboutToBeRemovedEvent":
             self.nodeAboutToBeRemoved.emit(node)
             return
