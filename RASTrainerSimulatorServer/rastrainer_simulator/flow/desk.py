@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from rastrainer.protocol import Mode
@@ -19,6 +19,7 @@ from rastrainer_simulator.flow.preferences import Preferences
 from rastrainer_simulator.flow.screen import Message, Screen, Tone
 from rastrainer_simulator.flow.session import Session, Surroundings
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
+from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.view_server.operator_desk import (
     Control,
@@ -66,7 +67,7 @@ class Desk:
         self._results: deque[StepResult] = deque()
         self._listeners: tuple[Callable[[News], None], ...] = ()
         self._views: dict[int, Hello] = {}
-        self._lasting: dict[str, Message] = {}
+        self._lasting: dict[str, tuple[str, Mapping[str, object]]] = {}
         self._number = 0
         self._told_sticks = HANDS_OFF
         self._is_changed = True
@@ -107,7 +108,9 @@ class Desk:
         self._choose_mode(hello)
 
     def view_left(self, view: int) -> None:
-        """Forget a view."""
+        """Forget a view; nobody sees the trial any more if it was the trainee's."""
+        if view == self._watched():
+            self._flow.pause()
         for kind in SourceKind:
             self.controls.forget(self._source(kind, view))
         self._choose_mode(self._views.pop(view, None))
@@ -164,12 +167,18 @@ class Desk:
             self._is_changed = True
 
     def on_frames(self, view: int, frames: Frames) -> None:
-        """Take how smoothly a view draws."""
+        """Take how smoothly a view draws; what the trainee looks at is recorded."""
+        hello = self._views.get(view)
+        if hello is None or view != self._watched():
+            return
+        report = DisplayReport(
+            hello.kind, hello.device, frames.refresh_hz, frames.shown, frames.dropped
+        )
+        self._control_loop.note_display(report)
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
         """Pause the trial when the one who operates no longer sees it."""
-        holder = self.controls.holder
-        if not is_visible and holder is not None and holder.view == view:
+        if not is_visible and view == self._watched():
             self._flow.pause()
 
     def pressed(self, control: ControlName) -> None:
@@ -204,7 +213,7 @@ class Desk:
         """Show a warning until it is called off by an empty key."""
         self._lasting.pop(about, None)
         if key:
-            self._lasting[about] = Message(self._session.texts.say(key, **values), Tone.WARNING)
+            self._lasting[about] = key, values
         self._is_changed = True
 
     def happened(self, what: Happening) -> None:
@@ -223,6 +232,14 @@ class Desk:
         if sensation.rumble > 0.0:
             self.rumble(sensation.rumble, sensation.seconds)
         self._tell(feedback)
+
+    def _watched(self) -> int | None:
+        """Return the view that the trainee looks at: a headset, else the one that is operated."""
+        by_kind = {hello.kind: view for view, hello in reversed(self._views.items())}
+        holder = self.controls.holder
+        operated = None if holder is None else holder.view
+        choices = (by_kind.get("headset"), operated, by_kind.get("desktop"), by_kind.get("page"))
+        return next((view for view in choices if view is not None), None)
 
     def _choose_mode(self, changed: Hello | None) -> None:
         """Let the next trial be one in a headset while there is one; people may choose again."""
@@ -270,7 +287,9 @@ class Desk:
     def _refresh(self) -> None:
         self._is_changed = False
         self._since_refresh = 0.0
-        screen = self._flow.screen(tuple(self._lasting.values()))
+        say = self._session.texts.say
+        warnings = (say(key, **values) for key, values in self._lasting.values())
+        screen = self._flow.screen(tuple(Message(text, Tone.WARNING) for text in warnings))
         if screen != self.screen:
             self.screen = screen
             self._tell(screen)

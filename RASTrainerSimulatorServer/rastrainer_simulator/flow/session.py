@@ -218,6 +218,10 @@ class Session:
 
     def label(self, control: ControlName) -> str:
         """Return the first input of a control on what the operator has in their hands."""
+        holder = self._controls.holder
+        of_headset = f"headset.{control.value}"
+        if holder is not None and holder.kind is SourceKind.XR and of_headset in self.texts:
+            return self.texts.say(of_headset)
         return self.input_label(self.device, self.bindings.table(self.device)[control][0])
 
     def input_labels(self, device: Device, control: ControlName) -> str:

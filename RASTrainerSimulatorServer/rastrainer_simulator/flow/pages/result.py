@@ -84,7 +84,7 @@ class ResultPage(FinishedPage):
         return Menu(
             self.name,
             self.say("result.title", trainee=training.trainee, task=task),
-            tuple(_warnings(result)),
+            (*_sentences(result, "warnings", 3), *_sentences(result, "feedback", 6)),
             (*self._facts_of_result(result), *_facts_of_trial(self.session)),
             self.items(),
         )
@@ -126,12 +126,12 @@ def _facts_of_trial(session: Session) -> tuple[Fact, ...]:
     )
 
 
-def _warnings(result: TrialResult) -> list[str]:
-    """Return Slicer's own warnings about the registration: what is not text is left out."""
-    warnings = result.details.get("warnings")
-    if not isinstance(warnings, list):
+def _sentences(result: TrialResult, name: str, most: int) -> list[str]:
+    """Return what Slicer says about the registration: what is not text is left out."""
+    texts = result.details.get(name)
+    if not isinstance(texts, list):
         return []
-    return [text[:200] for text in warnings[:3] if isinstance(text, str) and text.isprintable()]
+    return [text[:200] for text in texts[:most] if isinstance(text, str) and text.isprintable()]
 
 
 def _is_number(value: Any) -> bool:

@@ -1,0 +1,63 @@
+"""Preferences: each one of its options, saved, applied, and refused where they are not."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.flow.preferences import (
+    OF_THE_SIMULATION,
+    OPTIONS,
+    Preferences,
+    read_preferences,
+    write_preferences,
+)
+from rastrainer_simulator.settings import SimulationSettings
+from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_stepping_goes_through_every_option_and_each_is_saved(tmp_path, name):
+    path = tmp_path / "preferences.json"
+    preferences, seen = Preferences(), []
+    for _ in OPTIONS[name]:
+        preferences = preferences.stepped(name, 1)
+        seen.append(getattr(preferences, name))
+        write_preferences(path, preferences)
+        assert read_preferences(path) == preferences
+    assert sorted(seen, key=str) == sorted(OPTIONS[name], key=str)
+    assert preferences == Preferences()
+    assert preferences.stepped(name, 1).stepped(name, -1) == preferences
+
+
+def test_the_defaults_leave_the_simulation_as_it_is():
+    assert Preferences().applied_to(SimulationSettings()) == SimulationSettings()
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_only_what_is_said_to_changes_the_simulation(name):
+    changed = Preferences().stepped(name, 1).applied_to(SimulationSettings())
+    assert (changed != SimulationSettings()) is (name in OF_THE_SIMULATION)
+
+
+def test_every_way_to_steer_the_tool_can_be_chosen():
+    assert {ToolDirection(option) for option in OPTIONS["direction"]} == set(ToolDirection)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("7", "must be a JSON object with any of language"),
+        ('{"color": "red"}', "must be a JSON object with any of language"),
+        ('{"volume": 55}', "volume must be one of 0, 10, "),
+        ('{"volume": true}', "volume must be one of 0, 10, "),
+        ('{"muted": 1}', "muted must be one of false, true"),
+        ('{"language": ["de"]}', 'language must be one of "en", "de"'),
+        ("{", "is not JSON"),
+    ],
+)
+def test_what_is_no_option_is_refused_with_a_sentence(tmp_path, content, sentence):
+    path = tmp_path / "preferences.json"
+    path.write_text(content)
+    with pytest.raises(InputError, match=sentence):
+        read_preferences(path)

@@ -1,0 +1,47 @@
+"""What each trainee has done is told by the journals, whatever else lies in their folder."""
+
+from __future__ import annotations
+
+from rastrainer.journal.journal_line import NO_LINE, encode_line
+from rastrainer_simulator.flow.progress import Progress
+
+ORDER = ("trial-run", "task-1", "task-2")
+
+
+def write_journal(folder, name, trainee, task, *kinds):
+    lines, previous = [], NO_LINE
+    entries = [{"kind": "header", "trainee": trainee, "task": task}]
+    for number, entry in enumerate(entries + [{"kind": kind} for kind in kinds], 1):
+        line, previous = encode_line(number, previous, entry)
+        lines.append(line)
+    (folder / f"{name}.journal").write_bytes(b"".join(lines))
+
+
+def test_a_task_counts_once_registered_and_the_trial_run_once_begun(tmp_path):
+    write_journal(tmp_path, "1", "P01", "trial-run", "aborted")
+    write_journal(tmp_path, "2", "P01", "task-1", "registered", "scored")
+    write_journal(tmp_path, "3", "P01", "task-2", "aborted")
+    write_journal(tmp_path, "4", "P02", "task-1", "registered")
+    progress = Progress(tmp_path)
+    assert [progress.has_done("P01", task) for task in ORDER] == [True, True, False]
+    assert progress.missing_before("P01", "task-2", ORDER) is None
+    assert progress.missing_before("P02", "task-2", ORDER) == "trial-run"
+    assert progress.missing_before("nobody", "trial-run", ORDER) is None
+
+
+def test_what_is_no_journal_tells_nothing(tmp_path):
+    write_journal(tmp_path, "whole", "P01", "task-1", "registered")
+    whole = (tmp_path / "whole.journal").read_bytes()
+    (tmp_path / "forged.journal").write_bytes(whole.replace(b"P01", b"P02"))
+    (tmp_path / "cut.journal").write_bytes(whole[:40])
+    (tmp_path / "empty.journal").touch()
+    (tmp_path / "noise.journal").write_bytes(bytes(range(256)) * 100)
+    (tmp_path / "folder.journal").mkdir()
+    write_journal(tmp_path, "odd", ["P03"], {"task": 1}, "registered")
+    progress = Progress(tmp_path)
+    assert progress.has_done("P01", "task-1")
+    assert not progress.has_done("P02", "task-1")
+
+
+def test_a_folder_that_is_not_there_yet_tells_nothing(tmp_path):
+    assert not Progress(tmp_path / "later").has_done("P01", "task-1")
