@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,12 @@ from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.surface_path import SurfaceGraph
-from rastrainer_simulator.planning.touch_order import crossing_order, easiest_order, ways_between
+from rastrainer_simulator.planning.touch_order import (
+    arc_lengths,
+    crossing_order,
+    easiest_order,
+    ways_between,
+)
 
 SPACING_MM = 20.0
 """Between any two fiducials of a task: numbers must not cover each other."""
@@ -96,12 +101,21 @@ def places_seen_from(
 class TaskProposer:
     """Proposes tasks on one head; the same seed proposes the same task."""
 
-    def __init__(self, mesh: HeadMesh, places: Places, eye: np.ndarray, target: np.ndarray) -> None:
+    def __init__(
+        self,
+        mesh: HeadMesh,
+        places: Places,
+        eye: np.ndarray,
+        target: np.ndarray,
+        accepts: Callable[[Proposal], bool] = lambda _proposal: True,
+    ) -> None:
+        """Keep the places; what is proposed in a row is what `accepts` agrees to."""
         self._mesh = mesh
         self._graph = SurfaceGraph(mesh)
         self._places = places
         self._eye = eye
         self._target = target
+        self._accepts = accepts
 
     def propose_rising(self, plans: Sequence[TaskPlan], seed: int) -> list[Proposal]:
         """Return a task for each plan, each more demanding than the one before.
@@ -114,7 +128,8 @@ class TaskProposer:
         for plan, own_seeds in zip(plans, seeds.tolist(), strict=True):
             least = RISE * proposals[-1].complexity.index if proposals else 0.0
             draws = (self.propose(plan, own_seed) for own_seed in own_seeds)
-            rising = next((draw for draw in draws if draw.complexity.index >= least), None)
+            harder = (draw for draw in draws if draw.complexity.index >= least)
+            rising = next(filter(self._accepts, harder), None)
             if rising is None:
                 raise InputError(f"{plan.title} cannot be made harder than the task before it.")
             proposals.append(rising)
@@ -165,8 +180,7 @@ class TaskProposer:
 
     def _ordered(self, plan: TaskPlan, chosen: list[int]) -> list[int]:
         positions, normals = self._places.positions[chosen], self._places.normals[chosen]
-        lengths = np.array([self._graph.distances(start, list(positions)) for start in positions])
-        ways = ways_between(positions, normals, lengths)
+        ways = ways_between(positions, normals, arc_lengths(positions, normals))
         if plan.crossings == 0:
             order = easiest_order(ways, list(range(len(chosen))))
         else:

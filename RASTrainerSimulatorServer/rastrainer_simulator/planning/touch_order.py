@@ -47,6 +47,17 @@ def ways_between(points: np.ndarray, normals: np.ndarray, lengths_mm: np.ndarray
     )
 
 
+def arc_lengths(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Return about how long the ways over the skin are between points (n, 3), (n, n) mm.
+
+    The skin between two points is taken to bend evenly, by the angle between their normals: good
+    enough to order fiducials by, and thousands of times faster than paths over the surface.
+    """
+    chords = np.linalg.norm(points[:, None] - points[None], axis=2)
+    half = np.arccos(np.clip(normals @ normals.T, -1.0, 1.0)) / 2.0
+    return chords / np.sinc(half / np.pi)
+
+
 def easiest_order(ways: Ways, members: list[int]) -> list[int]:
     """Return an order of the members that is cheap: the best of all greedy ways, improved."""
     return ways.easiest([_improved(ways, _greedy(ways, members, start)) for start in members])[1]

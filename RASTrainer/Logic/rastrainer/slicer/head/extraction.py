@@ -6,11 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
-from rastrainer.slicer.head import beyond_image, mask, surface, topology
+from rastrainer.slicer.head import beyond_image, mask, surface, tissue, topology
 from rastrainer.slicer.head.volume import Volume, on_ras_grid
 
 SPACING_MM = 1.0
@@ -18,6 +17,10 @@ MARGIN = 14
 """Voxels added around the image, in which the nose and the ears may close."""
 
 MOST_TRIANGLES = 60_000
+LONGEST_HEAD_MM = 200.0
+"""From the crown down: what a scan shows below of neck and shoulders is cut off."""
+
+Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
@@ -25,8 +28,9 @@ class HeadSettings:
     """What may be chosen about the extraction.
 
     Attributes:
-        threshold: value that parts air from skin; None finds it (Otsu).
-        base_mm: height (S) of the flat base; None for just above the image's lower edge.
+        threshold: value that parts air from skin; None finds it (Otsu; −300 HU of a CT).
+        base_mm: height (S) of the flat base; None for just above the image's lower edge, or the
+            neck.
         noise_mm: standard deviation of the smoothing of the image.
         cavity_depth_mm: what lies so deep below the skin is filled: airways, sinuses, ear canals.
         opening_mm: openings up to this width do not count as part of the skin's outside.
@@ -41,10 +45,31 @@ class HeadSettings:
     triangles: int = 55_000
 
 
+@dataclass(frozen=True)
+class HeadBody:
+    """A head as voxels of 1 mm along RAS, before it becomes a surface.
+
+    Attributes:
+        level: (i, j, k) float, positive inside, its zero between the voxels where the skin is.
+        body: (i, j, k) bool, without cavities and tunnels.
+        origin: (3,) float, RAS mm, of voxel 0, 0, 0.
+        base_mm: height (S) of the flat base.
+        threshold: that parts air from skin, in the volume's own values.
+        is_ct: whether the values are Hounsfield units.
+    """
+
+    level: np.ndarray
+    body: np.ndarray
+    origin: np.ndarray
+    base_mm: float
+    threshold: float
+    is_ct: bool
+
+
 def extract_head(
     volume: Volume,
     settings: HeadSettings | None = None,
-    progress: Callable[[str, float], None] = lambda _step, _share: None,
+    progress: Progress = lambda _step, _share: None,
 ) -> HeadMesh:
     """Return the skin as one closed surface of genus 0 with a flat base.
 
@@ -57,42 +82,55 @@ def extract_head(
         InputError: there is no head in the volume, or no closed surface could be made of it.
     """
     settings = settings or HeadSettings()
+    return skin_of(find_head(volume, settings, progress), settings, progress)
+
+
+def find_head(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
+    """Return the head of a volume; arguments and errors as of `extract_head`."""
     progress("Reading the volume", 0.0)
     grid = on_ras_grid(volume, SPACING_MM)
     progress("Finding the skin", 0.1)
-    level = beyond_image.continued(_level(grid.values, settings), MARGIN)
-    progress("Filling cavities", 0.3)
-    body = _body(level > 0, settings)
-    progress("Making the surface", 0.8)
+    found = tissue.find_tissue(grid.values, settings.threshold, settings.noise_mm / SPACING_MM)
     lowest = grid.ijk_to_ras[2, 3]
+    top = lowest + SPACING_MM * np.flatnonzero((found.level > 0).any(axis=(0, 1))).max()
+    base = settings.base_mm
+    if base is None:
+        base = max(lowest + SPACING_MM, top - LONGEST_HEAD_MM)
+    if not lowest <= base < top:
+        raise InputError(
+            f"The head is found between {lowest:.0f} and {top:.0f} mm (S); its base must be there, "
+            f"not at {base:.0f} mm."
+        )
+    below = max(0, int((base - lowest) / SPACING_MM) - 1)
+    level = beyond_image.continued(found.level[:, :, below:], MARGIN)
+    progress("Filling cavities", 0.3)
+    body = _body(level > 0, settings, progress)
     origin = grid.ijk_to_ras[:3, 3] - MARGIN * SPACING_MM
-    skin = surface.smoothed(surface.surface_of(_agreeing(level, body), origin, SPACING_MM))
-    base = lowest + SPACING_MM if settings.base_mm is None else settings.base_mm
-    skin = surface.decimated(skin, settings.triangles, base)
-    mesh = surface.mesh_of(surface.cut_flat(skin, base))
+    origin[2] += below * SPACING_MM
+    return HeadBody(level, body, origin, base, found.threshold, found.is_ct)
+
+
+def skin_of(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
+    """Return the surface of a head; arguments and errors as of `extract_head`."""
+    progress("Making the surface", 0.8)
+    skin = surface.surface_of(_agreeing(head.level, head.body), head.origin, SPACING_MM)
+    skin = surface.decimated(surface.smoothed(skin), settings.triangles, head.base_mm)
+    mesh = surface.mesh_of(surface.cut_flat(skin, head.base_mm))
     _check(mesh)
     progress("Done", 1.0)
     return mesh
 
 
-def _level(values: np.ndarray, settings: HeadSettings) -> np.ndarray:
-    """Return a level set within ±1, positive in tissue, whose zero lies between the voxels."""
-    smooth = ndimage.gaussian_filter(values, settings.noise_mm / SPACING_MM, mode="nearest")
-    threshold = settings.threshold
-    if threshold is None:
-        threshold = mask.otsu_threshold(smooth)
-    level = np.clip(smooth / threshold - 1.0, -1.0, 1.0)
-    # Filled first: the skull's dark layer may part the scalp from a brain that is larger.
-    head = mask.largest_body(mask.without_cavities(level > 0))
-    return np.where(head | (level <= 0), level, -1.0).astype(np.float32)
-
-
-def _body(tissue: np.ndarray, settings: HeadSettings) -> np.ndarray:
+def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.ndarray:
     """Return the head without cavities and tunnels, as little filled as possible."""
-    hull = mask.without_cavities(mask.closed_by_ball(tissue, settings.opening_mm / 2))
+    hull = mask.without_cavities(mask.closed_by_ball(inside, settings.opening_mm / 2))
+    progress("Filling cavities", 0.45)
     deep = mask.depth_inside(hull) > settings.cavity_depth_mm / SPACING_MM
-    wanted = mask.without_cavities(tissue | deep)
-    return topology.carved(_ball_like(wanted, settings), wanted)
+    wanted = mask.without_cavities(inside | deep)
+    progress("Closing tunnels", 0.55)
+    ball = _ball_like(wanted, settings)
+    progress("Closing tunnels", 0.7)
+    return topology.carved(ball, wanted)
 
 
 def _ball_like(wanted: np.ndarray, settings: HeadSettings) -> np.ndarray:

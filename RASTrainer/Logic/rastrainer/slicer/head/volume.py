@@ -76,7 +76,13 @@ def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
     grid_to_ras[:3, 3] = origin
     grid_to_ijk = np.linalg.inv(volume.ijk_to_ras) @ grid_to_ras
     shape = tuple(int(n) for n in np.floor(extent / spacing_mm + 1e-6) + 1)
+    # What the volume does not cover is taken for air, its lowest value: 0 HU would be tissue.
     values = ndimage.affine_transform(
-        volume.values, grid_to_ijk[:3, :3], grid_to_ijk[:3, 3], shape, order=1
+        volume.values,
+        grid_to_ijk[:3, :3],
+        grid_to_ijk[:3, 3],
+        shape,
+        order=1,
+        cval=float(volume.values.min()),
     )
     return Volume(values, grid_to_ras)

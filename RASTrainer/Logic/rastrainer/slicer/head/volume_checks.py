@@ -76,9 +76,7 @@ def check_head(mesh: HeadMesh) -> None:
     extent = np.ptp(mesh.vertices, axis=0)
     a, b, c = (mesh.vertices[mesh.triangles[:, corner]].astype(float) for corner in range(3))
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
-    is_size = all(
-        low <= e <= high for e, (low, high) in zip(extent, HEAD_EXTENT_MM, strict=True)
-    )
+    is_size = all(low <= e <= high for e, (low, high) in zip(extent, HEAD_EXTENT_MM, strict=True))
     if not is_size or volume > FULLEST * extent.prod():
         raise InputError(
             f"No head was found: what is above the threshold measures {extent[0]:.0f} × "

@@ -1,0 +1,66 @@
+"""A head on its way to become a scenario: what Slicer's side hands to the planner of tasks.
+
+A folder with `draft.json`, `head.ply` and, where there is one, `skull.ply`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from rastrainer.checked_json import read_fields
+from rastrainer.files import write_text
+from rastrainer.head_mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.scenario import SKULL_KINDS
+from rastrainer.scenario_writer import HEAD_NAME, SKULL_NAME
+
+FILE_NAME = "draft.json"
+NO_SKULL = "none"
+
+
+@dataclass(frozen=True)
+class HeadDraft:
+    """A head and how it was made.
+
+    Attributes:
+        head: closed, with a flat base, RAS mm.
+        method: how it was made, for the scenario's provenance.
+        skull: None where there is none.
+        is_skull_approximate: whether the skull is only the skin moved inward.
+    """
+
+    head: HeadMesh
+    method: str
+    skull: HeadMesh | None = None
+    is_skull_approximate: bool = False
+
+
+def write_draft(folder: Path, draft: HeadDraft) -> None:
+    """Write a draft into a folder that exists.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    kind = SKULL_KINDS[int(draft.is_skull_approximate)] if draft.skull else NO_SKULL
+    write_head_mesh(folder / HEAD_NAME, draft.head)
+    if draft.skull is not None:
+        write_head_mesh(folder / SKULL_NAME, draft.skull)
+    content = {"method": draft.method, "skull": kind}
+    write_text(folder / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+
+
+def read_draft(folder: Path) -> HeadDraft:
+    """Read a draft.
+
+    Raises:
+        InputError: it is missing or cannot be used.
+    """
+    fields = read_fields(folder / FILE_NAME)
+    kind = fields.one_of("skull", (*SKULL_KINDS, NO_SKULL))
+    return HeadDraft(
+        read_head_mesh(folder / HEAD_NAME),
+        fields.text("method", 4000),
+        None if kind == NO_SKULL else read_head_mesh(folder / SKULL_NAME),
+        kind == SKULL_KINDS[1],
+    )

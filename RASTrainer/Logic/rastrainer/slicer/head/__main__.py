@@ -1,0 +1,64 @@
+"""Make the draft of a head out of a volume, in a process of its own.
+
+    python -m rastrainer.slicer.head VOLUME -o DIR [--threshold T] [--cut S] [--no-skull]
+
+Standard output has a line such as ` 30%  Filling cavities` a step, and `Warning: …` lines. Exit
+status: 0 made, 2 the volume cannot be used (standard error has the sentence).
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.scenario_draft import write_draft
+from rastrainer.scenario_writer import new_folder
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run and return the exit status."""
+    arguments = _parser().parse_args(argv)
+    try:
+        from rastrainer.slicer.head.extraction import HeadSettings
+        from rastrainer.slicer.head.head_draft import make_draft, read_any_volume
+    except ImportError as error:
+        print(
+            f"A head cannot be made here, {error.name} is missing: pip install slicer-core scipy",
+            file=sys.stderr,
+        )
+        return 2
+    try:
+        volume = read_any_volume(arguments.volume)
+        settings = HeadSettings(threshold=arguments.threshold, base_mm=arguments.cut)
+        draft, warnings = make_draft(volume, settings, not arguments.no_skull, _tell)
+        for warning in warnings:
+            print(f"Warning: {warning}", flush=True)
+        with new_folder(arguments.output) as folder:
+            write_draft(folder, draft)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+def _tell(step: str, share: float) -> None:
+    print(f"{share:4.0%}  {step}", flush=True)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m rastrainer.slicer.head")
+    parser.add_argument("volume", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--threshold", type=float, help="value that parts air from skin")
+    parser.add_argument("--cut", type=float, metavar="S", help="height of the base, mm superior")
+    parser.add_argument("--no-skull", action="store_true")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

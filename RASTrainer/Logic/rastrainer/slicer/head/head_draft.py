@@ -1,0 +1,67 @@
+"""From a volume to the draft of a head: checks, extraction and the skull, in one call."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rastrainer.scenario_draft import HeadDraft
+from rastrainer.slicer.head.dicom_series import read_dicom_folder
+from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, Progress, find_head, skin_of
+from rastrainer.slicer.head.skull import SCALP_MM, skull_of
+from rastrainer.slicer.head.volume import Volume, read_volume
+from rastrainer.slicer.head.volume_checks import check_head, check_volume
+
+
+def read_any_volume(path: Path) -> Volume:
+    """Read an NRRD or NIfTI file, or a folder with a DICOM series.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    return read_dicom_folder(path) if Path(path).is_dir() else read_volume(path)
+
+
+def make_draft(
+    volume: Volume,
+    settings: HeadSettings | None = None,
+    has_skull: bool = True,
+    progress: Progress = lambda _step, _share: None,
+) -> tuple[HeadDraft, list[str]]:
+    """Return a head and warnings, one sentence each.
+
+    Args:
+        volume: T1-weighted MRI or CT of a head.
+        settings: what to choose otherwise than usual.
+        has_skull: whether the skull is wanted too.
+        progress: told each step's name and the share of the work done; may raise to cancel.
+
+    Raises:
+        InputError: the volume cannot be used, or there is no head in it.
+    """
+    settings = settings or HeadSettings()
+    warnings = check_volume(volume)
+    found = find_head(volume, settings, lambda step, share: progress(step, 0.8 * share))
+    mesh = skin_of(found, settings, lambda step, share: progress(step, 0.8 * share))
+    check_head(mesh)
+    skull = None
+    if has_skull:
+        progress("Making the skull", 0.85)
+        skull = skull_of(volume, found)
+    progress("Done", 1.0)
+    is_approximate = has_skull and not found.is_ct
+    return HeadDraft(mesh, _method(found, has_skull), skull, is_approximate), warnings
+
+
+def _method(found: HeadBody, has_skull: bool) -> str:
+    kind = "CT" if found.is_ct else "MRI"
+    sentences = [
+        f"Surface of the skin from {kind} by rastrainer, threshold {found.threshold:.5g}, cavities "
+        f"filled, cut flat at {found.base_mm:.1f} mm (S)."
+    ]
+    if has_skull and found.is_ct:
+        sentences.append("Skull: bone of the CT.")
+    elif has_skull:
+        sentences.append(
+            f"Skull: an approximation, the skin moved inward by {SCALP_MM:g} mm; MRI shows no bone."
+        )
+    return " ".join(sentences)

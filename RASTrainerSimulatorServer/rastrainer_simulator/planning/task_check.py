@@ -1,0 +1,118 @@
+"""Are tasks as they must be, wherever they come from? One sentence for each thing that is not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from rastrainer.complexity import complexity
+from rastrainer.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.tasks import Task
+from rastrainer_simulator.planning.task_proposal import target_spread
+from rastrainer_simulator.planning.workbench import Workbench
+from rastrainer_simulator.scene.skin import Skin
+from rastrainer_simulator.scene.skin_marks import place_marks
+
+ON_SKIN_MM = 1.0
+APART_MM = 20.0
+WORST_SPREAD = 1.0
+"""The expected TRE at the target may be at most so many times the FLE."""
+
+POSES_TRIED = 12
+COMPLEXITY_TOLERANCE = 0.02
+
+
+def measured(bench: Workbench, task: Task) -> float:
+    """Return a task's complexity index."""
+    return round(complexity(task.fiducials, bench.mesh, bench.graph, bench.eye).index, 2)
+
+
+def check_tasks(bench: Workbench, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
+    """Return what is wrong with tasks, one sentence each; none where all is well.
+
+    Touching is tried in the nominal pose of the head and in those of some seeds from `first_seed`.
+    """
+    tasks, skin = list(tasks), Skin(bench.mesh)
+    wrong = []
+    for task in tasks:
+        wrong += _wrong_places(bench, task) or [
+            *_untouchable(bench, task, first_seed),
+            *_unreadable(skin, task),
+            *_wrong_complexity(bench, task),
+        ]
+    for easier, harder in pairwise(tasks):
+        if harder.complexity <= easier.complexity:
+            wrong.append(
+                f"{harder.title}: its complexity, {harder.complexity:.2f}, must be above "
+                f"that of {easier.title}, {easier.complexity:.2f}."
+            )
+    return wrong
+
+
+def _wrong_places(bench: Workbench, task: Task) -> list[str]:
+    wrong = []
+    for label, point in zip(task.labels, task.fiducials, strict=True):
+        away = nearest_on_mesh(bench.mesh, point).distance
+        if away > ON_SKIN_MM:
+            wrong.append(
+                f"{task.title}: fiducial {label} is {away:.1f} mm off the skin; it must be within "
+                f"{ON_SKIN_MM:g} mm."
+            )
+    for (one, a), (other, b) in combinations(zip(task.labels, task.fiducials, strict=True), 2):
+        apart = float(np.linalg.norm(a - b))
+        if apart < APART_MM - 1e-3:
+            wrong.append(
+                f"{task.title}: fiducials {one} and {other} are {apart:.1f} mm apart; their "
+                f"numbers need {APART_MM:g} mm."
+            )
+    try:
+        ratio = target_spread(task.fiducials, bench.scenario.target_position) ** 0.5
+    except np.linalg.LinAlgError:
+        ratio = np.inf
+    if not ratio <= WORST_SPREAD:
+        wrong.append(
+            f"{task.title}: its fiducials locate {bench.scenario.target_name} badly (expected TRE "
+            f"{ratio:.1f} times FLE, at most {WORST_SPREAD:g}); spread them around it."
+        )
+    return wrong
+
+
+def _untouchable(bench: Workbench, task: Task, first_seed: int) -> list[str]:
+    normals = np.array([outward_normal(bench.mesh, point) for point in task.fiducials])
+    poses = bench.poses(range(first_seed, first_seed + POSES_TRIED))
+    nominal = bench.touchable(task.fiducials, normals, poses[:1])
+    always = nominal & bench.touchable(task.fiducials, normals, poses[1:])
+    sentences = []
+    for can_be, where in (
+        (nominal, "where the head stands"),
+        (always | ~nominal, "in every trial"),
+    ):
+        missed = [label for label, can in zip(task.labels, can_be, strict=True) if not can]
+        if missed:
+            sentences.append(
+                f"{task.title}: the robot cannot touch {_listed(missed)} {where} with 5 mm "
+                "clearance; move them, or the head."
+            )
+    return sentences
+
+
+def _unreadable(skin: Skin, task: Task) -> list[str]:
+    if place_marks(skin, task.fiducials, task.labels).has_room:
+        return []
+    return [
+        f"{task.title}: there is no room for all numbers beside the arrows; spread the fiducials, "
+        "or touch them in another order."
+    ]
+
+
+def _wrong_complexity(bench: Workbench, task: Task) -> list[str]:
+    index = measured(bench, task)
+    if abs(index - task.complexity) <= COMPLEXITY_TOLERANCE:
+        return []
+    return [f"{task.title}: its complexity is {index:.2f}, not {task.complexity:.2f}."]
+
+
+def _listed(labels: list[str]) -> str:
+    return f"fiducial {labels[0]}" if len(labels) == 1 else f"fiducials {', '.join(labels)}"
