@@ -8,6 +8,7 @@ import time
 import numpy as np
 
 from rastrainer.igtl.client import Client
+from rastrainer.journal.journal_reader import read_journal
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 
 PATIENCE_S = 30.0
@@ -44,6 +45,8 @@ class Watch:
 
 
 def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_path):
+    (tmp_path / "records-config").mkdir()
+    (tmp_path / "records-config" / "preferences.json").write_text('{"fine": 5}')
     simulator = SimulatorWithGamepad(tmp_path / "records", "--view-port", "0", "--seed", "5")
     with simulator, Client(port=simulator.port) as client:
         watch = Watch(client)
@@ -71,4 +74,8 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         simulator.move(leftx=0.0)
         simulator.tap("start")
         watch.until(lambda state: state["phase"] == "paused")
-        assert simulator.stop()[0] == 0
+        assert simulator.stop() == (0, "")
+    (path,) = (tmp_path / "records").glob("*.journal")
+    reading = read_journal(path)
+    assert reading.header["settings"]["teleoperation"]["fine_speed"] == 0.005
+    assert {entry["operator"] for entry in reading.of_kind("input")} <= {"gamepad", ""}
