@@ -20,6 +20,7 @@ from rastrainer_simulator.loop_statistics import LoopStatistics, Punctuality
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.pending_answers import PendingAnswers
 from rastrainer_simulator.precise_clock import precise_timing, sleep_until
+from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.held_back import HeldBack
 from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
@@ -89,6 +90,7 @@ class ControlLoop:
         self._held = HeldBack(self._state.training)
         self._sticks = HANDS_OFF
         self._arrived: deque[Command] = deque()
+        self._displayed: deque[DisplayReport] = deque()
         self._answers = PendingAnswers()
         self._refused: str | None = None
         self._successor: tuple[Simulation, int] | None = None
@@ -162,6 +164,10 @@ class ControlLoop:
         """Take the sticks as they are from now on; the commands in it are ignored."""
         self._sticks = replace(sticks, commands=())
 
+    def note_display(self, report: DisplayReport) -> None:
+        """Have the trial's journal tell how a view draws it; the simulation takes no note."""
+        self._displayed.append(report)
+
     def submit(
         self, name: str, arguments: Mapping[str, Any] | None = None, sender: str = ""
     ) -> Future[Answer]:
@@ -212,6 +218,8 @@ class ControlLoop:
         if self._successor is not None:
             self._succeed(*self._successor)
         operator_input = replace(self._sticks, commands=self._commands())
+        while self._displayed:
+            self._recorder.note_display(self._displayed.popleft(), self._state)
         result = self._simulation.step(self._dt, operator_input)
         written = self._recorder.record(self._simulation, self._state, operator_input, result)
         self._state = result.state

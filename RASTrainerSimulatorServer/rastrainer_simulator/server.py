@@ -56,6 +56,7 @@ class ServerOptions:
         limits: what one client may cost.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
         has_views: whether views are served at all, and a trainee can operate.
+        has_network: whether views of other computers are served, too.
         has_gamepad: whether gamepads at this computer are read.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
         config: folder of the user's settings; None is the usual one.
@@ -72,6 +73,7 @@ class ServerOptions:
     limits: Limits = field(default_factory=Limits)
     view_port: int | None = None
     has_views: bool = True
+    has_network: bool = False
     has_gamepad: bool = True
     has_desktop: bool = False
     config: Path | None = None
@@ -197,6 +199,7 @@ class SimulatorServer:
             tell,
             self._options.view_port,
             self._options.robot_meshes,
+            self._config / "certificates" if self._options.has_network else None,
         )
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:

@@ -40,6 +40,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
     )
     parser.add_argument(
+        "--lan",
+        action="store_true",
+        help="serve browsers and headsets in the local network, too, by https with a certificate "
+        "made on this computer",
+    )
+    parser.add_argument(
         "--no-views", action="store_true", help="serve OpenIGTLink only, no window and no browser"
     )
     parser.add_argument(
@@ -99,6 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
         port=arguments.port,
         view_port=arguments.view_port,
         has_views=not arguments.no_views,
+        has_network=arguments.lan,
         has_gamepad=arguments.gamepad,
         has_desktop=arguments.desktop,
         config=arguments.config,
@@ -119,6 +126,8 @@ def _check(arguments: argparse.Namespace) -> None:
             raise InputError(f"{name} must be a number from 0 to 65535.")
     if arguments.no_views and arguments.view_port is not None:
         raise InputError("--view-port and --no-views exclude each other.")
+    if arguments.no_views and arguments.lan:
+        raise InputError("--lan and --no-views exclude each other.")
     if arguments.no_views and arguments.desktop:
         raise InputError("--desktop and --no-views exclude each other.")
     if not 0.0 < arguments.speed <= FASTEST:

@@ -22,6 +22,7 @@ TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000
 VERSIONS_LIMIT = 32
 MOTION_LIMIT = 100
+DISPLAY_LIMIT = 16
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,8 @@ class TrialRecord:
         versions: Name and version of each program and format that made the record.
         seed: Seed of the trial, where the simulator tells it.
         motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
+        display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
+            `droppedFrames`; empty where no view told it.
     """
 
     trial_id: str
@@ -76,6 +79,7 @@ class TrialRecord:
     versions: Mapping[str, str]
     seed: int | None = None
     motion: Mapping[str, float] = field(default_factory=dict)
+    display: Mapping[str, str | float] = field(default_factory=dict)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -111,6 +115,7 @@ class TrialRecord:
         json_object = {key: getattr(self, name) for key, name in _PYTHON_NAMES.items()}
         json_object["versions"] = dict(self.versions)
         json_object["motion"] = dict(self.motion)
+        json_object["display"] = dict(self.display)
         json_object["points"] = [
             {
                 "label": point.label,
@@ -172,6 +177,20 @@ def _motion(value: Any) -> dict[str, float]:
         raise ValueError(words) from None
 
 
+def _display(value: Any) -> dict[str, str | float]:
+    words = f"an object of at most {DISPLAY_LIMIT} names with texts or finite numbers"
+    if not isinstance(value, Mapping) or len(value) > DISPLAY_LIMIT:
+        raise ValueError(words)
+    check_text, check_number = protocol.text(), protocol.number(0, 1e9)
+    try:
+        return {
+            check_text(name): check_text(told) if isinstance(told, str) else check_number(told)
+            for name, told in value.items()
+        }
+    except ValueError:
+        raise ValueError(words) from None
+
+
 def _optional(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return lambda value: None if value is None else check(value)
 
@@ -228,6 +247,7 @@ _RECORD_KEYS = {
     "versions": Argument(_versions),
     "seed": Argument(_optional(protocol.whole_number(0, 2**63 - 1)), None),
     "motion": Argument(_motion, {}),
+    "display": Argument(_display, {}),
 }
 
 _PYTHON_NAMES = {
@@ -245,4 +265,5 @@ _PYTHON_NAMES = {
     "versions": "versions",
     "seed": "seed",
     "motion": "motion",
+    "display": "display",
 }

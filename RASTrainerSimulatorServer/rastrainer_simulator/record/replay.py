@@ -25,7 +25,7 @@ LONGEST_TRIAL_TICKS = 10_000_000
 """A journal that claims more (11 hours at 250 Hz) is not replayed."""
 SHORTEST_TICK_S, LONGEST_TICK_S = 1e-4, 0.1
 
-_NOT_SIMULATED = frozenset({"header", "stopped", "scored", "acknowledged"})
+_NOT_SIMULATED = frozenset({"header", "display", "stopped", "scored", "acknowledged"})
 _OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record"})
 
 

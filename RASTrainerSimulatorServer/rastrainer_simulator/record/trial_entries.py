@@ -13,6 +13,7 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
 from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.state import Event, EventKind, SimulationState, StartingPoint, StepResult
@@ -48,6 +49,7 @@ class TrialEntries:
         self._trajectory = hashlib.sha256()
         self._utc: dict[float, str] = {}
         self._recording = Recording()
+        self._display = DisplayUse()
         times = stamp(state.tick, state.sim_time)
         self.started_utc = times["utc"]
         self.pending: list[dict[str, Any]] = []
@@ -100,6 +102,11 @@ class TrialEntries:
         if is_sampled:
             self._append(_sample_entry(times, state))
         return record
+
+    def add_display(self, report: DisplayReport, state: SimulationState) -> None:
+        """Take note of how a view draws: it is recorded, but nothing follows from it."""
+        self._display.add(report)
+        self._append(report.entry() | stamp(state.tick, state.sim_time))
 
     def _append(self, entry: dict[str, Any]) -> None:
         self.pending.append(entry)
@@ -156,6 +163,7 @@ class TrialEntries:
             undone_touches=training.undone,
             versions=self.versions,
             motion=trial_motion(self._recording.trajectory()),
+            display=self._display.summary(),
         )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.stamps import file_stamp, stamp
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
@@ -82,6 +83,11 @@ class TrialRecorder:
             return self._hand_over(is_awaited=True)
         is_due = self._entries.pending and result.state.tick % FLUSH_TICKS == 0
         return self._hand_over(is_awaited=False) if is_due and not self._is_stuck else None
+
+    def note_display(self, report: DisplayReport, state: SimulationState) -> None:
+        """Take note of how a view draws the trial, if one is open."""
+        if self._entries is not None and self._registering is None:
+            self._entries.add_display(report, state)
 
     def stop(self, state: SimulationState) -> None:
         """Write what is left; a trial that is still open is marked as stopped."""

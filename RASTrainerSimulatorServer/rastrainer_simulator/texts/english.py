@@ -272,6 +272,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "gamepad.+lefttrigger": "LT",
         "gamepad.-righttrigger": "RT released",
         "gamepad.+righttrigger": "RT",
+        # Where a headset's controllers differ from a gamepad.
+        "headset.fine": "Trigger",
+        "headset.menu": "X",
+        "headset.pause": "X",
+        "headset.up": "Stick up",
+        "headset.down": "Stick down",
         "keyboard.Space": "Space",
         "keyboard.Enter": "Enter",
         "keyboard.NumpadEnter": "Enter on the number pad",

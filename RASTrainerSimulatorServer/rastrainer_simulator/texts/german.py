@@ -284,6 +284,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "gamepad.+lefttrigger": "LT",
         "gamepad.-righttrigger": "RT losgelassen",
         "gamepad.+righttrigger": "RT",
+        # Where a headset's controllers differ from a gamepad.
+        "headset.fine": "Trigger",
+        "headset.menu": "X",
+        "headset.pause": "X",
+        "headset.up": "Stick hoch",
+        "headset.down": "Stick runter",
         "keyboard.Space": "Leertaste",
         "keyboard.Enter": "Eingabe",
         "keyboard.NumpadEnter": "Eingabe am Ziffernblock",

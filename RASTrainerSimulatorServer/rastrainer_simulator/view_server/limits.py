@@ -17,6 +17,7 @@ class ViewLimits:
         messages_per_s: that a view may send on average, and at most that many at once.
         first_message_s: time that a connection has for its first request, and a view for its hello.
         silent_s: after which what a silent view holds is released.
+        lost_s: after which a view that told its frames every second counts as not seen.
         state_hz: how often views are told what moves.
         waiting_events: events that may wait for a view; one more drops it.
         buffer_bytes: what is handed to the operating system ahead of a view that reads slowly.
@@ -30,6 +31,7 @@ class ViewLimits:
     messages_per_s: float = 500.0
     first_message_s: float = 5.0
     silent_s: float = 0.5
+    lost_s: float = 3.0
     state_hz: float = 60.0
     waiting_events: int = 256
     buffer_bytes: int = 32 * 1024

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
+import socket
 from collections.abc import Callable
 from pathlib import Path
 
@@ -23,8 +25,12 @@ async def open_views(
     tell: Callable[[str], None],
     port: int | None,
     robot_meshes: Path | None,
+    certificates: Path | None = None,
 ) -> ViewServer:
     """Return a server that listens on this computer; `tell` is given what people must know.
+
+    With a folder for certificates it listens to the local network, too, by TLS: on the next port
+    or, where that is taken, any free one.
 
     `port` 0 is any free one, None the usual one or, where that is taken, any free one. A key in
     the environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
@@ -46,7 +52,28 @@ async def open_views(
     found = await _listen(server, port)
     where = f"http://{DEFAULT_HOST}:{found}"
     tell(f"serves views on {where}, pairing code {server.code.code}")
+    if certificates is not None:
+        await _listen_in_network(server, found, certificates, tell)
     return server
+
+
+async def _listen_in_network(
+    server: ViewServer, local: int, certificates: Path, tell: Callable[[str], None]
+) -> None:
+    from rastrainer_simulator.view_server.certificate import own_addresses, tls_context
+
+    tls = await asyncio.to_thread(tls_context, certificates)
+    try:
+        found = await server.listen_in_network(local + 1, tls)
+    except InputError:
+        found = await server.listen_in_network(0, tls)
+    addresses = [address for address in own_addresses() if ":" not in address]
+    where = " or ".join(f"https://{name}:{found}" for name in addresses or [socket.gethostname()])
+    tell(f"serves the local network on {where}; the browser warns of a certificate made here")
+    tell(
+        f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "
+        f"http://localhost:{local} in its browser"
+    )
 
 
 async def _listen(server: ViewServer, port: int | None) -> int:

@@ -46,6 +46,7 @@ class View:
         self._rate = RateLimit(limits.messages_per_s)
         self._clock = asyncio.get_running_loop().time
         self._last_message = self._clock()
+        self._has_told_frames = False
         self._take = self._takers()
 
     async def serve(self) -> None:
@@ -65,6 +66,13 @@ class View:
         """Let go of what is held by a view that has not been heard for `silent_s`."""
         if self.held.is_anything_held and self._clock() - self._last_message > silent_s:
             self.held.release()
+
+    def has_fallen_silent(self, lost_s: float) -> bool:
+        """Return, once, whether a view that tells its frames has not been heard for `lost_s`."""
+        is_silent = self._has_told_frames and self._clock() - self._last_message > lost_s
+        if is_silent:
+            self._has_told_frames = False
+        return is_silent
 
     async def close(self, message: str) -> None:
         """End it because the simulator ends."""
@@ -107,10 +115,14 @@ class View:
             messages.PRESS: to_desk(desk.on_press),
             messages.ITEM: to_desk(desk.on_item),
             messages.TEXT: to_desk(desk.on_text),
-            messages.FRAMES: lambda *values: desk.on_frames(view, Frames(*values)),
+            messages.FRAMES: lambda *values: self._take_frames(Frames(*values)),
             messages.VISIBILITY: to_desk(desk.on_visibility),
             messages.ALIVE: nothing,
         }
+
+    def _take_frames(self, frames: Frames) -> None:
+        self._has_told_frames = True
+        self._desk.on_frames(self.number, frames)
 
     async def _close(self, code: int, reason: str) -> None:
         # The protocol has room for 123 bytes.

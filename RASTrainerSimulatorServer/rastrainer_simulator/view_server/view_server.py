@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import socket
+import ssl
 from collections.abc import Callable
 from pathlib import Path
 
@@ -79,7 +80,7 @@ class ViewServer:
             keepalive_timeout=KEEP_ALIVE_S,
             shutdown_timeout=SHUTDOWN_S,
         )
-        self._server: asyncio.Server | None = None
+        self._servers: list[asyncio.Server] = []
         self._unsubscribe: Callable[[], None] = lambda: None
 
     async def listen(self, host: str, port: int) -> int:
@@ -88,25 +89,37 @@ class ViewServer:
         Raises:
             InputError: the address cannot be listened on.
         """
-        loop = asyncio.get_running_loop()
-        try:
-            self._server = await loop.create_server(self._connections, host, port)
-        except (OSError, OverflowError) as error:
-            raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
+        self.port = await self._open(host, port, None)
         await self._runner.setup()
         self._connections.server = self._runner.server
-        feed = StateFeed(self._views.is_due, self._views.tell, loop)
+        feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
         self._unsubscribe = self._control_loop.subscribe(feed)
-        self.port = self._server.sockets[0].getsockname()[1]
         return self.port
+
+    async def listen_in_network(self, port: int, tls: ssl.SSLContext) -> int:
+        """Listen to other computers, too, by TLS only; return on which port.
+
+        Raises:
+            InputError: the port cannot be listened on.
+        """
+        return await self._open("0.0.0.0", port, tls)
 
     async def close(self) -> None:
         """Send the views away and stop listening."""
         self._unsubscribe()
-        if self._server is not None:
-            self._server.close()
+        for server in self._servers:
+            server.close()
         await self._views.close()
         await self._runner.cleanup()
+
+    async def _open(self, host: str, port: int, tls: ssl.SSLContext | None) -> int:
+        loop = asyncio.get_running_loop()
+        try:
+            server = await loop.create_server(self._connections, host, port, ssl=tls)
+        except (OSError, OverflowError) as error:
+            raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
+        self._servers.append(server)
+        return server.sockets[0].getsockname()[1]
 
     def _application(self) -> web.Application:
         gate = Gate(self.sessions, self.code, self._connections.note)

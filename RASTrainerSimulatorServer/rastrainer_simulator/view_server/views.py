@@ -148,3 +148,5 @@ class Views:
             await asyncio.sleep(_WATCH_PERIOD_S)
             for view in tuple(self._views.values()):
                 view.release_if_silent(self._limits.silent_s)
+                if view.has_fallen_silent(self._limits.lost_s):
+                    self._desk.on_visibility(view.number, False)

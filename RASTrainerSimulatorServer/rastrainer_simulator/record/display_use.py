@@ -1,0 +1,59 @@
+"""What the trainee looked at during a trial, and how smoothly it was drawn."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class DisplayReport:
+    """What a view tells of the last second.
+
+    Attributes:
+        view: "desktop", "page" or "headset".
+        device: model of the headset or name of the browser; "" where unknown.
+        refresh_hz: of the display; 0 where unknown.
+        shown: pictures.
+        dropped: pictures that the display had to do without.
+    """
+
+    view: str
+    device: str
+    refresh_hz: float
+    shown: int
+    dropped: int
+
+    def entry(self) -> dict[str, Any]:
+        """Return what goes into the journal, without its times."""
+        values = asdict(self)
+        values["refreshHz"] = values.pop("refresh_hz")
+        return {"kind": "display", **values}
+
+
+class DisplayUse:
+    """Adds up the reports of one trial."""
+
+    def __init__(self) -> None:
+        self._last: DisplayReport | None = None
+        self._shown = 0
+        self._dropped = 0
+
+    def add(self, report: DisplayReport) -> None:
+        """Take a report."""
+        self._last = report
+        self._shown += report.shown
+        self._dropped += report.dropped
+
+    def summary(self) -> dict[str, str | float]:
+        """Return `display` of the trial's record: the last view, and all frames."""
+        if self._last is None:
+            return {}
+        device = {"device": self._last.device} if self._last.device else {}
+        return {
+            "kind": self._last.view,
+            **device,
+            "refreshHz": self._last.refresh_hz,
+            "shownFrames": self._shown,
+            "droppedFrames": self._dropped,
+        }
