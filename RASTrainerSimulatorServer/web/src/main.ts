@@ -192,4 +192,6 @@ function browserName(): string {
   return /(Firefox|Edg|OPR|Chrome|Safari)\/\d+/.exec(navigator.userAgent)?.[0] ?? "";
 }
 
-void new Page().begin();
+const page = new Page();
+(window as unknown as { page: Page }).page = page;
+void page.begin();

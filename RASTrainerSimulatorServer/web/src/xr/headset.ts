@@ -39,8 +39,9 @@ export class Headset {
     private readonly leave: () => void,
   ) {
     const { scene, renderer } = stage;
-    scene.add(this.camera, this.boards.room);
-    this.hands = new Hands(renderer.xr, scene, this.boards.pointable, connection, this.grab, {
+    this.placement.rig.add(this.camera);
+    scene.add(this.placement.rig, this.boards.room);
+    this.hands = new Hands(renderer.xr, this.placement.rig, this.boards.pointable, connection, this.grab, {
       onChosen: (name) => this.choose(name),
       onHovered: (name) => this.boards.hover(name),
     });
@@ -69,7 +70,7 @@ export class Headset {
   end(): void {
     this.boards.dispose();
     this.hands.release();
-    this.camera.removeFromParent();
+    this.placement.rig.removeFromParent();
     this.stage.renderer.xr.enabled = false;
     this.sounds.setSpatial(false);
   }
@@ -102,7 +103,6 @@ export class Headset {
     this.placement.take(camera);
     this.boards.arrange(this.placement);
     this.grab.take(model.node("tool"), model.news, state.camera);
-    this.applySpace();
   }
 
   /** Draw for both eyes, `now` in s. */
@@ -126,19 +126,14 @@ export class Headset {
     if (!pose) return;
     this.mustRecenter = false;
     this.placement.recenter(pose);
-    this.applySpace();
-  }
-
-  private applySpace(): void {
-    const space = this.base === null ? null : this.placement.space(this.base);
-    if (space !== null) this.stage.renderer.xr.setReferenceSpace(space);
+    this.boards.arrange(this.placement);
   }
 
   private hear(model: SceneModel): void {
     const { place, forward, up } = this.ears;
     this.camera.getWorldDirection(forward);
     this.camera.getWorldPosition(place);
-    up.set(0, 1, 0).applyQuaternion(this.camera.quaternion);
+    up.setFromMatrixColumn(this.camera.matrixWorld, 1);
     model.node("tool")?.getWorldPosition(this.tip);
     this.sounds.locate(place, forward, up, this.tip);
   }
@@ -152,8 +147,7 @@ export class Headset {
       case "lower":
         this.placement.raise(name.endsWith("higher") ? 1 : -1);
         this.boards.arrange(this.placement);
-        this.applySpace();
-        break;
+            break;
       case "grab":
         this.grab.isAllowed = !this.grab.isAllowed;
         this.boards.setGrab(this.grab.isAllowed);

@@ -1,6 +1,6 @@
 /** Where the trainee stands or sits in the room, and how high the table is for them. */
 
-import { Euler, Quaternion, Vector3 } from "three";
+import { Euler, Group, Quaternion, Vector3 } from "three";
 
 import type { CameraPlace } from "../messages";
 import { yUp } from "../viewpoint";
@@ -13,6 +13,8 @@ const MOST_M = 0.45;
 const STORED = "rastrainer-table";
 
 export class Placement {
+  /** The headset's own space: what is tracked is a child of it. */
+  readonly rig = new Group();
   /** Where the eyes come to, in three's frame. */
   readonly eyes = new Vector3();
   /** Horizontal, toward the head. */
@@ -21,7 +23,6 @@ export class Placement {
   private readonly focus = new Vector3();
   private readonly seen = new Vector3();
   private seenYaw = 0;
-  private isSeen = false;
 
   /** Stand behind the close-up camera, looking where it looks. */
   take(camera: CameraPlace): void {
@@ -38,32 +39,23 @@ export class Placement {
     this.settle();
   }
 
-  /** Call where the eyes are now, in the headset's own space, the place to stand. */
+  /** Have the eyes, which the headset sees in such a pose, come to where they belong. */
   recenter(pose: XRViewerPose): void {
     const { position, orientation } = pose.transform;
     this.seen.set(position.x, position.y, position.z);
     turn.set(orientation.x, orientation.y, orientation.z, orientation.w);
     this.seenYaw = euler.setFromQuaternion(turn, "YXZ").y;
-    this.isSeen = true;
-  }
-
-  /** Return the space in which the eyes are where they belong; null before the first look. */
-  space(base: XRReferenceSpace): XRReferenceSpace | null {
-    if (!this.isSeen) return null;
-    const yaw = this.seenYaw - Math.atan2(-this.forward.x, -this.forward.z);
-    turn.setFromEuler(euler.set(0, yaw, 0, "YXZ"));
-    const origin = point.copy(this.eyes).applyQuaternion(turn).negate().add(this.seen);
-    const { x, y, z, w } = turn;
-    const place = { x: origin.x, y: origin.y, z: origin.z };
-    return base.getOffsetReferenceSpace(new XRRigidTransform(place, { x, y, z, w }));
+    this.settle();
   }
 
   private settle(): void {
     this.eyes.copy(this.focus).addScaledVector(this.forward, -AWAY_M);
     this.eyes.y += EYES_ABOVE_M - this.rise;
+    const yaw = Math.atan2(-this.forward.x, -this.forward.z) - this.seenYaw;
+    this.rig.quaternion.setFromEuler(euler.set(0, yaw, 0, "YXZ"));
+    this.rig.position.copy(this.seen).applyQuaternion(this.rig.quaternion).negate().add(this.eyes);
   }
 }
 
 const turn = new Quaternion();
 const euler = new Euler();
-const point = new Vector3();
