@@ -16,7 +16,6 @@ from rastrainer.slicer.placing import jumpTo, startPlacing
 from rastrainer.slicer.plan_desk import PlanDesk
 from rastrainer.slicer.registration_desk import RegistrationDesk
 from rastrainer.slicer.scenario import showScenario, showTask
-from rastrainer.target_error import target_error
 from rastrainer.tasks import LABELS
 from rastrainer.trial_results import RevealedTruth
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
@@ -83,7 +82,7 @@ def test_a_target_is_mapped_into_world_with_the_error_to_expect_there(room):
     np.testing.assert_allclose(transforms.apply(shown.matrix, plan.targetWorld[None])[0], TUMOR)
     there = transforms.apply(room.head_to_world, TUMOR[None])[0]
     assert np.linalg.norm(plan.targetWorld - there) < 1.5
-    assert plan.expected.expected_mm == target_error(shown, TUMOR).expected_mm
+    assert plan.expected == room.registration.targetError(shown, TUMOR)
     assert plan.entry is None
 
 

@@ -5,6 +5,7 @@ import pytest
 import slicer
 
 from rastrainer import transforms
+from rastrainer.localization_error import error_along_surface
 from rastrainer.registration import AFFINE, KINDS, RIGID, register
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.head_colors import SCALARS
@@ -19,7 +20,7 @@ from rastrainer.slicer.registration_nodes import (
 )
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.scene import Role, findNode
-from rastrainer.target_error import expected_tre, target_error
+from rastrainer.target_error import target_error
 from rastrainer.tasks import LABELS
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
@@ -32,10 +33,9 @@ class Table:
         self.scene, self.scenario = scene, scenario
         showScenario(scene, scenario)
         self.fixed = showTask(scene, scenario, "task-1")
-        self.touched = transforms.apply(
-            scenario.perturbed_head_to_world(3),
-            scenario.task("task-1").fiducials + np.random.default_rng(3).normal(0.0, 0.6, (15, 3)),
-        )
+        noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
+        self.touched_on_mri = scenario.task("task-1").fiducials + noise
+        self.touched = transforms.apply(scenario.perturbed_head_to_world(3), self.touched_on_mri)
         self.desk = RegistrationDesk(scene)
         self.changes = []
         self.desk.changed.connect(lambda: self.changes.append(self.desk.comparison))
@@ -65,9 +65,11 @@ def test_three_fits_stand_side_by_side_with_the_error_to_expect(table):
     for kind, fit in fits.items():
         again = register(table.touched, table.scenario.task("task-1").fiducials, kind, LABELS)
         assert fit.fre_mm == pytest.approx(again.fre_mm, abs=1e-5)
-        error = target_error(again, table.scenario.target_position)
+        normals = again.fixed_mm / np.linalg.norm(again.fixed_mm, axis=1, keepdims=True)
+        localization = error_along_surface(again, normals)
+        error = target_error(again, table.scenario.target_position, localization)
         assert table.desk.comparison.errors[kind].expected_mm == pytest.approx(
-            error.expected_mm, abs=1e-5
+            error.expected_mm, rel=0.02
         )
     assert table.node(Role.FITS).GetNumberOfRows() == 3
     assert table.node(Role.RESIDUALS).GetNumberOfRows() == 15
@@ -197,7 +199,9 @@ def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
     head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
     values = slicer.util.arrayFromModelPointData(head, SCALARS)
     points = slicer.util.arrayFromModelPoints(head)
-    np.testing.assert_allclose(values, expected_tre(table.desk.shown, points), atol=1e-9)
+    there = table.desk.targetError(table.desk.shown, points[100])
+    assert values[100] == pytest.approx(there.expected_mm)
+    assert len(values) == len(points)
     display = head.GetDisplayNode()
     assert display.GetScalarVisibility()
     low, high = display.GetScalarRange()
@@ -218,6 +222,13 @@ def test_bars_beside_the_head_say_which_color_is_how_many_mm(table):
     assert not titles["Expected TRE (mm)"].GetVisibility()
     table.touch(table.touched[:2])
     assert not titles["Residual (mm)"].GetVisibility()
+
+
+def test_points_that_are_not_on_the_head_have_an_error_alike_in_all_directions(table):
+    setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
+    table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
+    shown, position = table.desk.shown, table.scenario.target_position
+    assert table.desk.targetError(shown, position) == target_error(shown, position)
 
 
 def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):

@@ -19,6 +19,8 @@ import sys
 def main():
     print("RASTrainer simulator ready on 127.0.0.1:" + sys.argv[sys.argv.index("--port") + 1])
     sys.stdout.flush()
+    if "--close" in sys.argv:
+        return 0
     if "--end" in sys.argv:
         print("The port is taken.")
         return 3
@@ -89,6 +91,14 @@ def test_a_simulator_that_ends_by_itself_says_why(setup, wheels):
     program.start(setup.command(["simulator", "--port", "1", "--end"]))
     wait_until(lambda: program.state is ProgramState.FAILED, program.process, 20.0)
     assert program.sentence.endswith("(status 3): The port is taken.")
+
+
+def test_a_simulator_whose_window_is_closed_has_simply_ended(setup, wheels):
+    run_setup(setup, SetupSource("rastrainer-simulator", wheels))
+    program = SimulatorProgram()
+    program.start(setup.command(["simulator", "--port", "1", "--close"]))
+    wait_until(lambda: not program.isRunning, program.process, 20.0)
+    assert (program.state, program.sentence) == (ProgramState.STOPPED, "The simulator has ended.")
 
 
 def test_a_set_up_that_fails_leaves_the_old_one_and_says_what_to_do(setup, wheels):

@@ -10,6 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setUsable
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.placing import jumpTo
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
 
@@ -43,7 +44,9 @@ class ScenarioPanel:
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
         with slicer.util.tryWithErrorDisplay(_("The scenario cannot be shown."), waitCursor=True):
-            self._desk.show(chosenData(self._ui.scenarioComboBox), self._session.task)
+            name = chosenData(self._ui.scenarioComboBox)
+            self._desk.show(name, self._session.task)
+            jumpTo(slicer.mrmlScene, self._desk.find(name).target_position)
             slicer.util.resetThreeDViews()
 
     def loadIntoSimulator(self) -> None:

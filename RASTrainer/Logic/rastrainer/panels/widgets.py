@@ -8,8 +8,8 @@ from typing import Any
 import qt
 
 HIGHEST_TABLE = 270
-FRAME = 6
-"""Pixels: of a table that need not scroll, and of what is around its rows."""
+FRAME, SCROLL_BAR = 6, 16
+"""Pixels: of a table that need not scroll, of what is around its rows, of a bar below them."""
 
 GREEN, YELLOW, RED, GRAY = "#2e9e44", "#c98a00", "#d03030", "#888888"
 
@@ -75,8 +75,10 @@ def setChecked(box: Any, checked: bool) -> None:
 def _fitHeight(table: Any) -> None:
     """Make a table as high as its rows, up to a limit from which on it scrolls."""
     rows = sum(table.rowHeight(row) for row in range(table.rowCount))
+    columns = sum(table.columnWidth(column) for column in range(table.columnCount))
+    bar = SCROLL_BAR if columns > table.viewport().width else 0
     header = table.horizontalHeader().height
-    table.setFixedHeight(min(HIGHEST_TABLE, header + rows + FRAME))
+    table.setFixedHeight(min(HIGHEST_TABLE, header + rows + bar + FRAME))
 
 
 def millimeters(value: float | None, digits: int = 2) -> str:

@@ -9,6 +9,7 @@ import slicer
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
+from rastrainer.localization_error import LocalizationError
 from rastrainer.registration import Registration
 from rastrainer.slicer.color_legend import LEFT, hideLegend, showLegend
 from rastrainer.slicer.residual_glyphs import COLOR_TABLE_ID
@@ -17,14 +18,21 @@ from rastrainer.target_error import expected_tre
 SCALARS = "expected TRE (mm)"
 
 
-def colorHead(model: Any, registration: Registration) -> tuple[float, float]:
+def colorHead(
+    model: Any, registration: Registration, localization: LocalizationError | None = None
+) -> tuple[float, float]:
     """Color a `vtkMRMLModelNode` by the expected TRE, and return least and largest of it, mm.
+
+    Args:
+        model: the head.
+        registration: whose error is shown.
+        localization: of the touches; alike in all directions where left out.
 
     Raises:
         InputError: the registration has too few points to tell.
     """
     points = slicer.util.arrayFromModelPoints(model).astype(float)
-    errors = expected_tre(registration, points)
+    errors = expected_tre(registration, points, localization)
     scalars = numpy_to_vtk(errors, deep=True)
     scalars.SetName(SCALARS)
     model.GetPolyData().GetPointData().AddArray(scalars)

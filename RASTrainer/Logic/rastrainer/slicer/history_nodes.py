@@ -70,6 +70,8 @@ def _series(
     node.SetXColumnName(TRIAL_COLUMN)
     node.SetYColumnName(column)
     node.SetColor(color)
-    node.SetLineStyle(node.LineStyleSolid)
+    # A line through one point is an error to VTK.
+    hasLine = table.GetNumberOfRows() > 1
+    node.SetLineStyle(node.LineStyleSolid if hasLine else node.LineStyleNone)
     node.SetMarkerStyle(node.MarkerStyleCircle)
     return node

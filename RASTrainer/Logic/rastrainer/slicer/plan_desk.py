@@ -18,7 +18,7 @@ from rastrainer.slicer.scene import Role, findOrAddNode
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.trial_desk import ScoredTrial
-from rastrainer.target_error import TargetError, target_error
+from rastrainer.target_error import TargetError
 
 TARGET_COLOR = (0.85, 0.2, 0.55)
 LONGEST_NAME = 64
@@ -101,7 +101,7 @@ class PlanDesk:
             entry=entry,
             targetWorld=transforms.apply(toWorld, target[None])[0],
             entryWorld=None if entry is None else transforms.apply(toWorld, entry[None])[0],
-            expected=_expected(shown, target),
+            expected=self._expected(shown, target),
         )
 
     def send(self, node: Any | None) -> None:
@@ -149,6 +149,12 @@ class PlanDesk:
             self.trueErrorMm = float(np.linalg.norm(self._sent.targetWorld - there))
         self.changed.emit()
 
+    def _expected(self, shown: Registration, target: np.ndarray) -> TargetError | None:
+        try:
+            return self._registration.targetError(shown, target)
+        except InputError:
+            return None
+
     def _fresh(self, className: str, role: str, name: str) -> Any:
         node = findOrAddNode(self._scene, className, role, name)
         node.RemoveAllControlPoints()
@@ -170,10 +176,3 @@ def _placedPoints(node: Any | None) -> np.ndarray:
     if not defined:
         raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
     return np.array(defined, dtype=float)
-
-
-def _expected(registration: Registration, target: np.ndarray) -> TargetError | None:
-    try:
-        return target_error(registration, target)
-    except InputError:
-        return None

@@ -20,6 +20,7 @@ from rastrainer.slicer.residual_glyphs import clearResidualArrows, showResidualA
 from rastrainer.slicer.result_tables import showFits, showResiduals
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.skin_normals import SkinNormals
 from rastrainer.target_error import TargetError, target_error
 
 
@@ -68,6 +69,7 @@ class RegistrationDesk:
         self._targetId = ""
         self._history: list[Choices] = [Choices()]
         self._seen: tuple = ()
+        self._normals = SkinNormals()
 
     @property
     def choices(self) -> Choices:
@@ -184,8 +186,16 @@ class RegistrationDesk:
         for kind, fit in fits.items():
             with contextlib.suppress(InputError):
                 if position is not None:
-                    errors[kind] = target_error(fit, position)
+                    errors[kind] = self.targetError(fit, position)
         return Comparison(pairs, fits, errors, remedies(fits[RIGID], self.choices))
+
+    def targetError(self, fit: Registration, position: np.ndarray) -> TargetError:
+        """Return the error to expect with a fit at a place, (3,) float, RAS mm.
+
+        Raises:
+            InputError: the fit has too few points to tell.
+        """
+        return target_error(fit, position, self._normals.errorOnSkin(self._head(), fit))
 
     def targetPosition(self) -> np.ndarray | None:
         """Return the target, (3,) float, RAS mm; None where there is none."""
@@ -206,14 +216,17 @@ class RegistrationDesk:
         self._colorHead()
 
     def _colorHead(self) -> None:
-        head = findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+        head = self._head()
         if head is None or head.GetPolyData() is None:
             return
         if self.isHeadColored and self.shown is not None:
             with contextlib.suppress(InputError):
-                colorHead(head, self.shown)
+                colorHead(head, self.shown, self._normals.errorOnSkin(head, self.shown))
                 return
         uncolorHead(head)
+
+    def _head(self) -> Any | None:
+        return findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
 
     def _forgetChoices(self) -> None:
         self._history = [Choices()]

@@ -74,15 +74,20 @@ class SimulatorProgram:
             return
         status = self._child.exitStatus
         self._handOnLines()
-        if status is not None:
-            self._child = None
-            reason = self._lastLine or _("it said nothing")
-            self._change(
-                ProgramState.FAILED,
-                _("The simulator ended by itself (status {status}): {reason}").format(
-                    status=status, reason=reason
-                ),
-            )
+        if status is None:
+            return
+        self._child = None
+        if status == 0:
+            # As when the trainee's window is closed.
+            self._change(ProgramState.STOPPED, _("The simulator has ended."))
+            return
+        reason = self._lastLine or _("it said nothing")
+        self._change(
+            ProgramState.FAILED,
+            _("The simulator ended by itself (status {status}): {reason}").format(
+                status=status, reason=reason
+            ),
+        )
 
     def _handOnLines(self) -> None:
         for line in self._child.takeLines():
