@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 from string import Formatter
 
 import pytest
@@ -50,3 +52,9 @@ def test_a_sentence_of_the_simulation_is_said_again_in_another_language():
 
 def test_a_value_with_braces_is_filled_in_as_it_is():
     assert Texts().say("start", trainee="{point} {0}", point="1") == "{point} {0}, touch point 1."
+
+
+def test_a_sentence_can_be_copied_and_sent_to_another_process():
+    said = Texts().say("start", trainee="P01", point="1")
+    for copied in (copy.copy(said), copy.deepcopy(said), pickle.loads(pickle.dumps(said))):
+        assert (copied, copied.key, copied.values) == (said, said.key, said.values)

@@ -10,36 +10,31 @@ from rastrainer.protocol import check_arguments
 from rastrainer_simulator.state import Answer
 
 Submit = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
-Then = Callable[[Answer], None]
 
 
 class Commands:
-    """Submits commands and hands each answer on when it has come."""
+    """Submits commands, and tells of those that were refused once the answer has come."""
 
     def __init__(self, submit: Submit, refused: Callable[[str, str], None]) -> None:
         """Prepare; `refused` is told a command's name and the sentence that refuses it."""
         self._submit = submit
         self._refused = refused
-        self._waiting: list[tuple[str, Future[Answer], Then | None]] = []
+        self._waiting: list[tuple[str, Future[Answer]]] = []
 
-    def do(
-        self, name: str, sender: str, arguments: Mapping[str, Any], then: Then | None = None
-    ) -> None:
-        """Have a command carried out; `then` is called with the answer if it was.
+    def do(self, name: str, sender: str, arguments: Mapping[str, Any]) -> None:
+        """Have a command carried out.
 
         Raises:
             InputError: an argument is wrong.
         """
         future = self._submit(name, check_arguments(name, arguments), sender)
-        self._waiting.append((name, future, then))
+        self._waiting.append((name, future))
 
     def poll(self) -> None:
-        """Hand on the answers that have come."""
-        answered = [each for each in self._waiting if each[1].done()]
-        self._waiting = [each for each in self._waiting if not each[1].done()]
-        for name, future, then in answered:
-            answer = future.result()
-            if not answer.ok:
-                self._refused(name, answer.message)
-            elif then is not None:
-                then(answer)
+        """Look at the answers that have come."""
+        asked, self._waiting = self._waiting, []
+        for name, future in asked:
+            if not future.done():
+                self._waiting.append((name, future))
+            elif not future.result().ok:
+                self._refused(name, future.result().message)

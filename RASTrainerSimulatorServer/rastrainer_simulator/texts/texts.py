@@ -30,6 +30,10 @@ class Said(str):
         said.values = values
         return said
 
+    def __getnewargs__(self) -> tuple[str, str, Mapping[str, object]]:
+        """Return what a copy is made from, such as one for another process."""
+        return str(self), self.key, self.values
+
     def __deepcopy__(self, _memo: object) -> Said:
         """Stay the same object, as any text does where a screen is turned into JSON."""
         return self
