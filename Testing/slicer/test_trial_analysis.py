@@ -2,6 +2,7 @@
 
 import json
 import uuid
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.scoring import ScoreReference
 from rastrainer.trial_analysis import analyze_trial
 from rastrainer.trial_files import read_trials
 from rastrainer.trial_record import TrialRecord
@@ -66,6 +68,23 @@ def test_ctps_compares_with_the_published_trials_of_the_same_mode(scenario, reco
 
 def test_without_a_cohort_there_is_no_ctps(scenario, record):
     assert analyze_trial(record, scenario).published_score is None
+
+
+def test_the_mode_plays_no_part_and_the_protocols_references_count(scenario, record):
+    plain = analyze_trial(record, scenario)
+    assert analyze_trial(replace(record, mode="hmd"), scenario).score == plain.score
+    strict = {record.task: ScoreReference(20.0, 0.1, 0.5)}
+    assert analyze_trial(record, scenario, references=strict).score.score < plain.score.score
+    others = {"task-5": ScoreReference(20.0, 0.1, 0.5)}
+    assert analyze_trial(record, scenario, references=others).score == plain.score
+
+
+def test_the_trainee_is_told_which_touches_hurt_and_where_on_the_skin(scenario, record):
+    feedback = analyze_trial(record, scenario).feedback
+    assert [touch.label for touch in feedback.touches] == list(record.labels)
+    for touch in feedback.touches:
+        assert touch.depth_mm**2 + touch.aside_mm**2 == pytest.approx(touch.residual_mm**2)
+    assert feedback.sentences[0].startswith("Score ")
 
 
 def test_a_task_that_the_scenario_lacks_gets_a_sentence(scenario, make_record):

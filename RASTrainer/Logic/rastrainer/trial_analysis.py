@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from rastrainer import ctps
 from rastrainer.errors import InputError
+from rastrainer.feedback.trial_feedback import TrialFeedback, trial_feedback
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.localization_error import error_along_surface
 from rastrainer.point_list import PointList, pair
@@ -45,6 +46,7 @@ class TrialAnalysis:
         target_errors: by kind, the error to expect at the target.
         score: ours, of the rigid registration.
         published_score: CTPS of the rigid registration; None where no cohort was given.
+        feedback: what the trainee is told of this trial alone.
     """
 
     record: TrialRecord
@@ -53,6 +55,7 @@ class TrialAnalysis:
     target_errors: Mapping[str, TargetError]
     score: TrialScore
     published_score: PublishedScore | None
+    feedback: TrialFeedback
 
     @property
     def rigid(self) -> Registration:
@@ -98,13 +101,15 @@ def analyze_trial(
         for kind, fit in fits.items()
     }
     reference = (references or {}).get(record.task) or task_reference(record.task)
+    score = score_trial(record.completion_time_s, errors[RIGID].expected_mm, reference)
     return TrialAnalysis(
         record=record,
         target_name=scenario.target_name,
         fits=fits,
         target_errors=errors,
-        score=score_trial(record.completion_time_s, errors[RIGID].expected_mm, reference),
+        score=score,
         published_score=_published_score(record, fits[RIGID].fre_mm, cohort),
+        feedback=trial_feedback(score, fits[RIGID], normals, record.motion),
     )
 
 

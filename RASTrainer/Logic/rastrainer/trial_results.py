@@ -69,6 +69,8 @@ def results_json(analysis: TrialAnalysis, truth: RevealedTruth | None = None) ->
         },
         "truth": None if truth is None else _truth_json(truth, analysis.expected_tre),
         "score": analysis.score.to_json(),
+        "feedback": list(analysis.feedback.sentences),
+        "motion": dict(record.motion),
         "ctps": None if analysis.published_score is None else _ctps_json(analysis.published_score),
     }
 

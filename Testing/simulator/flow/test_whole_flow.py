@@ -12,7 +12,11 @@ SCORE = {
     "freMm": 1.25,
     "expectedTreMm": 1.5,
     "score": 81.0,
-    "details": {"ctps": 62.5, "warnings": ["Point 3 is far off."]},
+    "details": {
+        "ctps": 62.5,
+        "warnings": ["Point 3 is far off."],
+        "feedback": ["Hold still before you touch.", 7],
+    },
 }
 
 
@@ -47,7 +51,7 @@ def train_and_look_at_the_result(trainee, outside):
     assert trainee.submit("TrialScored", trialId=training.trial_id, **SCORE).ok
     trainee.until_menu("result")
     assert trainee.menu.facts[0].value == "81 / 100"
-    assert trainee.menu.paragraphs == ("Point 3 is far off.",)
+    assert trainee.menu.paragraphs == ("Point 3 is far off.", "Hold still before you touch.")
     trainee.choose("next")
     trainee.until_menu("experiment")
     assert trainee.menu.focus == "task-2"

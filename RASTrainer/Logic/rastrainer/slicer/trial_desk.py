@@ -193,5 +193,9 @@ def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
             "accuracyDesirability": analysis.score.accuracy_desirability,
             "ctps": None if published is None else published.published,
             "warnings": [warning.message for warning in analysis.rigid.warnings],
+            "feedback": [
+                *analysis.feedback.touch_sentences[:3],
+                *(advice.sentence for advice in analysis.feedback.advice),
+            ],
         },
     }
