@@ -6,6 +6,7 @@ trainee is not competent yet, and signals when the trials speak against that.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -58,6 +59,7 @@ def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit
     return LcCusum(tuple(scores), limit, competent_at, risk)
 
 
+@functools.lru_cache(maxsize=32)
 def lc_cusum_limit(
     adequate: float, inadequate: float, trials: int, false_discovery: float = 0.05
 ) -> float:
