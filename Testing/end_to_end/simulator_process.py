@@ -35,7 +35,7 @@ class SimulatorProcess:
             **others,
         )
         self.pid = self._process.pid
-        self.ready = self._process.stdout.readline().strip()
+        self.ready = self.next_line()
         if not self.ready:
             raise AssertionError(self._process.communicate()[1])
         self.port = int(self.ready.removeprefix(READY)) if self.ready.startswith(READY) else 0
@@ -46,6 +46,10 @@ class SimulatorProcess:
     def __exit__(self, *_exception: object) -> None:
         if self._process.poll() is None:
             self.kill()
+
+    def next_line(self) -> str:
+        """Return the next line that it prints; "" once it has ended."""
+        return self._process.stdout.readline().strip()
 
     def stop(self, number: int = signal.SIGTERM) -> tuple[int, str]:
         """Ask it to stop; return its exit status and what it has said on stderr."""

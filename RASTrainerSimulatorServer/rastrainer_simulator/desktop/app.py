@@ -88,6 +88,7 @@ class DesktopWindow:
         self._keys = OperatorKeys(self._connection)
         self._frames = FrameCount(self._report_frames, time.monotonic())
         self._own_held: set[int] = set()
+        self._wants_picture = False
         self._is_open = True
 
     async def run(self) -> None:
@@ -113,7 +114,11 @@ class DesktopWindow:
         while self._inbox.sounds:
             sound = self._inbox.sounds.popleft()
             self._sounds.play(sound.name, sound.volume)
-        if not self._picture.is_due(begin):
+        is_due = self._picture.is_due(begin)
+        if self._wants_picture:
+            self._wants_picture = False
+            self._keep_picture()
+        if not is_due:
             self._frames.tell(begin)
             await self._inbox.wait(LOOK_S)
             return
@@ -152,7 +157,7 @@ class DesktopWindow:
             if event.key == pygame.K_F11:
                 self._window.toggle_fullscreen()
             else:
-                self._keep_picture()
+                self._wants_picture = True
 
     def _click(self, place: tuple[int, int]) -> None:
         now = time.monotonic()

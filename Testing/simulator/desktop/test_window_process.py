@@ -23,7 +23,7 @@ from Testing.simulator.view_server.served import ServedViews
 
 PATIENCE_S = 60.0
 PLAYED = ("touch", "proximity", "contact", "error", "finish", "undo", "touch")
-PAUSE_S = 1.3
+PAUSE_S = 1.0
 PLAYED_HZ, STORED_HZ = 44_100, 32_000
 
 

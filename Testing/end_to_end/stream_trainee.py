@@ -1,0 +1,203 @@
+"""A trainee who knows only what every view is told, and works real input devices."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol
+
+import numpy as np
+
+from rastrainer_simulator.desktop.flight import Viewpoint
+from rastrainer_simulator.desktop.screen_reader import screen_from_json
+from rastrainer_simulator.desktop.shown_scene import pose_matrix
+from rastrainer_simulator.flow.screen import Menu, Screen
+from rastrainer_simulator.teleoperation.axes import camera_axes
+from Testing.end_to_end.window_process import wait_until
+from Testing.simulator.view_server.served import ViewClient
+
+PATIENCE_S = 40.0
+AGAIN_S = 1.5
+LIFT_M = 0.035
+"""How far the tip is taken off the skin before it is carried to the next fiducial."""
+COARSE_M, FINE_M = 0.03, 0.01
+"""Nearer than this the sticks are pushed less."""
+LEAST_PUSH = 0.35
+"""Beyond the sticks' dead zone."""
+LONGEST_WAY_S = 6.0
+NEAR_M = 0.008
+MOST_ATTEMPTS = 4
+
+
+class Hands(Protocol):
+    """What a trainee works the simulator with."""
+
+    def tap(self, control: str) -> None:
+        """Press a control for a moment."""
+
+    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
+        """Push the sticks, −1…1."""
+
+
+class WatchingView:
+    """A view that joins beside the window, and keeps what all views are told.
+
+    Attributes:
+        state, screen, scene: the latest.
+        events: all, in order.
+    """
+
+    def __init__(self, client: ViewClient):
+        self.state: dict | None = None
+        self.scene: dict | None = None
+        self.screen = Screen()
+        self.events: list[dict] = []
+        self._client = client
+        self._bodies = client.join(kind="page", device="watcher")["bodies"]
+        self._has_state = threading.Condition()
+        threading.Thread(target=self._watch, daemon=True).start()
+        wait_until(lambda: self.state is not None and self.scene is not None, "the stream")
+
+    def pose(self, body: str) -> np.ndarray:
+        """Return (4, 4) float, to World in m."""
+        return pose_matrix(self.state["poses"][self._bodies.index(body)])
+
+    def next_state(self) -> None:
+        """Wait for the next state."""
+        with self._has_state:
+            self._has_state.wait(1.0)
+
+    def _watch(self) -> None:
+        with suppress(Exception):
+            while True:
+                message = self._client.next()
+                if message["type"] == "screen":
+                    self.screen = screen_from_json(message["screen"])
+                elif message["type"] == "event":
+                    self.events.append(message)
+                elif message["type"] in ("state", "scene"):
+                    setattr(self, message["type"], message)
+                    with self._has_state:
+                        self._has_state.notify_all()
+
+
+class StreamTrainee:
+    """Goes through menus by their names, and to fiducials by the sticks.
+
+    Attributes:
+        view: what is told.
+        hands: what the simulator is worked with.
+    """
+
+    def __init__(self, view: WatchingView, hands: Hands):
+        self.view = view
+        self.hands = hands
+
+    @property
+    def menu(self) -> Menu | None:
+        return self.view.screen.menu
+
+    @property
+    def touched(self) -> int:
+        return len(self.view.state["touched"])
+
+    @property
+    def tip(self) -> np.ndarray:
+        return self.view.pose("tool")[:3, 3]
+
+    def until(self, condition: Callable[[], bool], what: str) -> None:
+        give_up = time.monotonic() + PATIENCE_S
+        while not condition():
+            assert time.monotonic() < give_up, f"{what} never came; the screen: {self.view.screen}"
+            self.view.next_state()
+
+    def until_menu(self, name: str | None) -> None:
+        """Wait until a menu of that name is open, or none."""
+        self.until(lambda: (self.menu and self.menu.name) == name, f"the menu {name}")
+
+    def press(self, control: str, is_done: Callable[[], bool], what: str) -> None:
+        """Press a control, again where a busy machine has missed it, until it has an effect."""
+        give_up = time.monotonic() + PATIENCE_S
+        while not is_done():
+            assert time.monotonic() < give_up, f"{what} never came; the screen: {self.view.screen}"
+            self.hands.tap(control)
+            with suppress(AssertionError):
+                wait_until(is_done, what, AGAIN_S)
+
+    def choose(self, item: str) -> None:
+        """Move the focus to an item and accept it; it leads to another menu."""
+        self.focus(item)
+        before = self.menu.name
+        self.press("accept", lambda: not self.menu or self.menu.name != before, f"after {item}")
+
+    def focus(self, item: str) -> None:
+        """Move the focus to an item."""
+        names = [each.name for each in self.menu.items if each.kind != "axis"]
+        assert item in names, f"{self.menu.name} has {names}"
+        while (before := self.menu.focus) != item:
+            way = "down" if names.index(item) > names.index(before) else "up"
+            self.press(way, lambda b=before: self.menu.focus != b, "another focus")
+
+    def value(self, item: str) -> str:
+        """Return what an item shows."""
+        return next(each.value for each in self.menu.items if each.name == item)
+
+    def place_of(self, label: str) -> np.ndarray:
+        """Return where a fiducial is, (3,) float, World, m."""
+        head = self.view.pose("head")
+        return head[:3, :3] @ self.view.scene["fiducials"][label] + head[:3, 3]
+
+    @property
+    def head_center(self) -> np.ndarray:
+        """The middle of all fiducials lies within the head."""
+        places = [self.place_of(label) for label in self.view.scene["fiducials"]]
+        return np.mean(places, axis=0)
+
+    def approach(self, label: str, near_m: float) -> None:
+        """Carry the tip over the head to a place above a fiducial."""
+        point, center = self.place_of(label), self.head_center
+        outward = (point - center) / np.linalg.norm(point - center)
+        start = self.tip - center
+        height = LIFT_M + max(np.linalg.norm(point - center), np.linalg.norm(start))
+        first = start / np.linalg.norm(start)
+        steps = max(2, int(np.degrees(np.arccos(np.clip(first @ outward, -1, 1))) / 20))
+        for share in np.linspace(0.0, 1.0, steps):
+            between = (1.0 - share) * first + share * outward
+            self.steer_to(center + height * between / np.linalg.norm(between), near_m)
+
+    def press_on(self, label: str) -> None:
+        """Record the fiducial under the tip; whoever missed it comes from above once more."""
+        point, center = self.place_of(label), self.head_center
+        outward = (point - center) / np.linalg.norm(point - center)
+        for _attempt in range(MOST_ATTEMPTS):
+            self.steer_to(point + 0.012 * outward, 0.008)
+            self.steer_to(point, 0.004, fine=True)
+            if np.linalg.norm(point - self.tip) < NEAR_M:
+                break
+            self.approach(label, 0.02)
+        self.hands.push(0.0, 0.0, 0.0, False)
+        kept = self.touched
+        self.press("touch", lambda: self.touched > kept, f"touch {label}")
+
+    def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
+        """Push the sticks toward a place (3,) World, m, until the tip is near it."""
+        axes = self._stick_axes()
+        slow = FINE_M if fine else COARSE_M
+        give_up = self.view.state["time"] + LONGEST_WAY_S
+        while np.linalg.norm(away := place - self.tip) > near:
+            if self.view.state["time"] > give_up:
+                break
+            far = float(np.linalg.norm(away))
+            wanted = axes @ away / far * max(LEAST_PUSH, min(1.0, far / slow))
+            self.hands.push(*wanted.tolist(), fine)
+            self.view.next_state()
+
+    def _stick_axes(self) -> np.ndarray:
+        """Return (3, 3) float: right, forward and up as the camera sees them, as rows."""
+        value = self.view.scene["cameras"][self.view.state["camera"]]
+        camera = Viewpoint.from_json(value)
+        line = tuple((camera.focal_point - camera.position).tolist())
+        axes = camera_axes(line, tuple(camera.view_up.tolist()))
+        return np.array([axes.right, axes.forward, axes.up])

@@ -1,0 +1,86 @@
+"""The desktop window as its own process, on a virtual display."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from Testing.end_to_end.virtual_display import VirtualDisplay
+
+COMMAND = (sys.executable, "-m", "rastrainer_simulator.cli", "window")
+PATIENCE_S = 90.0
+
+
+class WindowProcess:
+    """`rastrainer window`; ended by the `with` statement.
+
+    Attributes:
+        folder: of its pictures, its frame log and what would be heard.
+    """
+
+    def __init__(self, display: VirtualDisplay, url: str, key: str, folder: Path, *arguments: str):
+        self.folder = folder
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._log = folder / "frames.jsonl"
+        self._process = subprocess.Popen(
+            [
+                *(*COMMAND, "--connect", url, "--pictures", str(folder)),
+                *("--frame-log", str(self._log), *arguments),
+            ],
+            env={
+                **os.environ,
+                "DISPLAY": display.name,
+                "RASTRAINER_VIEW_KEY": key,
+                "SDL_AUDIODRIVER": "disk",
+                "SDL_DISKAUDIOFILE": str(self.heard),
+            },
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def __enter__(self) -> WindowProcess:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.kill()
+
+    @property
+    def heard(self) -> Path:
+        """The file of what SDL would have played: 16-bit samples."""
+        return self.folder / "heard.raw"
+
+    def frames(self) -> list[str]:
+        """Return the lines of the frame log so far."""
+        return self._log.read_text().splitlines() if self._log.exists() else []
+
+    def wait_for_frames(self, count: int = 1) -> None:
+        """Wait until so many more pictures have been shown."""
+        wanted = len(self.frames()) + count
+        wait_until(lambda: len(self.frames()) >= wanted, "a picture")
+
+    def next_picture(self, known: set[Path]) -> Path:
+        """Wait for a picture that is not among those known, and return its path."""
+        wait_until(lambda: set(self.folder.glob("*.png")) - known, "a kept picture")
+        return (set(self.folder.glob("*.png")) - known).pop()
+
+    def kill(self) -> None:
+        """End it as a crash would."""
+        if self._process.poll() is None:
+            self._process.kill()
+        self._process.communicate()
+
+    def stop(self) -> tuple[int, str]:
+        """Wait for its end; return its exit status and what it has said."""
+        said = self._process.communicate(timeout=PATIENCE_S)[0]
+        return self._process.returncode, said
+
+
+def wait_until(condition, what: str, patience_s: float = PATIENCE_S) -> None:
+    give_up = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < give_up, f"{what} never came"
+        time.sleep(0.01)
