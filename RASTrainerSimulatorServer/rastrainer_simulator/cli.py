@@ -18,6 +18,7 @@ SUBCOMMANDS = {
     "report": "rastrainer.commands.report_command",
     "export": "rastrainer.commands.export_command",
     "delete-trainee": "rastrainer.commands.delete_command",
+    "scenario": "rastrainer_simulator.scenario_command",
     "simulator": "rastrainer_simulator.simulator_command",
     "window": "rastrainer_simulator.window_command",
     "replay": "rastrainer_simulator.replay_command",

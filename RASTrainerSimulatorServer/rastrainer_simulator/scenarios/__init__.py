@@ -1,0 +1,1 @@
+"""Make scenarios of heads, check them, and pack them for others."""

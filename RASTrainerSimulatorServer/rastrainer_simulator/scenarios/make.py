@@ -1,0 +1,161 @@
+"""From the draft of a head to a scenario's folder: set-up, plan, tasks and picture."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.head_mesh import HeadMesh
+from rastrainer.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
+from rastrainer.scenario_draft import HeadDraft
+from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario_setup import SetUp
+from rastrainer.scenario_writer import new_folder, write_scenario
+from rastrainer.tasks import LIMIT_MM, Task, is_task_name, read_task
+from rastrainer_simulator.planning.task_check import check_tasks, measured
+from rastrainer_simulator.planning.task_proposal import PLANS
+from rastrainer_simulator.planning.task_set import Progress, TaskSetProposer
+from rastrainer_simulator.planning.workbench import Workbench
+from rastrainer_simulator.scenarios.picture import draw_preview
+from rastrainer_simulator.scenarios.plan_check import check_plan, start_clearance_mm
+
+CENTER = "Center of the head"
+LEAST_START_CLEARANCE_MM = 30.0
+"""Of the tip above the head where a trial starts."""
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What is wanted of a scenario besides its head.
+
+    Attributes:
+        title: for people; the name is made of it.
+        source, license: for the provenance.
+        setup: how the head stands before the robot.
+        targets: planned; the target error is told at the first.
+        trajectory: planned.
+        task_files: markups placed by hand, in the order of the tasks; none proposes them.
+        seed: of the proposal.
+    """
+
+    title: str
+    source: str
+    license: str
+    setup: SetUp = field(default_factory=SetUp)
+    targets: tuple[PlannedTarget, ...] = ()
+    trajectory: PlannedTrajectory | None = None
+    task_files: tuple[Path, ...] = ()
+    seed: int = 1
+
+
+def make_scenario(
+    draft: HeadDraft,
+    wishes: Wishes,
+    folder: Path,
+    progress: Progress = lambda _step, _share: None,
+) -> Scenario:
+    """Write the scenario of a head into a new folder and return it.
+
+    Raises:
+        InputError: the wishes cannot be met; the sentence says which. Nothing is written then.
+    """
+    with new_folder(folder) as made:
+        scenario = without_tasks(draft, wishes)
+        bench = Workbench(scenario, draft.head)
+        wrong = check_plan(bench)
+        if wrong:
+            raise InputError(" ".join(wrong))
+        if wishes.task_files:
+            tasks = _placed_tasks(bench, wishes.task_files, progress)
+        else:
+            tasks = TaskSetProposer(bench, progress).propose(wishes.seed)
+        scenario = replace(scenario, tasks=tasks)
+        write_scenario(made, scenario, draft.head, draft.skull)
+        progress("Drawing the picture", 0.95)
+        draw_preview(made / PREVIEW_NAME, scenario, draft.head)
+        load_scenario(made)
+        progress("Done", 1.0)
+    return load_scenario(folder)
+
+
+def name_of(title: str) -> str:
+    """Return a name for commands and records, made of a title.
+
+    Raises:
+        InputError: none can be made of it.
+    """
+    name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40].strip("-")
+    if not is_task_name(name):
+        raise InputError(
+            f"{title!r} cannot be a scenario's title: it needs a Latin letter or digit."
+        )
+    return name
+
+
+def without_tasks(draft: HeadDraft, wishes: Wishes) -> Scenario:
+    """Return the scenario of a head without tasks.
+
+    Raises:
+        InputError: the head would not be above the table.
+    """
+    head, setup = draft.head, wishes.setup
+    middle = head.centroid.round(4)
+    setup.check_height(float(head.vertices[:, 2].min()), middle)
+    scenario = Scenario(
+        folder=Path(),
+        name=name_of(wishes.title),
+        title=wishes.title,
+        head_mesh=Path(),
+        target_name=CENTER,
+        target_position=middle,
+        head_to_world=setup.head_to_world(middle),
+        perturbation=setup.perturbation,
+        tasks=(),
+        cameras=setup.cameras(),
+        furniture=setup.furniture(),
+        provenance=Provenance(wishes.source, draft.method, wishes.license),
+        is_skull_approximate=draft.is_skull_approximate,
+        targets=wishes.targets,
+        trajectory=wishes.trajectory,
+    )
+    return _with_main_target(scenario, head)
+
+
+def _with_main_target(scenario: Scenario, head: HeadMesh) -> Scenario:
+    """Return the scenario with the first planned target as its own, where trials can start so.
+
+    A trial starts above the target: with one far below, the tip would start in the head.
+    """
+    if not scenario.targets:
+        return scenario
+    first, *others = scenario.targets
+    aimed = replace(
+        scenario,
+        target_name=first.name,
+        target_position=np.asarray(first.position, dtype=float),
+        targets=tuple(others),
+    )
+    is_free = start_clearance_mm(aimed, head) >= LEAST_START_CLEARANCE_MM
+    return aimed if is_free else scenario
+
+
+def _placed_tasks(
+    bench: Workbench, files: tuple[Path, ...], progress: Progress
+) -> tuple[Task, ...]:
+    if len(files) > len(PLANS):
+        raise InputError(f"A scenario has at most {len(PLANS)} tasks; {len(files)} are given.")
+    tasks = []
+    for index, (path, plan) in enumerate(zip(files, PLANS, strict=False)):
+        progress(f"Checking {plan.title}", index / len(files))
+        task = read_task(path, plan.name, plan.title, 0.0)
+        if np.abs(task.fiducials).max() > LIMIT_MM:
+            raise InputError(f"{path} has a point outside of the patient.")
+        tasks.append(replace(task, complexity=measured(bench, task)))
+    wrong = check_tasks(bench, tasks)
+    if wrong:
+        raise InputError(" ".join(wrong))
+    return tuple(tasks)

@@ -1,0 +1,62 @@
+"""What the command line says of a scenario, checked."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario_setup import SetUp, read_setup
+from rastrainer.tasks import LIMIT_MM
+from rastrainer_simulator.scenarios.make import Wishes, name_of
+
+LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
+
+
+def wishes_of(arguments: argparse.Namespace, source: str) -> Wishes:
+    """Return the wishes of a command line; `source` is where nothing is said.
+
+    Raises:
+        InputError: a text or a number cannot be used.
+    """
+    title = _text("--title", arguments.title or arguments.output.absolute().name, LONGEST_TITLE)
+    name_of(title)
+    trajectory = None
+    if arguments.trajectory:
+        name, *numbers = arguments.trajectory
+        places = _numbers("--trajectory", numbers)
+        name = _text("--trajectory", name, LONGEST_NAME)
+        trajectory = PlannedTrajectory(name, places[:3], places[3:])
+    if not 0 <= arguments.seed < 2**31:
+        raise InputError("--seed must be from 0 to 2147483647.")
+    return Wishes(
+        title=title,
+        source=_text("--source", arguments.source or source, LONGEST_TEXT),
+        license=_text("--license", arguments.license, LONGEST_TEXT),
+        setup=read_setup(arguments.setup) if arguments.setup else SetUp(),
+        targets=tuple(
+            PlannedTarget(_text("--target", name, LONGEST_NAME), _numbers("--target", numbers))
+            for name, *numbers in arguments.target
+        ),
+        trajectory=trajectory,
+        task_files=tuple(arguments.tasks),
+        seed=arguments.seed,
+    )
+
+
+def _text(option: str, text: str, longest: int) -> str:
+    if not 1 <= len(text) <= longest or not text.isprintable():
+        raise InputError(f"{option} must be printable text of 1 to {longest} characters.")
+    return text
+
+
+def _numbers(option: str, words: list[str]) -> np.ndarray:
+    try:
+        numbers = np.array([float(word) for word in words])
+    except ValueError:
+        raise InputError(f"{option} needs numbers after its name, RAS mm.") from None
+    if not (np.abs(numbers) <= LIMIT_MM).all():
+        raise InputError(f"{option} must be within ±{LIMIT_MM:g} mm.")
+    return numbers
