@@ -6,7 +6,7 @@ import functools
 import json
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from rastrainer.cohort.jobs import trial_jobs
@@ -54,13 +54,21 @@ def simulate_cohort(
 ) -> CohortRun:
     """Play the study of a protocol with virtual trainees and store it in an empty folder.
 
-    Questionnaires, breaks and trial runs are left out: virtual trainees have no opinion. The study
-    therefore has trials but no progress through the protocol.
+    Questionnaires, breaks and trial runs are left out: virtual trainees have no opinion and need no
+    rest. The protocol that is stored says so.
 
     Raises:
         InputError: the folder holds something, a task is not in the scenario, or the engine fails.
     """
     make_empty_folder(folder)
+    protocol = replace(
+        protocol,
+        title=f"{protocol.title[:90]} (virtual trainees)",
+        trial_run_min=0.0,
+        break_between_modes_min=0.0,
+        break_between_tasks_min=0.0,
+        asked=(),
+    )
     began = time.perf_counter()
     records = folder / RECORDS if with_journals else None
     if records is not None:

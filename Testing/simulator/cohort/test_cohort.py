@@ -12,8 +12,9 @@ from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.report.report import report_html
 from rastrainer.report.study_data import read_study_data
 from rastrainer.study import Study
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import main
-from rastrainer_simulator.cohort.cohort import DATABASE, TRUTH, simulate_cohort
+from rastrainer_simulator.cohort.cohort import DATABASE, RECORDS, TRUTH, simulate_cohort
 from rastrainer_simulator.cohort.engines import run_jobs
 from rastrainer_simulator.cohort.play import PlaySettings, play_job
 from Testing.simulator.cohort.conftest import AIM_FACTOR, BRISK
@@ -38,7 +39,19 @@ def test_the_cohort_is_stored_like_a_real_study_and_reported(data):
     for name in ("score", "expected_tre_mm", "true_tre_mm", "sparc", "path_efficiency"):
         assert np.isfinite(values[name])
     assert 0.2 < values["path_efficiency"] < 1.0
-    assert "2 trainees did 4 trials" in report_html(data)
+    page = report_html(data)
+    assert "2 trainees did 4 trials" in page
+    assert "without a trial run" in page
+    assert "(virtual trainees)" in page
+
+
+def test_the_path_efficiency_is_measured_again_from_the_journal(played, data, capsys):
+    trial = data.trials[0]
+    (path,) = (played / RECORDS).glob(f"*{trial.trial_id}.journal")
+    folder = asset_path("scenarios", "colin27")
+    assert main(["measure", str(path), "--scenario", str(folder), "--json"]) == 0
+    efficiency = json.loads(capsys.readouterr().out)["path_efficiency"]
+    assert efficiency == trial.values["path_efficiency"]
 
 
 def test_orders_are_balanced_and_dates_follow_the_order(played):

@@ -65,10 +65,15 @@ def _design(data: StudyData) -> str:
             if protocol.task_order == BALANCED
             else "their fixed order"
         )
+        times = "once" if protocol.repetitions == 1 else f"{protocol.repetitions} times"
         words += (
-            f" The order of modes was {mode_order}; tasks came in {task_order}, "
-            f"{protocol.repetitions} time{'s' if protocol.repetitions > 1 else ''} each, after a "
-            f"trial run of {protocol.trial_run_min:g} min in each mode."
+            f" The order of modes was {mode_order}; tasks came in {task_order}, {times} in each "
+            "mode"
+        )
+        words += (
+            f", after a trial run of {protocol.trial_run_min:g} min."
+            if protocol.trial_run_min
+            else ", without a trial run."
         )
     if data.notes is not None:
         words += f" {data.notes.participants} {data.notes.setting}"
