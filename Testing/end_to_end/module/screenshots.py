@@ -19,7 +19,10 @@ SHOWN_AFTER = {
     "plan_a_target": ("plan",),
     "look_at_score": ("score", "trainees"),
 }
-AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.5
+AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
+NEAR = ("registration", "plan")
+HEAD, DISTANCE_MM = (0.0, -10.0, 30.0), 620.0
+WIDTH = 520
 
 
 def save_all(folder: Path) -> None:
@@ -32,8 +35,11 @@ def save_all(folder: Path) -> None:
                 step(story)
                 for section in SHOWN_AFTER.get(step.__name__, ()):
                     show_only(host, section)
-                    host.look_from(AZIMUTH, ELEVATION, ZOOM)
-                    host.window_screenshot(folder / f"module-{section}.png")
+                    if section in NEAR:
+                        host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
+                    else:
+                        host.look_from(AZIMUTH, ELEVATION, ZOOM)
+                    host.window_screenshot(folder / f"module-{section}.png", WIDTH)
                     show_all(host)
         finally:
             host.close()

@@ -36,7 +36,7 @@ class Story:
         host.type("packageLineEdit", PACKAGE)
         host.type("wheelsPathLineEdit", str(wheels))
         host.press("setupButton")
-        host.wait_until(lambda: host.find("startSimulatorButton").enabled, "it is set up", 60)
+        host.wait_until(lambda: host.find("startSimulatorButton").enabled, "it is set up")
         host.find("setupGroupBox").collapsed = True
 
     def choose_own_program(self) -> None:
@@ -177,18 +177,19 @@ class Story:
             assert "ended by itself" not in host.text("programText"), said
             return host.text("stateText").startswith("Connected")
 
-        host.wait_until(is_connected, "it is connected", 60)
+        host.wait_until(is_connected, "it is connected")
 
     def kill_simulator(self) -> None:
         """End the simulator's process as a crash would; the module notices it."""
         host = self.host
         os.kill(int(self._pid_file.read_text()), signal.SIGKILL)
         host.wait_until(lambda: "ended by itself" in host.text("programText"), "the end is told")
+        host.wait_until(lambda: not host.text("stateText").startswith("Connected"), "the link, too")
 
     def _touch(self, first: int, last: int) -> None:
         host = self.host
         self.player.touch(first, last)
-        host.wait_until(lambda: self.player.is_done, f"points {first} to {last} are touched", 60)
+        host.wait_until(lambda: self.player.is_done, f"points {first} to {last} are touched")
         host.wait_until(lambda: host.find("pointsProgressBar").value == last, "they appear")
 
 

@@ -243,7 +243,7 @@ class Host:
         """Return the text of a widget."""
         return self.find(name).text
 
-    def wait_until(self, condition: Callable[[], Any], what: str, timeout_s: float = 20.0) -> None:
+    def wait_until(self, condition: Callable[[], Any], what: str, timeout_s: float = 60.0) -> None:
         """Let events pass until something is so.
 
         Raises:
