@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -12,6 +13,7 @@ from rastrainer_simulator.desktop import theme
 from rastrainer_simulator.desktop.canvas import Box
 from rastrainer_simulator.desktop.panels import edges, strips
 from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.edges import Side
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
 from rastrainer_simulator.desktop.panels.target_arrow import REACH, STEP_DEG, target_arrow
 from rastrainer_simulator.desktop.sprite import Sprite
@@ -87,17 +89,16 @@ class Overlay:
         brush, margin = self._brush, self._brush.px(theme.MARGIN)
         room = min(brush.px(theme.INSTRUCTION_WIDTH), self._size[0] - 2 * margin)
         aside = (self._size[0] - room) // 2 - 2 * margin
-        if self._paint("status", bool(screen.status), (screen.status, aside), lambda: strips.status(screen.status, brush, aside)):  # fmt: skip  # noqa: E501
+        if self._paint("status", screen.status, strips.status, brush, aside):
             self._place("status", margin, margin)
         top = margin
-        message = screen.instruction
-        if self._paint("instruction", bool(message.text), (message, room), lambda: strips.instruction(message, brush, room)):  # fmt: skip  # noqa: E501
+        message = screen.instruction if screen.instruction.text else None
+        if self._paint("instruction", message, strips.instruction, brush, room):
             top = self._center("instruction", top)
         for index in range(MOST_WARNINGS):
-            name = f"warning{index}"
-            shown = screen.warnings[index : index + 1]
-            if self._paint(name, bool(shown), (shown, room), lambda shown=shown: strips.warning(shown[0], brush, room)):  # fmt: skip  # noqa: E501
-                top = self._center(name, top)
+            warning = screen.warnings[index] if index < len(screen.warnings) else None
+            if self._paint(f"warning{index}", warning, strips.warning, brush, room):
+                top = self._center(f"warning{index}", top)
         return top
 
     def _center(self, name: str, top: int) -> int:
@@ -110,7 +111,7 @@ class Overlay:
         brush, margin = self._brush, self._brush.px(theme.MARGIN)
         room = self._size[0] - 2 * margin
         bottom = self._size[1] - margin
-        if self._paint("hints", bool(screen.hints), (screen.hints, room), lambda: strips.hints(screen.hints, brush, room)):  # fmt: skip  # noqa: E501
+        if self._paint("hints", screen.hints, strips.hints, brush, room):
             height = self._slots["hints"].sprite.size[1]
             self._center("hints", bottom - height)
             bottom -= height + self._brush.px(1.5 * theme.STEP)
@@ -118,7 +119,7 @@ class Overlay:
 
     def _show_menu(self, content: Content, top: int, bottom: int) -> None:
         menu = content.screen.menu
-        if self._paint("scrim", menu is not None, (), lambda: edges.plain(theme.SCRIM)):
+        if self._paint("scrim", menu and theme.SCRIM, edges.plain):
             self._slots["scrim"].sprite.show(0, 0, *self._size)
         if menu is None:
             self._slots["menu"].hide()
@@ -141,28 +142,22 @@ class Overlay:
         """Frame the whole picture in red."""
         width, height = self._size
         thick = self._brush.px(GLOW)
-        column = lambda: edges.glow(thick, theme.CONTACT)  # noqa: E731
         places = {
-            "contact top": (column, (0, height - thick, width, thick)),
-            "contact bottom": (lambda: column()[::-1], (0, 0, width, thick)),
-            "contact left": (lambda: column().swapaxes(0, 1), (0, 0, thick, height)),
-            "contact right": (
-                lambda: column()[::-1].swapaxes(0, 1),
-                (width - thick, 0, thick, height),
-            ),
+            Side.TOP: (0, height - thick, width, thick),
+            Side.LEFT: (0, 0, thick, height),
+            Side.BOTTOM: (0, 0, width, thick),
+            Side.RIGHT: (width - thick, 0, thick, height),
         }
-        for name, (paint, place) in places.items():
-            if self._paint(name, is_contact, (thick,), paint):
+        for side, place in places.items():
+            name = f"contact {side.value}"
+            if self._paint(name, is_contact and thick, edges.glow, theme.CONTACT, side):
                 self._slots[name].sprite.show(*place)
 
     def _show_inset(self, box: Box | None) -> None:
         thick = self._brush.px(INSET_FRAME)
-        if box is None:
-            self._slots["inset"].hide()
-            return
-        outer = box.inset(-thick)
-        self._paint("inset", True, (outer.width, outer.height), lambda: edges.frame(outer.width, outer.height, thick, theme.INSET_EDGE))  # fmt: skip  # noqa: E501
-        self._place("inset", outer.left, outer.top)
+        outer = box and box.inset(-thick)
+        if self._paint("inset", outer, edges.frame, thick, theme.INSET_EDGE):
+            self._place("inset", outer.left, outer.top)
 
     def _show_target(self, target: tuple[Direction, int] | None) -> None:
         if target is None:
@@ -170,7 +165,7 @@ class Overlay:
             return
         direction, distance_mm = target
         angle = STEP_DEG * round(direction.angle_deg / STEP_DEG)
-        self._paint("target", True, (angle, distance_mm), lambda: target_arrow(angle, distance_mm, self._brush))  # fmt: skip  # noqa: E501
+        self._paint("target", (angle, distance_mm), target_arrow, self._brush)
         half = self._brush.px(REACH) + 2
         reach = (self._size[0] / 2 - half - 4, self._size[1] / 2 - half - 4)
         x = self._size[0] / 2 + direction.across * reach[0]
@@ -178,25 +173,25 @@ class Overlay:
         self._slots["target"].sprite.show(round(x - half), round(y - half))
 
     def _paint(
-        self, name: str, is_shown: bool, key: Hashable, paint: Callable[[], np.ndarray]
+        self, name: str, content: Any, paint: Callable[..., np.ndarray], *how: Hashable
     ) -> bool:
-        """Paint a slot if its key is another, or hide it; return whether it is to be placed."""
+        """Paint a slot's content if it is another, or hide it where there is none.
+
+        Returns whether it is to be placed.
+        """
         slot = self._slots[name]
-        if not is_shown:
+        if not content:
             slot.hide()
             return False
-        if slot.is_other((key, self._scale)):
-            slot.sprite.paint(paint())
+        if slot.is_other((content, how)):
+            slot.sprite.paint(paint(content, *how))
         return True
 
 
 # From the farthest to the nearest.
 _SLOTS = (
     "inset",
-    "contact top",
-    "contact bottom",
-    "contact left",
-    "contact right",
+    *(f"contact {side.value}" for side in Side),
     "scrim",
     "target",
     "status",

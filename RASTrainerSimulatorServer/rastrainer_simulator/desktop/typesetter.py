@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -24,11 +25,11 @@ class Letters(NamedTuple):
     descent: int
 
 
+@dataclass(frozen=True)
 class Typesetter:
     """Sets lines of text for one scale (pixels a unit)."""
 
-    def __init__(self, scale: float):
-        self.scale = scale
+    scale: float
 
     def line(self, text: str, style: Type) -> Letters:
         """Return one line; what the font lacks stays empty."""

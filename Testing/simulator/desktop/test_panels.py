@@ -104,7 +104,7 @@ def test_tones_are_told_by_color():
 
 @pytest.mark.parametrize(("angle", "side"), [(0, (0, 1)), (90, (-1, 0)), (180, (0, -1))])
 def test_the_arrow_points_where_the_target_is(angle, side):
-    pixels = target_arrow(angle, 43, Brush(1.0)).astype(int)
+    pixels = target_arrow((angle, 43), Brush(1.0)).astype(int)
     yellow = (pixels[..., 0] > 200) & (pixels[..., 2] < 80) & (pixels[..., 3] > 200)
     rows, columns = np.nonzero(yellow)
     middle = (pixels.shape[0] - 1) / 2

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+from enum import Enum
+
 import numpy as np
 
 from rastrainer_simulator.desktop.canvas import Box, Canvas
 from rastrainer_simulator.desktop.theme import Color
+
+
+class Side(Enum):
+    """A side of the picture, counterclockwise."""
+
+    TOP = "top"
+    LEFT = "left"
+    BOTTOM = "bottom"
+    RIGHT = "right"
 
 
 def plain(color: Color) -> np.ndarray:
@@ -15,18 +26,18 @@ def plain(color: Color) -> np.ndarray:
     return canvas.pixels()
 
 
-def frame(width: int, height: int, thickness: int, color: Color) -> np.ndarray:
-    """Return a frame that is empty inside."""
-    canvas = Canvas(width, height)
-    canvas.frame(Box(0, 0, width, height), color, 0.0, thickness)
+def frame(outer: Box, thickness: int, color: Color) -> np.ndarray:
+    """Return a frame as large as a box, empty inside."""
+    canvas = Canvas(outer.width, outer.height)
+    canvas.frame(Box(0, 0, outer.width, outer.height), color, 0.0, thickness)
     return canvas.pixels()
 
 
-def glow(thickness: int, color: Color) -> np.ndarray:
-    """Return a column that is full above and fades away below, to be stretched."""
+def glow(thickness: int, color: Color, side: Side) -> np.ndarray:
+    """Return a fringe that is full at its side and fades away inward, to be stretched along."""
     fade = np.linspace(1.0, 0.0, thickness) ** 1.5
     # Two pixels wide: VTK takes a picture of one for a row.
     pixels = np.empty((thickness, 2, 4), np.uint8)
     pixels[..., :3] = np.round(255.0 * np.array(color[:3]))
     pixels[..., 3] = np.round(255.0 * color[3] * fade)[:, None]
-    return pixels
+    return np.rot90(pixels, list(Side).index(side))

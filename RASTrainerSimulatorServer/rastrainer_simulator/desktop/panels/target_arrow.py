@@ -16,8 +16,12 @@ HALF_WIDTH = 30
 STEP_DEG = 3.0
 
 
-def target_arrow(angle_deg: float, distance_mm: int, brush: Brush) -> np.ndarray:
-    """Return a disk with the distance, and an arrow head on it; 0° points right, 90° up."""
+def target_arrow(target: tuple[float, int], brush: Brush) -> np.ndarray:
+    """Return a disk with the distance, and an arrow head on it.
+
+    `target` is an angle in degrees, 0 to the right and 90 up, and a distance in mm.
+    """
+    angle_deg, distance_mm = target
     middle = brush.px(REACH) + 2
     canvas = Canvas(2 * middle, 2 * middle)
     angle = math.radians(angle_deg)
