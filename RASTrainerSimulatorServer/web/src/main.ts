@@ -193,5 +193,6 @@ function browserName(): string {
 }
 
 const page = new Page();
+/** For measurements from outside; the page itself makes no use of it. */
 (window as unknown as { page: Page }).page = page;
 void page.begin();

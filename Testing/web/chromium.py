@@ -1,0 +1,86 @@
+"""A headless Chromium, and the page of a simulator in it, with or without an emulated headset."""
+
+from __future__ import annotations
+
+import io
+import shutil
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from playwright.sync_api import Browser, Page, Playwright
+
+WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
+IWER = WEB / "node_modules" / "iwer" / "build" / "iwer.min.js"
+# Mesa draws several times faster than Chromium's own software renderer.
+ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"]
+PATIENCE_MS = 60_000
+SMALL = {"width": 480, "height": 270}
+EYES_M = (0.1, 1.62, 0.2)
+
+_EMULATE = """
+;(() => {
+  const device = new IWER.XRDevice(IWER.%s, { stereoEnabled: true });
+  device.installRuntime({ forceInstall: true });
+  device.position.set(%f, %f, %f);
+  window.device = device;
+})();
+"""
+_FRAMES = """
+window.frames_ = (count) => new Promise((done) => {
+  const step = () => (count-- > 0 ? requestAnimationFrame(step) : done());
+  step();
+});
+"""
+_PADS = """
+window.pad = { connected: true, mapping: "standard", index: 0, id: "Test pad",
+  axes: [0, 0, 0, 0],
+  buttons: Array.from({ length: 17 }, () => ({ value: 0, pressed: false, touched: false })) };
+window.press = (index, value) => {
+  window.pad.buttons[index].value = value;
+  window.pad.buttons[index].pressed = value > 0.5;
+};
+navigator.getGamepads = () => [window.pad];
+"""
+
+
+def launch(playwright: Playwright) -> Browser:
+    """Start the Chromium of this machine, or Playwright's own where there is none."""
+    path = shutil.which("chromium") or shutil.which("chromium-browser")
+    return playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
+
+
+def open_page(
+    browser: Browser,
+    url: str,
+    code: str,
+    headset: str = "",
+    has_pad: bool = False,
+    size: dict[str, int] = SMALL,
+) -> Page:
+    """Open the page, pair it by the code in its address, and wait until it shows the scene."""
+    page = browser.new_context(viewport=size, ignore_https_errors=True).new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    page.add_init_script(_FRAMES)
+    if headset:
+        page.add_init_script(IWER.read_text(encoding="utf-8") + _EMULATE % (headset, *EYES_M))
+    if has_pad:
+        page.add_init_script(_PADS)
+    page.problems = []
+    page.on("pageerror", lambda error: page.problems.append(str(error)))
+    page.goto(f"{url}/#code={code}")
+    page.wait_for_selector("body[data-scene][data-menu]")
+    return page
+
+
+def enter_headset(page: Page) -> None:
+    """Press the button that leads into immersive VR, and wait for the first pictures."""
+    page.click("#headset:enabled")
+    page.wait_for_selector("body[data-headset]")
+    page.evaluate("frames_(3)")
+
+
+def pixels(page: Page) -> np.ndarray:
+    """Return what the window shows, (height, width, 3) float."""
+    image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    return np.asarray(image, dtype=float)

@@ -1,0 +1,61 @@
+"""Make the pictures of page and headset for the README: python -m Testing.web.screenshots."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Page, sync_playwright
+
+from Testing.web.chromium import enter_headset, launch, open_page
+from Testing.web.hands import Controllers, PageKeys
+from Testing.web.place import Place
+
+FOLDER = Path(__file__).parents[2] / "Screenshots"
+DESKTOP = {"width": 1600, "height": 900}
+BOTH_EYES = {"width": 1832, "height": 960}
+COLORS = 255
+LOOK_DOWN_AND_ASIDE = "device.quaternion.set(-0.2, -0.1, -0.02, 0.97)"
+LOOK_AT_THE_BOARD = "device.quaternion.set(-0.06, -0.22, -0.014, 0.97)"
+
+
+def keep(page: Page, name: str) -> None:
+    """Keep what the window shows."""
+    page.evaluate("frames_(8)")
+    image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    image = image.quantize(COLORS, dither=Image.Dither.NONE)
+    image.save(FOLDER / name, optimize=True)
+    print(name, (FOLDER / name).stat().st_size)
+
+
+def main() -> None:
+    """Make all of them."""
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        browser = launch(playwright)
+        with Place(Path(folder), "--speed", "4") as place:
+            url, code = place.simulator.url, place.simulator.code
+            page = open_page(browser, url, code, size=DESKTOP)
+            trainee = place.trainee(PageKeys(page))
+            trainee.begin("task-1", page)
+            page.wait_for_selector("body[data-scene=task-1]")
+            trainee.touch_all(4)
+            trainee.approach(place.view.state["next"], 0.004)
+            keep(page, "page.png")
+            page.close()
+            page = open_page(browser, url, code, "metaQuest2", size=BOTH_EYES)
+            trainee.hands = Controllers(page)
+            enter_headset(page)
+            page.evaluate(LOOK_AT_THE_BOARD)
+            keep(page, "headset_menu.png")
+            trainee.choose("resume")
+            trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+            trainee.choose("resume")
+            page.evaluate(LOOK_DOWN_AND_ASIDE)
+            keep(page, "headset.png")
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
