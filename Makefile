@@ -3,40 +3,47 @@
 PYTHON ?= python3
 KINEMATICS ?=
 BIN := .venv/bin
+UNAME := $(shell uname 2>/dev/null)
 
-.PHONY: demo test bench simulator lint format lock clean
+.PHONY: demo test bench simulator lint format lock page clean
 
 demo: .venv/installed
 	$(BIN)/python tools/system_packages.py demo
 	$(BIN)/rastrainer demo --output build/demo
 
-test: .venv/installed
+# Opens the trainee's window where there is a display; else the simulator alone, for browsers.
+simulator: .venv/installed page
+	$(BIN)/python tools/system_packages.py simulator
+	$(BIN)/rastrainer simulator $(if $(or $(DISPLAY),$(filter Windows_NT,$(OS)),$(filter Darwin,$(UNAME))),--desktop)
+
+test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
 	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 -q
 
-bench: .venv/bench-installed
+bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test
 	$(BIN)/python -m Testing.benchmarks
 
-simulator: .venv/installed
-	$(BIN)/rastrainer simulator
+page: .venv/installed
+	$(BIN)/python tools/build_page.py
 
-lint: .venv/installed
+lint: .venv/test-installed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-format: .venv/installed
+format: .venv/test-installed
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-# Hashes, but no addresses: the lock holds at whatever index a site uses.
+# Hashes, but no addresses: the locks hold at whatever index a site uses.
 lock: .venv/installed
 	$(BIN)/pip install -q uv
-	$(BIN)/uv pip compile pyproject.toml --extra test $(LOCK) -o requirements.lock
-	$(BIN)/uv pip compile pyproject.toml --extra bench --constraints requirements.lock $(LOCK) -o requirements-bench.lock
+	$(COMPILE) --extra page --extra slicer -o requirements.lock
+	$(COMPILE) --extra test --constraints requirements.lock -o requirements-test.lock
+	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock
 
-LOCK := --quiet --universal --python-version 3.10 --generate-hashes --no-emit-index-url \
-	--no-annotate --no-header --upgrade
+COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.10 \
+	--generate-hashes --no-emit-index-url --no-annotate --no-header --upgrade
 
 .venv/bin/python:
 	$(PYTHON) -m venv .venv || (echo "RASTrainer needs Python 3.10 or newer with the venv module (Debian: python3-venv)." >&2; exit 1)
@@ -46,7 +53,11 @@ LOCK := --quiet --universal --python-version 3.10 --generate-hashes --no-emit-in
 	$(BIN)/python -m pip install -q --no-deps --no-build-isolation -e .
 	touch $@
 
-.venv/bench-installed: .venv/installed requirements-bench.lock
+.venv/test-installed: .venv/installed requirements-test.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements-test.lock
+	touch $@
+
+.venv/bench-installed: .venv/test-installed requirements-bench.lock
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-bench.lock
 	touch $@
 
