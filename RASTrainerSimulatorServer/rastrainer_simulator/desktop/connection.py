@@ -21,6 +21,7 @@ from rastrainer_simulator.view_server.messages import HELLO, SUBPROTOCOL
 
 RETRY_S = 1.0
 ANSWER_S = 10.0
+SILENCE_S = 20.0
 LARGEST_MESSAGE = 2**20
 LARGEST_SCENE = 2**28
 UNAUTHORIZED = 401
@@ -64,8 +65,8 @@ class Connection:
                 f"{self._url}/stream",
                 protocols=(SUBPROTOCOL,),
                 max_msg_size=LARGEST_MESSAGE,
-                timeout=aiohttp.ClientWSTimeout(ws_close=1.0),
-                heartbeat=ANSWER_S,
+                # The simulator says something 60 times a second; a slow picture is no silence.
+                timeout=aiohttp.ClientWSTimeout(ws_receive=SILENCE_S, ws_close=1.0),
             )
         except aiohttp.WSServerHandshakeError as error:
             unknown = error.status == UNAUTHORIZED
