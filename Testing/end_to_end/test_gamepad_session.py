@@ -19,6 +19,7 @@ from Testing.end_to_end.stream_trainee import StreamTrainee
 
 SCREENSHOTS = Path(__file__).parents[2] / "Screenshots"
 SPEED = "4"
+STEADY_S = 0.4
 SETTLED_S = FLIGHT_S + 0.5
 WANTS_SCREENSHOTS = bool(os.environ.get("RASTRAINER_SCREENSHOTS"))
 QUALITY = ("--quality", "low", "--picture-quality", "high" if WANTS_SCREENSHOTS else "low")
@@ -47,13 +48,22 @@ def type_by_gamepad(trainee: StreamTrainee, text: str) -> None:
     for typed, letter in enumerate(text, start=1):
         row = next(item.name for item in trainee.menu.items if letter in item.value)
         trainee.focus(row)
-        while f"[{letter}]" not in trainee.value(row):
+        while not is_chosen(trainee, row, letter):
             before = trainee.value(row)
-            trainee.press("right", lambda r=row, b=before: trainee.value(r) != b, letter)
+            way = "right" if before.index("[") < before.index(letter) else "left"
+            trainee.press(way, lambda r=row, b=before: trainee.value(r) != b, letter)
         wanted = f"{text[:typed]}_"
         trainee.press("accept", lambda w=wanted: trainee.menu.facts[0].value == w, letter)
     trainee.choose("done")
     trainee.until_menu("experiment")
+
+
+def is_chosen(trainee: StreamTrainee, row: str, letter: str) -> bool:
+    """Tell whether a letter is chosen, and stays so: a key that is held long goes farther."""
+    chosen = f"[{letter}]"
+    if chosen in trainee.value(row):
+        time.sleep(STEADY_S)
+    return chosen in trainee.value(row)
 
 
 @pytest.fixture(scope="module")
