@@ -202,6 +202,15 @@ def test_a_model_of_the_scene_can_be_the_head(panels):
     assert not former.GetDisplayVisibility()
 
 
+def test_an_mri_comes_through_slicers_sample_data_by_one_click(panels):
+    panels.press("sampleDataButton")
+    assert panels.text("otherHeadText") == "MRBrainTumor1 is in the scene."
+    node = panels.scene.GetFirstNodeByName("MRBrainTumor1")
+    panels.choose("headModelComboBox", node)
+    panels.press("useHeadButton")
+    assert panels.text("otherHeadText").startswith("Head of MRBrainTumor1 is the head now")
+
+
 # Registration
 
 

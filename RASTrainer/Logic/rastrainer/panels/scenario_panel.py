@@ -78,7 +78,9 @@ class ScenarioPanel:
         ):
             logic = slicer.util.getModuleLogic("SampleData")
             volume = logic.downloadSample(SAMPLE)
-            slicer.util.setSliceViewerLayers(background=volume, fit=True)
+            application = slicer.app.applicationLogic()
+            application.GetSelectionNode().SetActiveVolumeID(volume.GetID())
+            application.PropagateVolumeSelection()
             self._ui.otherHeadText.text = _("{name} is in the scene.").format(name=volume.GetName())
 
     def _progress(self, step: str, share: float) -> None:
