@@ -1,6 +1,10 @@
 """The unmodified module in the host: what its panels do when a user works with them."""
 
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
 import pytest
+import slicer
 
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, Device
@@ -65,3 +69,48 @@ def test_any_node_may_be_deleted_while_connected(host, simulator):
 
 def test_the_self_tests_pass(host):
     host.run_self_tests()
+
+
+def test_a_trajectory_is_placed_by_two_clicks(host):
+    host.find("planCollapsibleButton").collapsed = False
+    host.process_events()
+    host.press("placeTrajectoryButton")
+    host.place(0.0, 0.0, 90.0)
+    host.place(0.0, 0.0, 30.0)
+    with pytest.raises(AssertionError, match="places no points"):
+        host.place(0.0, 0.0, 0.0)
+    line = host.find("planComboBox").currentNode()
+    assert line.GetNumberOfControlPoints() == 2
+
+
+def test_sample_data_come_into_the_scene_and_the_slices(host):
+    host.find("otherHeadGroupBox").collapsed = False
+    host.process_events()
+    red = slicer.app.layoutManager().sliceWidget("Red").mrmlSliceCompositeNode()
+    host.press("sampleDataButton")
+    volume = host.scene.GetFirstNodeByName("MRBrainTumor1")
+    assert red.GetBackgroundVolumeID() == volume.GetID()
+
+
+def test_every_choice_that_can_be_made_without_a_simulator_is_taken(host):
+    host.choose("scenarioComboBox", 0)
+    host.choose("taskComboBox", "Task 3")
+    assert "15 fiducials" in host.text("scenarioText")
+    host.check("windowCheckBox", False)
+    host.check("windowCheckBox")
+    host.check("archivedCheckBox")
+    host.check("archivedCheckBox", False)
+
+
+def test_every_button_box_and_list_is_used_in_a_test():
+    folder = Path(__file__).parents[1]
+    tests = [*(folder / "slicer").glob("test_*.py"), *(folder / "end_to_end").rglob("*.py")]
+    text = "".join(path.read_text(encoding="utf-8") for path in tests)
+    kinds = {"QPushButton", "QCheckBox", "QComboBox"}
+    unused = [
+        widget.get("name")
+        for path in (folder.parent / "RASTrainer" / "Resources" / "UI").glob("*.ui")
+        for widget in ElementTree.parse(path).iter("widget")
+        if widget.get("class") in kinds and f'"{widget.get("name")}"' not in text
+    ]
+    assert unused == []

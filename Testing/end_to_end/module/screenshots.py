@@ -28,7 +28,7 @@ WIDTH = 520
 def save_all(folder: Path) -> None:
     """Play the session and save the pictures."""
     with tempfile.TemporaryDirectory() as temporary:
-        host = Host(Path(temporary, "slicer"))
+        host = Host(Path(temporary, "computer of the instructor"))
         try:
             story = Story(host, Path(temporary))
             for step in Story.STEPS:

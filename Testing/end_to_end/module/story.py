@@ -70,6 +70,27 @@ class Story:
         host.check("robotCheckBox")
         assert host.scene.GetFirstNodeByName("Robot link 7") is not None
 
+    def use_scenario_in_simulator(self) -> None:
+        host = self.host
+        host.press("loadScenarioButton")
+        asked = host.text("scenarioText")
+        assert "is asked to load" in asked
+        host.let_pass(0.3)
+        assert host.text("stateText").startswith("Connected")
+
+    def abort_a_trial_run(self) -> None:
+        host = self.host
+        host.choose("modeComboBox", "Headset")
+        host.choose("modeComboBox", "Desktop")
+        host.press("startTrialRunButton")
+        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial run runs")
+        host.answer("Abort the trial", "No")
+        host.press("abortButton")
+        assert "running" in host.text("phaseText")
+        host.answer("Abort the trial", "Yes")
+        host.press("abortButton")
+        host.wait_until(lambda: host.find("startTaskButton").enabled, "no trial is open")
+
     def start_task(self) -> None:
         host = self.host
         host.press("startTaskButton")
@@ -156,6 +177,8 @@ class Story:
         start_simulator,
         create_trainee,
         show_scenario,
+        use_scenario_in_simulator,
+        abort_a_trial_run,
         start_task,
         touch_some,
         pause_and_resume,

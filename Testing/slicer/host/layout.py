@@ -6,6 +6,7 @@ import functools
 from typing import Any
 
 import slicer
+import vtk
 
 from Testing.slicer.host.checked import Checked
 from Testing.slicer.host.members import FACTS, members_of
@@ -73,6 +74,12 @@ class LayoutManager(Checked):
 
     def sliceWidget(self, name: str) -> SliceWidget | None:
         return SliceWidget(self._slices[name]) if name in SLICES else None
+
+    def mrmlSliceLogics(self) -> vtk.vtkCollection:
+        logics = vtk.vtkCollection()
+        for view in self._slices.values():
+            logics.AddItem(view.logic)
+        return logics
 
     def resetThreeDViews(self) -> None:
         self._three_d.look_at_everything()
