@@ -70,8 +70,6 @@ def _series(
     node.SetXColumnName(TRIAL_COLUMN)
     node.SetYColumnName(column)
     node.SetColor(color)
-    # A line through one point is an error to VTK.
-    hasLine = table.GetNumberOfRows() > 1
-    node.SetLineStyle(node.LineStyleSolid if hasLine else node.LineStyleNone)
+    node.SetLineStyle(node.LineStyleSolid)
     node.SetMarkerStyle(node.MarkerStyleCircle)
     return node
