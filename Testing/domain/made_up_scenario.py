@@ -1,0 +1,42 @@
+"""A scenario on a ball of a head, for tests of files and packages."""
+
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.head_mesh import HeadMesh
+from rastrainer.scenario import Provenance, Scenario
+from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario_setup import SetUp
+from rastrainer.tasks import LABELS, Task
+from Testing.domain.spheres import RADIUS_MM, sphere_mesh
+
+
+def ball_head(radius=90.0):
+    sphere = sphere_mesh(3)
+    return HeadMesh(sphere.vertices * radius / RADIUS_MM, sphere.triangles)
+
+
+def made_up_scenario():
+    setup = SetUp()
+    points = np.random.default_rng(4).uniform(-90, 90, (2, 15, 3)).round(4)
+    tasks = tuple(
+        Task(f"task-{row + 1}", f"Task {row + 1}", LABELS, points[row], 10.0 + row)
+        for row in range(2)
+    )
+    return Scenario(
+        folder=Path(),
+        name="ball",
+        title="A ball",
+        head_mesh=Path(),
+        target_name="Tumor",
+        target_position=np.array([1.0, -17.0, 2.5]),
+        head_to_world=setup.head_to_world(np.zeros(3)),
+        perturbation=setup.perturbation,
+        tasks=tasks,
+        cameras=setup.cameras(),
+        furniture=setup.furniture(),
+        provenance=Provenance("made up", "by hand", "none needed"),
+        targets=(PlannedTarget("Cyst", np.array([10.0, 20.0, 30.0])),),
+        trajectory=PlannedTrajectory("Biopsy", np.array([0.0, 0.0, 90.0]), np.zeros(3)),
+    )
