@@ -15,7 +15,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.scenario import Scenario, load_scenario
-from rastrainer.scenario_draft import write_draft
+from rastrainer.scenario_draft import HeadDraft, write_draft
 from rastrainer.slicer.child_process import ChildProcess
 from rastrainer.slicer.head.extraction import HeadSettings, Progress
 from rastrainer.slicer.head.head_draft import make_draft
@@ -69,13 +69,24 @@ def build_scenario(
     Raises:
         InputError: the volume, the folder or the simulator's program cannot be used.
     """
-    folder = Path(request.folder).absolute()
     draft, warnings = make_draft(
         request.volume,
         request.settings,
         request.has_skull,
         lambda step, share: progress(step, HEAD_SHARE * share),
     )
+    return finish_scenario(draft, request, command, environment, progress), warnings
+
+
+def finish_scenario(
+    draft: HeadDraft,
+    request: BuildRequest,
+    command: Sequence[str],
+    environment: Mapping[str, str] | None = None,
+    progress: Progress = lambda _step, _share: None,
+) -> Scenario:
+    """Build the scenario of a head that is made already; otherwise as `build_scenario`."""
+    folder = Path(request.folder).absolute()
     with tempfile.TemporaryDirectory() as temporary:
         write_draft(Path(temporary), draft)
         words = ["scenario", "tasks", temporary, "-o", str(folder), *request.words]
@@ -83,7 +94,7 @@ def build_scenario(
         if request.title:
             words += ["--title", request.title]
         _run([*command, *words], environment, progress)
-    return load_scenario(folder), warnings
+    return load_scenario(folder)
 
 
 def _run(command: Sequence[str], environment: Mapping[str, str] | None, progress: Progress) -> None:
