@@ -183,6 +183,9 @@ class StreamTrainee:
 
     def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
         """Push the sticks toward a place (3,) World, m, until the tip is near it."""
+        if self.menu is not None and self.menu.name == "trial":
+            # The simulator pauses where a busy machine keeps the window from drawing.
+            self.choose("resume")
         axes = self._stick_axes()
         slow = FINE_M if fine else COARSE_M
         give_up = self.view.state["time"] + LONGEST_WAY_S

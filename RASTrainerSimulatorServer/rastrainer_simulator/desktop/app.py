@@ -30,7 +30,7 @@ LOOK_S = 0.004
 """How often the window looks for keys while nothing arrives."""
 LEAST_REFRESH_HZ = 60.0
 TRIED_FRAMES = 12
-POLITENESS = 10
+POLITENESS = 3
 LEFT_BUTTON = 1
 OWN_KEYS = (pygame.K_F11, pygame.K_F12)
 """Full screen, and keep a picture: these the simulator is not told."""
