@@ -129,7 +129,9 @@ def _add_series(chart: Any, series: Any) -> None:
     if table is None or table.GetNumberOfRows() < 1:
         return
     isBar = series.GetPlotType() == series.PlotTypeScatterBar
-    plot = chart.AddPlot(vtk.vtkChart.BAR if isBar else vtk.vtkChart.LINE)
+    # VTK complains about a line of one point.
+    curve = vtk.vtkChart.LINE if table.GetNumberOfRows() > 1 else vtk.vtkChart.POINTS
+    plot = chart.AddPlot(vtk.vtkChart.BAR if isBar else curve)
     # A column by its name: VTK raises nothing for a missing one, and draws nothing.
     names = [table.GetColumnName(column) for column in range(table.GetNumberOfColumns())]
     horizontal, vertical = series.GetXColumnName(), series.GetYColumnName()
