@@ -311,7 +311,7 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(panels, add_t
     assert "CTPS as published" in measures
     assert "rises with a slower completion" in panels.text("ctpsText")
     groups = {row[2] for row in cells(panels, "standingsTable")}
-    assert groups == {"own trials", "reference group"}
+    assert groups == {"own", "reference"}
     panels.choose("trialComboBox", "1: task-1")
     assert cells(panels, "motionTable") == [["Smoothness, SPARC", "-1.90"]]
     panels.press("showTablesButton")

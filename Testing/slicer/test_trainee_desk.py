@@ -136,11 +136,11 @@ def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(des
     add_trial(3, trainee="b", task="task-2", completionTimeS=10.0)
     trial = add_trial(4, trainee="a", completionTimeS=90.0)
     found = {(s.group, s.title): s for s in standings(desk.study, trial, COHORT)}
-    own = found["own trials", "Completion time"]
+    own = found["own", "Completion time"]
     assert (own.count, own.median, own.betterThan) == (1, 120.0, 1.0)
-    others = found["other trainees", "Completion time"]
+    others = found["others", "Completion time"]
     assert (others.count, others.median, others.betterThan) == (1, 60.0, 0.0)
-    reference = found["reference group", "Completion time"]
+    reference = found["reference", "Completion time"]
     assert (reference.count, reference.median, reference.betterThan) == (4, 95.0, 0.5)
 
 

@@ -169,7 +169,11 @@ class TraineesPanel:
             )
         elif not ui.traineeText.text:
             self._say(_("Choose who trains, or create a new trainee."))
-        fillTable(ui.historyTable, (_historyRow(n, t) for n, t in enumerate(history, start=1)))
+        fillTable(
+            ui.historyTable,
+            (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
+            [trial.record.started_utc for trial in history],
+        )
 
     def _say(self, sentence: str, **values: Any) -> None:
         self._ui.traineeText.text = sentence.format(**values)
@@ -188,7 +192,7 @@ def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
     record = trial.record
     return (
         str(number),
-        record.started_utc[:16].replace("T", " "),
+        record.started_utc[5:16].replace("T", " "),
         record.task if record.mode == Mode.DESKTOP.value else f"{record.task}, {record.mode}",
         f"{record.completion_time_s:.1f}",
         millimeters(trial.true_tre_mm).removesuffix(" mm"),

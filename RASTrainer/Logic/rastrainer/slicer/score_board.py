@@ -120,7 +120,7 @@ def standings(study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()) ->
     own = [o for o in outcomes if o.trainee == record.trainee and o is not this]
     others = [o for o in outcomes if o.trainee != record.trainee]
     found = []
-    for group, members in ((_("own trials"), own), (_("other trainees"), others)):
+    for group, members in ((_("own"), own), (_("others"), others)):
         for title, unit, better, name in _COMPARED:
             value = getattr(this, name)
             values = [v for v in (getattr(o, name) for o in members) if v is not None]
@@ -213,7 +213,7 @@ def _besideCohort(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Standing]
     ]
     if not peers:
         return []
-    group = _("reference group")
+    group = _("reference")
     times = [peer.completion_time_s for peer in peers]
     found = [_standing(_("Completion time"), "s", record.completion_time_s, group, times, -1)]
     if rigid is not None:
