@@ -15,7 +15,7 @@ IWER = WEB / "node_modules" / "iwer" / "build" / "iwer.min.js"
 # Mesa draws several times faster than Chromium's own software renderer.
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"]
 PATIENCE_MS = 60_000
-SMALL = {"width": 480, "height": 270}
+SMALL = {"width": 400, "height": 220}
 EYES_M = (0.1, 1.62, 0.2)
 
 _EMULATE = """

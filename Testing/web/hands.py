@@ -46,7 +46,7 @@ class BrowserPad:
     def tap(self, control: str) -> None:
         index = BUTTONS[control]
         self._page.evaluate(
-            "async (i) => { press(i, 1); await frames_(2); press(i, 0); await frames_(2); }", index
+            "async (i) => { press(i, 1); await frames_(2); press(i, 0); await frames_(1); }", index
         )
 
     def push(self, right: float, forward: float, up: float) -> None:
@@ -64,14 +64,14 @@ class Controllers:
             self._page.evaluate(
                 """async ([x, y]) => {
                   device.controllers.left.updateAxes("thumbstick", x, y); await frames_(2);
-                  device.controllers.left.updateAxes("thumbstick", 0, 0); await frames_(2); }""",
+                  device.controllers.left.updateAxes("thumbstick", 0, 0); await frames_(1); }""",
                 list(STEPS[control]),
             )
             return
         self._page.evaluate(
             """async ([hand, button]) => {
               device.controllers[hand].updateButtonValue(button, 1); await frames_(2);
-              device.controllers[hand].updateButtonValue(button, 0); await frames_(2); }""",
+              device.controllers[hand].updateButtonValue(button, 0); await frames_(1); }""",
             list(CONTROLLER_BUTTONS[control]),
         )
 

@@ -16,16 +16,14 @@ from Testing.web.place import Place
 FOLDER = Path(__file__).parents[2] / "Screenshots"
 DESKTOP = {"width": 1600, "height": 900}
 BOTH_EYES = {"width": 1832, "height": 960}
-COLORS = 255
-LOOK_DOWN_AND_ASIDE = "device.quaternion.set(-0.2, -0.1, -0.02, 0.97)"
-LOOK_AT_THE_BOARD = "device.quaternion.set(-0.06, -0.22, -0.014, 0.97)"
+LOOK_DOWN_AND_ASIDE = "device.quaternion.set(-0.19, -0.17, -0.03, 0.966)"
+LOOK_AT_THE_BOARD = "device.quaternion.set(-0.03, -0.24, -0.01, 0.97)"
 
 
 def keep(page: Page, name: str) -> None:
     """Keep what the window shows."""
     page.evaluate("frames_(8)")
     image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-    image = image.quantize(COLORS, dither=Image.Dither.NONE)
     image.save(FOLDER / name, optimize=True)
     print(name, (FOLDER / name).stat().st_size)
 
@@ -42,6 +40,7 @@ def main() -> None:
             page.wait_for_selector("body[data-scene=task-1]")
             trainee.touch_all(4)
             trainee.approach(place.view.state["next"], 0.004)
+            page.evaluate("page.stage.setQuality('high')")
             keep(page, "page.png")
             page.close()
             page = open_page(browser, url, code, "metaQuest2", size=BOTH_EYES)
@@ -50,9 +49,8 @@ def main() -> None:
             page.evaluate(LOOK_AT_THE_BOARD)
             keep(page, "headset_menu.png")
             trainee.choose("resume")
-            trainee.press("menu", lambda: trainee.menu is not None, "the menu")
-            trainee.choose("resume")
             page.evaluate(LOOK_DOWN_AND_ASIDE)
+            page.wait_for_function("page.screen.menu === null")
             keep(page, "headset.png")
         browser.close()
 

@@ -51,6 +51,8 @@ def session(tmp_path_factory, browser) -> dict:
         trainee.choose("resume")
         trainee.until(lambda: place.view.state["phase"] == "running", "the trial again")
         told["touched after coming back"] = trainee.touched
+        trainee.touch_all(3)
+        trainee.have_touched(14)
         trainee.touch_all()
         slicer = place.start_slicer()
         trainee.press("touch", lambda: trainee.menu is not None, "the choice")

@@ -31,7 +31,7 @@ class ViewLimits:
     messages_per_s: float = 500.0
     first_message_s: float = 5.0
     silent_s: float = 0.5
-    lost_s: float = 3.0
+    lost_s: float = 5.0
     state_hz: float = 60.0
     waiting_events: int = 256
     buffer_bytes: int = 32 * 1024

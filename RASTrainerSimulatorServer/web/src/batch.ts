@@ -34,7 +34,7 @@ export function batch(root: Object3D, finish: Finish, apart: ReadonlySet<Object3
   }
   if (lit.length > 0) root.add(new Mesh(mergeGeometries(lit), material(finish)));
   if (glowing.length > 0) {
-    root.add(new Mesh(mergeGeometries(glowing), new MeshBasicMaterial({ vertexColors: true })));
+    root.add(new Mesh(mergeGeometries(glowing), new MeshBasicMaterial({ vertexColors: true, toneMapped: false })));
   }
 }
 

@@ -49,6 +49,7 @@ export class Page {
       const isSeen = this.headset !== null || !document.hidden;
       this.connection.send("visibility", { isVisible: isSeen });
     });
+    this.stage.setQuality(this.stage.affordable);
     this.stage.renderer.setAnimationLoop((now, frame) => this.turn(now, frame));
   }
 
@@ -144,6 +145,7 @@ export class Page {
   private leaveHeadset(): void {
     this.headset?.end();
     this.headset = null;
+    this.stage.setQuality(this.stage.affordable);
     this.frames.reset();
     this.connection.rejoin(PAGE);
     this.enter.setInside(false);

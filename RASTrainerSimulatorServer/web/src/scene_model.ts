@@ -141,5 +141,5 @@ export async function loadScene(news: SceneNews, bodies: readonly string[]): Pro
 }
 
 function glow(color: Color): MeshBasicMaterial {
-  return new MeshBasicMaterial({ color: color.clone() });
+  return new MeshBasicMaterial({ color: color.clone(), toneMapped: false });
 }

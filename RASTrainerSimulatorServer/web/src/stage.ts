@@ -20,6 +20,9 @@ const SKY = new Color(0xe6edf2);
 const SHADOW_SIDE = 0.9;
 const SHADOW_PIXELS = 1024;
 
+/** Names of renderers that draw with the processor, which the simulator may need itself. */
+const SOFTWARE = /llvmpipe|softpipe|swiftshader|software/i;
+
 export type Quality = "high" | "low";
 
 export class Stage {
@@ -46,6 +49,14 @@ export class Stage {
     this.model = model;
     this.scene.add(model.root);
     this.cast(this.renderer.shadowMap.enabled);
+  }
+
+  /** What this machine can afford on a flat display. */
+  get affordable(): Quality {
+    const context = this.renderer.getContext();
+    const names = context.getExtension("WEBGL_debug_renderer_info");
+    const name = context.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER);
+    return SOFTWARE.test(String(name)) ? "low" : "high";
   }
 
   /** Draw with shadows, or without. */

@@ -17,7 +17,6 @@ const HELP = { size: 29, color: COLORS.soft };
 
 export function paintMenu(pen: Pen, menu: Menu, width: number, height: number, hovered: string): Region[] {
   const room = width - 2 * PAD;
-  pen.box(0, 0, width, height, COLORS.night, 40);
   let y = PAD - 6;
   y += pen.paragraph(menu.title, PAD, y, TITLE, room) + 14;
   for (const text of menu.paragraphs) y += pen.paragraph(text, PAD, y, BODY, room) + 12;
@@ -39,7 +38,8 @@ export function paintMenu(pen: Pen, menu: Menu, width: number, height: number, h
     if (item.is_enabled) regions.push({ name: item.name, x: PAD, y, width: room, height: ROW });
     y += ROW + GAP;
   }
-  if (help !== "") pen.paragraph(help, PAD, y + 4, HELP, room);
+  if (help !== "") y += pen.paragraph(help, PAD, y + 4, HELP, room);
+  pen.behind(width, Math.min(height, y + PAD - 10), COLORS.night);
   return regions;
 }
 

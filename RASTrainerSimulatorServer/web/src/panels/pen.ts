@@ -49,6 +49,13 @@ export class Pen {
     this.context.fill();
   }
 
+  /** Fill behind all that is painted already. */
+  behind(width: number, height: number, color: string, radius = 40): void {
+    this.context.globalCompositeOperation = "destination-over";
+    this.box(0, 0, width, height, color, radius);
+    this.context.globalCompositeOperation = "source-over";
+  }
+
   frame(x: number, y: number, width: number, height: number, color: string, radius = 20): void {
     this.context.strokeStyle = color;
     this.context.lineWidth = 4;

@@ -12,7 +12,7 @@ import { CloseUp } from "./close_up";
 import type { Placement } from "./placement";
 
 /** Beside the direction of the head, in rad, and away from the eyes, in m. */
-const ASIDE = 0.5;
+const ASIDE = 0.62;
 const AWAY = 1.1;
 const WIDE = 0.86;
 const WARNING_AWAY = 1.0;
@@ -63,12 +63,12 @@ export class Boards {
     this.room.position.copy(eyes).addScaledVector(toBoard, AWAY);
     this.room.lookAt(eyes);
     this.menu.mesh.position.y = -0.06;
-    this.actions.mesh.position.set(0, -0.06 - 0.43 - 0.1, 0.02);
+    this.actions.mesh.position.set(0, 0.48, 0.02);
     this.work.mesh.position.y = 0.16;
     this.closeUp.mesh.position.set(0, -0.37, 0.02);
     this.work.mesh.rotation.x = 0;
     this.closeUp.mesh.rotation.x = -0.3;
-    this.actions.mesh.rotation.x = -0.3;
+    this.actions.mesh.rotation.x = 0.2;
   }
 
   show(screen: Screen): void {
