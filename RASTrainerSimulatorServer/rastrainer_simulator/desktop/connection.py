@@ -22,6 +22,7 @@ from rastrainer_simulator.view_server.messages import HELLO, SUBPROTOCOL
 RETRY_S = 1.0
 ANSWER_S = 10.0
 SILENCE_S = 20.0
+STATE_BEGINS = '{"type":"state"'
 LARGEST_MESSAGE = 2**20
 LARGEST_SCENE = 2**28
 UNAUTHORIZED = 401
@@ -39,7 +40,6 @@ class Connection:
         self._refresh_hz = refresh_hz
         self._stream: aiohttp.ClientWebSocketResponse | None = None
         self._outgoing: asyncio.Queue[Mapping[str, Any]] = asyncio.Queue()
-        self._bodies: tuple[str, ...] = ()
         self._last_event = 0
         self._scene_url = ""
 
@@ -96,6 +96,10 @@ class Connection:
                 await stream.send_str(json.dumps(await self._outgoing.get()))
 
     async def _take(self, session: aiohttp.ClientSession, text: str) -> None:
+        if text.startswith(STATE_BEGINS):
+            self._inbox.take_state(text)
+            self._inbox.problem = ""
+            return
         try:
             message = decode_finite_json(text)
             kind = message["type"]
@@ -106,16 +110,10 @@ class Connection:
         except (InputError, KeyError, TypeError, ValueError) as error:
             _log.warning("A message of the simulator cannot be used: %s", error)
             return
-        if self._inbox.problem and self._inbox.state is not None:
-            self._inbox.problem = ""
         self._inbox.touch()
 
     def _take_welcome(self, message: Mapping[str, Any]) -> None:
-        self._bodies = tuple(message["bodies"])
-
-    def _take_state(self, message: Mapping[str, Any]) -> None:
-        poses = dict(zip(self._bodies, message["poses"], strict=True))
-        self._inbox.take_state({**message, "poses": poses})
+        self._inbox.bodies = tuple(message["bodies"])
 
     def _take_screen(self, message: Mapping[str, Any]) -> None:
         self._inbox.screen = screen_from_json(message["screen"])
@@ -137,7 +135,7 @@ class Connection:
             while not answer.content.at_eof() and len(content) < LARGEST_SCENE:
                 content += await answer.content.read(LARGEST_SCENE - len(content))
         self._inbox.scene = SceneNews(
-            read_parts(content, self._bodies),
+            read_parts(content, self._inbox.bodies),
             {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
             {str(label): tuple(place) for label, place in message["fiducials"].items()},
         )
@@ -149,7 +147,6 @@ class Connection:
 
 _TAKE: Mapping[str, Callable[[Connection, Mapping[str, Any]], None]] = {
     "welcome": Connection._take_welcome,
-    "state": Connection._take_state,
     "screen": Connection._take_screen,
     "event": Connection._take_event,
 }

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from rastrainer.finite_json import decode_finite_json
 from rastrainer_simulator.desktop.flight import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import Part
 from rastrainer_simulator.flow.screen import Screen
+
+STATE_MEMBERS = ("tick", "phase", "proximity", "camera", "next", "touched")
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -35,8 +41,8 @@ class Inbox:
     """The latest of everything; only sounds wait for each other.
 
     Attributes:
-        state: members of the latest `state` message; None before the first.
-        states: how many have come.
+        state: members of the latest `state` message, as of the last `read_state`; None before.
+        bodies: names in the order of a state's poses.
         screen: what the trainee reads; None before the first.
         scene: None until one has been loaded.
         sounds: those not played yet.
@@ -45,18 +51,33 @@ class Inbox:
 
     def __init__(self) -> None:
         self.state: Mapping[str, Any] | None = None
-        self.states = 0
+        self._unread: str | None = None
         self.screen: Screen | None = None
         self.scene: SceneNews | None = None
         self.sounds: deque[SoundEvent] = deque(maxlen=16)
         self.problem = "window.connecting"
+        self.bodies: tuple[str, ...] = ()
         self._has_changed = asyncio.Event()
 
-    def take_state(self, state: Mapping[str, Any]) -> None:
-        """Replace the state."""
-        self.state = state
-        self.states += 1
+    def take_state(self, text: str) -> None:
+        """Replace the state by a message, which nobody reads before it is to be drawn.
+
+        So a window that draws slowly still keeps up with what is sent 60 times a second.
+        """
+        self._unread = text
         self.touch()
+
+    def read_state(self) -> None:
+        """Read the latest message; one that is no state changes nothing."""
+        text, self._unread = self._unread, None
+        if text is None:
+            return
+        try:
+            members = decode_finite_json(text)
+            poses = dict(zip(self.bodies, members["poses"], strict=True))
+            self.state = {name: members[name] for name in STATE_MEMBERS} | {"poses": poses}
+        except (KeyError, TypeError, ValueError) as error:
+            _log.warning("A state of the simulator cannot be used: %s", error)
 
     def touch(self) -> None:
         """Wake whoever waits for news."""

@@ -53,6 +53,7 @@ class Picture:
     def is_due(self, now: float) -> bool:
         """Take in what has come, and return whether the picture is to be drawn."""
         self._window.fit()
+        self._inbox.read_state()
         self._take_scene()
         self._take_state(now)
         screen = self._inbox.screen

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 import trimesh
@@ -44,10 +46,11 @@ def make_glb() -> bytes:
     return to_glb([tool, head, room])
 
 
-def state(**changes):
-    """Return the members of a state message, with the tool in front of the forehead."""
+def state_text(**changes):
+    """Return a state message, with the tool in front of the forehead."""
     poses = {"tool": (0.0, -0.15, 0.05, 0.0, 0.0, 0.0, 1.0), "head": HERE}
-    return {
+    members = {
+        "type": "state",
         "tick": 1,
         "time": 0.0,
         "poses": poses,
@@ -58,6 +61,8 @@ def state(**changes):
         "touched": ["1"],
         **changes,
     }
+    members["poses"] = [members["poses"][body] for body in BODIES]
+    return json.dumps(members, separators=(",", ":"))
 
 
 MENU = Menu(

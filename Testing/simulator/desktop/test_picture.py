@@ -16,7 +16,7 @@ from Testing.simulator.desktop.conftest import (
     MENU,
     SCREEN,
     SIZE,
-    state,
+    state_text,
 )
 
 BLUE, RED = ((0, 40, 200), (60, 120, 255)), ((220, 0, 0), (255, 70, 70))
@@ -26,6 +26,7 @@ GREEN, YELLOW = ((10, 130, 40), (70, 190, 100)), ((220, 170, 0), (255, 255, 215)
 @pytest.fixture(scope="module")
 def inbox(glb):
     inbox = Inbox()
+    inbox.bodies = BODIES
     views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
     inbox.scene = SceneNews(read_parts(glb, BODIES), views, FIDUCIALS)
     return inbox
@@ -46,7 +47,7 @@ def show(gl_window, inbox, picture):
 
     def show(screen=SCREEN, **changes):
         inbox.screen, inbox.problem = screen, ""
-        inbox.take_state(state(**changes))
+        inbox.take_state(state_text(**changes))
         # Twice: a camera that sets out arrives.
         for now in (float(next(times)), float(next(times))):
             picture.is_due(now)
@@ -124,9 +125,9 @@ def test_the_inset_shows_the_other_camera_in_a_white_frame_and_gives_way_to_a_me
 def test_nothing_is_drawn_twice_while_nothing_changes(show, picture, inbox):
     show(next=None)
     assert not picture.is_due(1e5)
-    inbox.take_state(state(next=None, tick=99))
+    inbox.take_state(state_text(next=None, tick=99))
     assert not picture.is_due(1e5)
-    inbox.take_state(state(next=None, proximity="proximity"))
+    inbox.take_state(state_text(next=None, proximity="proximity"))
     assert picture.is_due(1e5)
 
 
@@ -143,7 +144,7 @@ def test_the_next_fiducial_pulses(show, picture, gl_window):
 
 def test_the_camera_flies_and_arrives(show, picture, inbox):
     show()
-    inbox.take_state(state(camera="far"))
+    inbox.take_state(state_text(camera="far"))
     distances = []
     for now in (3e5, 3e5 + FLIGHT_S / 2, 3e5 + FLIGHT_S):
         picture.is_due(now)
