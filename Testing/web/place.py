@@ -111,7 +111,8 @@ class Trainee(StreamTrainee):
         while self.menu.name != "experiment":
             self.choose("skip" if self.menu.name == "introduction" else "next")
         self.focus("trainee")
-        page.keyboard.type("P7")
+        if not self.value("trainee"):
+            page.keyboard.type("P7")
         self.until(lambda: self.value("trainee") == "P7", "the ID")
         self.choose(task)
         self.until(lambda: self.view.state["phase"] == "running", "the trial")

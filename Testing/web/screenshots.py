@@ -50,7 +50,7 @@ def main() -> None:
             keep(page, "headset_menu.png")
             trainee.choose("resume")
             page.evaluate(LOOK_DOWN_AND_ASIDE)
-            page.wait_for_function("page.screen.menu === null")
+            page.wait_for_selector('body[data-menu=""]')
             keep(page, "headset.png")
         browser.close()
 

@@ -47,7 +47,7 @@ def test_who_has_not_paired_sees_the_form_and_nothing_else(place, stranger, way)
     assert stranger.evaluate("fetch('/sounds/touch.wav').then((a) => a.status)") == 401
     stranger.fill("#code", "000000" if place.simulator.code != "000000" else "111111")
     stranger.press("#code", "Enter")
-    stranger.wait_for_function("document.querySelector('#pairing output').value !== ''")
+    stranger.wait_for_selector("#pairing output:not(:empty)")
     stranger.fill("#code", place.simulator.code)
     stranger.press("#code", "Enter")
     stranger.wait_for_selector("body[data-scene]")
@@ -81,7 +81,7 @@ def test_a_second_operator_cannot_take_the_control_unasked(place, browser):
     pages[1].keyboard.press("Escape")
     pages[1].wait_for_selector("#warnings li[data-tone=warning]")
     assert first.menu.name == "introduction"
-    pages[0].wait_for_function("page.control.isYou")
+    pages[0].wait_for_selector("#control:has-text('You drive')")
     assert not pages[1].evaluate("page.control.isYou")
     for page in pages:
         page.context.close()
