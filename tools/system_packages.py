@@ -20,7 +20,12 @@ window.SetOffScreenRendering(1)
 window.AddRenderer(vtk.vtkRenderer())
 window.Render()
 """
+OPEN_QT = """
+from PySide6.QtWidgets import QApplication
+QApplication([])
+"""
 OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
+FONTS = Path("/usr/share/fonts/truetype")
 
 
 def missing_packages(target: str) -> list[str]:
@@ -28,13 +33,30 @@ def missing_packages(target: str) -> list[str]:
     wanted = []
     if not _loads("libgomp.so.1"):
         wanted += ["libgomp1"]
-    if not _renders():
+    if not _runs(RENDER_ONE_PICTURE):
         wanted += ["libegl1", "libgl1-mesa-dri", "libxcursor1"]
+    if target in ("simulator", "test") and not _loads("libGLX.so.0"):
+        wanted += ["libgl1", "libglx-mesa0"]
     if target == "test":
-        if shutil.which("g++") is None:
-            wanted += ["g++", "libc6-dev"]
-        if not OPENIGTLINK_HEADER.exists():
-            wanted += ["libopenigtlink-dev"]
+        wanted += _for_tests()
+    return wanted
+
+
+def _for_tests() -> list[str]:
+    """Return what the tests miss: a compiler, a display in memory, a browser, Qt's libraries."""
+    wanted = []
+    if shutil.which("g++") is None:
+        wanted += ["g++", "libc6-dev"]
+    if not OPENIGTLINK_HEADER.exists():
+        wanted += ["libopenigtlink-dev"]
+    if shutil.which("Xvfb") is None:
+        wanted += ["xvfb"]
+    if shutil.which("chromium") is None:
+        wanted += ["chromium"]
+    if not FONTS.is_dir():
+        wanted += ["fonts-dejavu-core"]
+    if not _runs(OPEN_QT, QT_QPA_PLATFORM="offscreen"):
+        wanted += ["libegl1", "libgl1", "libfontconfig1", "libxkbcommon0", "libdbus-1-3"]
     return wanted
 
 
@@ -46,9 +68,11 @@ def _loads(library: str) -> bool:
     return True
 
 
-def _renders() -> bool:
-    """Tell by trying: which libraries a picture needs depends on the machine's graphics."""
-    attempt = subprocess.run([sys.executable, "-c", RENDER_ONE_PICTURE], capture_output=True)
+def _runs(script: str, **environment: str) -> bool:
+    """Tell by trying: which libraries something needs depends on the machine."""
+    attempt = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, env={**os.environ, **environment}
+    )
     return attempt.returncode == 0
 
 
