@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +17,7 @@ from rastrainer_simulator.planning.task_proposal import (
     PLANS,
     Places,
     Proposal,
+    TaskPlan,
     TaskProposer,
     places_seen_from,
 )
@@ -30,6 +32,14 @@ FACE_MARGIN_MM = 10.0
 SCREENING_SEEDS = range(1000, 1006)
 CHECK_SEEDS = range(2000, 2012)
 ATTEMPTS = 4
+WIDEN_DEG, WIDEST_DEG = 10.0, 75.0
+"""Where there is no room for the easy tasks, they may lie so much farther from the middle of the
+view, each time."""
+
+NOT_ALL_TOUCHABLE = (
+    "No set of tasks was found whose fiducials the robot can all touch; bring the head nearer to "
+    "the robot, or let it stand with less perturbation."
+)
 _DECIMALS = 4
 
 Progress = Callable[[str, float], None]
@@ -53,20 +63,22 @@ class TaskSetProposer:
         Raises:
             InputError: the robot reaches too little of this head, or there is no room.
         """
-        places = self._places
+        places, problem = self._places, NOT_ALL_TOUCHABLE
         for attempt in range(ATTEMPTS):
             self._progress("Placing fiducials", 0.45 + 0.12 * attempt)
-            proposals = self._proposer(places).propose_rising(PLANS, seed + attempt)
+            try:
+                proposer = self._proposer(places)
+                proposals = proposer.propose_rising(_plans(attempt), seed + attempt)
+            except InputError as error:
+                problem = str(error)
+                continue
             self._progress("Checking reach", 0.52 + 0.12 * attempt)
             missed = self._missed(proposals)
             if not len(missed):
                 return tuple(_task(proposal) for proposal in proposals)
             is_kept = ~(places.positions[:, None] == missed[None]).all(axis=2).any(axis=1)
             places = Places(*(values[is_kept] for values in vars(places).values()))
-        raise InputError(
-            "No set of tasks was found whose fiducials the robot can all touch; bring the head "
-            "nearer to the robot, or let it stand with less perturbation."
-        )
+        raise InputError(problem)
 
     @cached_property
     def _places(self) -> Places:
@@ -108,6 +120,14 @@ class TaskSetProposer:
         normals = np.array([outward_normal(self._bench.mesh, point) for point in fiducials])
         can_be = self._bench.touchable(fiducials, normals, self._bench.poses(CHECK_SEEDS))
         return fiducials[~can_be]
+
+
+def _plans(attempt: int) -> list[TaskPlan]:
+    """Return the plans, the easy ones with more room after failures."""
+    wider = WIDEN_DEG * attempt
+    return [
+        replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider)) for plan in PLANS
+    ]
 
 
 def _task(proposal: Proposal) -> Task:

@@ -17,6 +17,7 @@ MARGIN = 14
 """Voxels added around the image, in which the nose and the ears may close."""
 
 MOST_TRIANGLES = 60_000
+MOST_DECIMATIONS, BASE_RESERVE = 3, 500
 LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
 
@@ -114,8 +115,15 @@ def skin_of(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadM
     """Return the surface of a head; arguments and errors as of `extract_head`."""
     progress("Making the surface", 0.8)
     skin = surface.surface_of(_agreeing(head.level, head.body), head.origin, SPACING_MM)
-    skin = surface.decimated(surface.smoothed(skin), settings.triangles, head.base_mm)
-    mesh = surface.mesh_of(surface.cut_flat(skin, head.base_mm))
+    skin, wanted = surface.smoothed(skin), settings.triangles
+    for _ in range(MOST_DECIMATIONS):
+        fewer = surface.decimated(skin, wanted, head.base_mm)
+        mesh = surface.mesh_of(surface.cut_flat(fewer, head.base_mm))
+        # The base is not decimated with the rest; how many it adds shows only afterwards.
+        over = len(mesh.triangles) - MOST_TRIANGLES
+        if over <= 0:
+            break
+        wanted -= over + BASE_RESERVE
     _check(mesh)
     progress("Done", 1.0)
     return mesh

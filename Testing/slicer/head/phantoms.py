@@ -1,0 +1,45 @@
+"""Heads of which everything is known: an egg with nose, skull and neck, as MRI or CT."""
+
+import numpy as np
+
+from rastrainer.slicer.head.volume import Volume
+
+SEMI_AXES = np.array([62.0, 76.0, 70.0])
+NOSE = np.array([0.0, 74.0, -22.0])
+SCALP_MM, SKULL_MM = 6.0, 6.0
+MRI = {"scalp": 100.0, "bone": 10.0, "brain": 75.0, "air": 0.0}
+CT = {"scalp": 40.0, "bone": 1100.0, "brain": 30.0, "air": -1000.0}
+
+
+def depth_mm(ras):
+    """Return how deep places (n, 3) are below the skin, mm, roughly; negative outside."""
+    radius = np.linalg.norm(ras / SEMI_AXES, axis=1)
+    gradient = np.linalg.norm(ras / SEMI_AXES**2, axis=1) / np.maximum(radius, 1e-9)
+    egg = (1.0 - radius) / np.maximum(gradient, 1e-9)
+    neck = 45.0 - np.hypot(ras[:, 0], ras[:, 1] + 10.0)
+    neck = np.where(ras[:, 2] < 0, neck, -50.0)
+    nose = 12.0 - np.linalg.norm(ras - NOSE, axis=1)
+    return np.maximum(np.maximum(egg, neck), nose)
+
+
+def phantom(values=MRI, spacing=(1.0, 1.0, 1.0), lowest=-62.0, turn_deg=0.0, noise=0.0):
+    """Return a head as a volume with partial volume at the skin."""
+    spacing = np.array(spacing, dtype=float)
+    low, high = np.array([-78.0, -92.0, lowest]), np.array([78.0, 98.0, 82.0])
+    shape = np.ceil((high - low) / spacing).astype(int)
+    c, s = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.diag(spacing)
+    middle = (low + high) / 2.0
+    matrix[:3, 3] = middle - matrix[:3, :3] @ ((shape - 1) / 2.0)
+    ijk = np.indices(shape).reshape(3, -1).T
+    ras = ijk @ matrix[:3, :3].T + matrix[:3, 3]
+    depth = depth_mm(ras)
+    share = np.clip(depth + 0.5, 0.0, 1.0)
+    kind = np.full(len(depth), values["scalp"])
+    kind[depth > SCALP_MM] = values["bone"]
+    kind[depth > SCALP_MM + SKULL_MM] = values["brain"]
+    image = values["air"] + share * (kind - values["air"])
+    if noise:
+        image += np.random.default_rng(3).normal(0.0, noise, len(image))
+    return Volume(image.reshape(shape).astype(np.float32), matrix)
