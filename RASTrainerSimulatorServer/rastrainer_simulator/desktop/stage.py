@@ -122,6 +122,8 @@ class Stage:
     def _light(self) -> None:
         for renderer in (self.main, self._inset):
             renderer.RemoveAllLights()
+            if renderer.GetPass() is not None:
+                renderer.GetPass().ReleaseGraphicsResources(self._window.render_window)
             renderer.SetPass(None)
             renderer.UseFXAAOff()
             renderer.UseImageBasedLightingOff()
