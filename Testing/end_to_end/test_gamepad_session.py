@@ -82,6 +82,7 @@ def session(tmp_path_factory) -> dict:
         trainee.choose("task-1")
         trainee.until_menu(None)
         play(trainee, photographer)
+        trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
         trainee.until_menu("complete")
         trainee.choose("register")
         results = trial_of(slicer)

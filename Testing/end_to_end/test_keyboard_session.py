@@ -30,6 +30,7 @@ def session(tmp_path_factory) -> dict:
         lab.open_window("another", *SMALL)
         for number in range(KILLED_AFTER + 1, 16):
             touch(trainee, str(number))
+        trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
         trainee.until_menu("complete")
         trainee.choose("register")
         results = trial_of(slicer)
