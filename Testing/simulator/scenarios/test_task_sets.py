@@ -1,0 +1,140 @@
+"""Sets of tasks for a head that nobody has seen before: what is proposed, and what is refused."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.face_removal import face_vertices
+from rastrainer.head_mesh import HeadMesh
+from rastrainer.markups import write_markups
+from rastrainer.point_list import PointList
+from rastrainer.scenario_draft import HeadDraft
+from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario_setup import SetUp
+from rastrainer.surface_queries import nearest_on_mesh
+from rastrainer.tasks import LABELS, read_task
+from rastrainer_simulator.planning.task_check import check_tasks
+from rastrainer_simulator.planning.task_set import TaskSetProposer
+from rastrainer_simulator.planning.workbench import Workbench
+from rastrainer_simulator.scenarios.make import Wishes, make_scenario, without_tasks
+from rastrainer_simulator.scenarios.plan_check import check_plan
+from rastrainer_simulator.scene.skin_marks import skin_marks
+from Testing.domain.spheres import sphere_mesh
+
+SEED = 5
+NAMES = ["trial-run", "task-1", "task-2", "task-3", "task-4", "task-5"]
+
+
+def egg():
+    """A head of an egg's shape with a nose, cut flat."""
+    sphere = sphere_mesh(4)
+    direction = sphere.vertices / 90.0
+    nose = np.array([0.0, 0.87, -0.5])
+    bump = 18.0 * np.exp(-((np.linalg.norm(direction - nose, axis=1) / 0.15) ** 2))
+    vertices = direction * np.array([78.0, 98.0, 100.0]) + direction * bump[:, None]
+    vertices[:, 2] = np.maximum(vertices[:, 2], -75.0)
+    return HeadMesh(vertices, sphere.triangles)
+
+
+WISHES = Wishes(
+    "An egg",
+    "made up",
+    "none needed",
+    targets=(PlannedTarget("Tumor", np.array([15.0, 10.0, 30.0])),),
+    trajectory=PlannedTrajectory("Biopsy", np.array([10.0, 20.0, 97.0]), np.array([15.0, 10, 30])),
+)
+
+
+@pytest.fixture(scope="module")
+def bench():
+    head = egg()
+    return Workbench(without_tasks(HeadDraft(head, "made up"), WISHES), head)
+
+
+@pytest.fixture(scope="module")
+def tasks(bench):
+    return TaskSetProposer(bench).propose(SEED)
+
+
+def test_there_are_six_tasks_of_rising_complexity_on_the_skin_off_the_face(bench, tasks):
+    assert [task.name for task in tasks] == NAMES
+    assert all(harder.complexity > 1.05 * easier.complexity for easier, harder in pairwise(tasks))
+    fiducials = np.concatenate([task.fiducials for task in tasks])
+    assert max(nearest_on_mesh(bench.mesh, point).distance for point in fiducials) < 0.05
+    face = bench.mesh.vertices[face_vertices(bench.mesh)]
+    assert len(face) > 100
+    assert np.linalg.norm(fiducials[:, None] - face[None], axis=2).min() > 5.0
+
+
+def test_the_check_of_hand_placed_fiducials_finds_nothing_wrong_with_them(bench, tasks):
+    assert check_tasks(bench, tasks, first_seed=70_000) == []
+
+
+def test_numbers_overlap_neither_arrows_nor_dots_nor_each_other(bench, tasks):
+    for task in tasks[::2]:
+        marks = skin_marks(bench.mesh, task.fiducials, LABELS)
+        for index, mark in enumerate(marks):
+            others = [other for row, other in enumerate(marks) if row != index]
+            shapes = [m.arrow.points for m in marks if m.arrow] + [m.rim.points for m in marks]
+            shapes += [other.number.points for other in others]
+            away = np.linalg.norm(
+                mark.number.points[:, None] - np.concatenate(shapes)[None], axis=2
+            )
+            assert away.min() > 0.3, (task.name, mark.label)
+
+
+def test_the_first_planned_target_is_the_one_whose_error_is_told(bench):
+    assert bench.scenario.target_name == "Tumor"
+    assert check_plan(bench) == []
+
+
+def moved(task, index, point):
+    fiducials = task.fiducials.copy()
+    fiducials[index] = point
+    return replace(task, fiducials=fiducials)
+
+
+def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(bench, tasks):
+    run, first = tasks[:2]
+    lifted = moved(run, 2, run.fiducials[2] * 1.1)
+    assert "Trial run: fiducial 3 is" in check_tasks(bench, [lifted])[0]
+    near = nearest_on_mesh(bench.mesh, run.fiducials[4] + [6.0, 0.0, 0.0]).position
+    assert "fiducials 5 and 7 are" in check_tasks(bench, [moved(run, 6, near)])[0]
+    low = nearest_on_mesh(bench.mesh, np.array([0.0, -30.0, -75.0])).position
+    assert "cannot touch fiducial 9 where the head stands" in " ".join(
+        check_tasks(bench, [moved(run, 8, low)])
+    )
+    assert "must be above" in check_tasks(bench, [first, run])[-1]
+    assert "its complexity is" in check_tasks(bench, [replace(run, complexity=3.0)])[0]
+
+
+def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(bench):
+    outside = (PlannedTarget("Elsewhere", np.array([300.0, 0.0, 0.0])),)
+    scenario = replace(bench.scenario, targets=outside)
+    assert "Elsewhere is" in check_plan(Workbench(scenario, bench.mesh))[0]
+    below = PlannedTrajectory("From below", np.array([0.0, 0.0, -75.0]), np.array([0.0, 0, 20]))
+    scenario = replace(bench.scenario, trajectory=below)
+    assert "From below" in check_plan(Workbench(scenario, bench.mesh))[0]
+
+
+def test_a_head_that_stands_too_far_away_is_refused_and_leaves_nothing(tmp_path):
+    far = Wishes("Far", "made up", "none", setup=SetUp(head_center=(1500.0, 0.0, 220.0)))
+    with pytest.raises(InputError, match="robot") as caught:
+        make_scenario(HeadDraft(egg(), "made up"), far, tmp_path / "far")
+    assert "\n" not in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_fiducials_placed_by_hand_become_tasks(tmp_path, tasks):
+    path = tmp_path / "mine.mrk.json"
+    write_markups(path, PointList(LABELS, tasks[0].fiducials))
+    wishes = replace(WISHES, task_files=(path,))
+    scenario = make_scenario(HeadDraft(egg(), "made up"), wishes, tmp_path / "egg")
+    assert [task.title for task in scenario.tasks] == ["Trial run"]
+    assert scenario.tasks[0].complexity == pytest.approx(tasks[0].complexity, abs=0.02)
+    assert scenario.preview is not None
+    again = read_task(path, "trial-run", "Trial run", 0.0)
+    assert np.array_equal(scenario.tasks[0].fiducials, again.fiducials)
