@@ -135,7 +135,7 @@ class Trainee(StreamTrainee):
 
 
 def scored_trial(slicer: subprocess.Popen) -> dict:
-    """Wait for the end of Slicer's side; return what it tells of its trial."""
+    """Wait for the end of Slicer's side; return the results of its trial."""
     lines = slicer.communicate(timeout=PATIENCE_S)[0].splitlines()
     told = [json.loads(line) for line in lines]
-    return next(line for line in told if line["event"] == "trial")
+    return next(line["results"] for line in told if line["event"] == "trial")

@@ -40,7 +40,10 @@ def main() -> None:
             page.wait_for_selector("body[data-scene=task-1]")
             trainee.touch_all(4)
             trainee.approach(place.view.state["next"], 0.004)
-            page.evaluate("page.stage.setQuality('high')")
+            page.evaluate("page.stage.setQuality('high'); frames_(4)")
+            if trainee.menu is not None:
+                trainee.choose("resume")
+                page.wait_for_selector('body[data-menu=""]')
             keep(page, "page.png")
             page.close()
             page = open_page(browser, url, code, "metaQuest2", size=BOTH_EYES)

@@ -59,6 +59,7 @@ def session(tmp_path_factory, browser) -> dict:
         trainee.choose("register")
         told["trial"] = scored_trial(slicer)
         trainee.until_menu("result")
+        told["menu"] = trainee.menu
         told["entries"] = place.entries()
         told["problems"] = page.problems
     return told
@@ -113,7 +114,8 @@ def test_leaving_the_headset_pauses_the_trial_and_loses_nothing(session):
 
 
 def test_a_trial_by_controllers_is_registered_and_scored(session):
-    assert session["trial"]["score"] > 0
+    assert session["trial"]["mode"] == "hmd"
+    assert session["menu"].facts[0].label == "Score"
     assert session["problems"] == []
 
 

@@ -38,9 +38,9 @@ def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
     slicer = place.start_slicer()
     trainee.press("touch", lambda: trainee.menu is not None, "the choice")
     trainee.choose("register")
-    trial = scored_trial(slicer)
-    assert trial["score"] > 0
+    assert scored_trial(slicer)["mode"] == "desktop"
     trainee.until_menu("result")
+    assert trainee.menu.facts[0].label == "Score"
     page.wait_for_selector("#menu dl dd[data-tone]")
 
 

@@ -20,10 +20,19 @@ export function paintWork(pen: Pen, screen: Screen, holder: string, width: numbe
     pen.paragraph(notice.text, PAD + 20, y + 12, NOTICE, room - 40);
     y += lines * 41 + 34;
   }
-  screen.status.forEach((fact, index) => {
-    pen.line(fact, PAD + (index % 2) * 0.5 * room, y + 26 + 52 * Math.floor(index / 2), FACT, room);
-  });
-  y += 52 * Math.ceil(screen.status.length / 2) + 20;
+  let x = PAD;
+  for (const fact of screen.status) {
+    const isWide = pen.width(fact, FACT) > 0.5 * room - 16;
+    if (isWide && x > PAD) {
+      x = PAD;
+      y += 52;
+    }
+    pen.line(fact, x, y + 26, FACT, isWide ? room : 0.5 * room);
+    const isRowFull = isWide || x > PAD;
+    x = isRowFull ? PAD : PAD + 0.5 * room;
+    if (isRowFull) y += 52;
+  }
+  y += x > PAD ? 72 : 20;
   paintHints(pen, screen, y, width);
   pen.line(holder, PAD, height - 42, HINT, room);
 }
