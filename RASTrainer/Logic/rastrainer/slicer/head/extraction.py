@@ -29,7 +29,7 @@ class HeadSettings:
     """What may be chosen about the extraction.
 
     Attributes:
-        threshold: value that parts air from skin; None finds it (Otsu; −300 HU of a CT).
+        threshold: value that parts air from skin; None finds it (Otsu; −475 HU of a CT).
         base_mm: height (S) of the flat base; None for just above the image's lower edge, or the
             neck.
         noise_mm: standard deviation of the smoothing of the image.

@@ -10,7 +10,7 @@ from scipy import ndimage
 from rastrainer.errors import InputError
 from rastrainer.slicer.head import mask
 
-CT_AIR, CT_SKIN = -1000.0, -300.0
+CT_AIR, CT_SKIN = -1000.0, -475.0
 """Hounsfield units; the skin's surface is half-way between air and what lies under it."""
 
 CT_LOW_QUANTILE, CT_LOW = 0.02, -500.0
@@ -39,7 +39,7 @@ def find_tissue(values: np.ndarray, threshold: float | None, noise: float) -> Ti
 
     Args:
         values: (i, j, k) float.
-        threshold: None finds it: −300 HU of a CT, else by Otsu's method.
+        threshold: None finds it: −475 HU of a CT, else by Otsu's method.
         noise: standard deviation of the smoothing, in voxels.
 
     Raises:

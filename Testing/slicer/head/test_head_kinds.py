@@ -1,0 +1,85 @@
+"""MRI, CT and edited segments of the same head give the same skin; the skull is what it is."""
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, extract_head, find_head
+from rastrainer.slicer.head.head_draft import make_draft
+from rastrainer.slicer.head.segment import for_segment, show_segment, volume_of_segment
+from rastrainer.slicer.head.volume import Volume
+from Testing.slicer.head.phantoms import CT, NOSE, SCALP_MM, depth_mm, phantom
+
+BASE = -12.0
+SETTINGS = HeadSettings(base_mm=BASE)
+
+
+@pytest.fixture(scope="module")
+def ct_draft():
+    """A CT on a table, turned in the scanner, with thick slices."""
+    return make_draft(phantom(CT, spacing=(1.2, 1.2, 2.0), turn_deg=9.0, noise=15.0), SETTINGS)
+
+
+def errors_mm(mesh):
+    """Distances of vertices to the skin, away from the base and the nose, (n,)."""
+    away = mesh.vertices[mesh.vertices[:, 2] > BASE + 4]
+    nose = np.linalg.norm(away - NOSE, axis=1) < 20
+    return np.abs(depth_mm(away[~nose]))
+
+
+def is_one_closed_body(mesh):
+    return mesh.is_closed and mesh.euler_characteristic == 2 and len(mesh.triangles) <= 60_000
+
+
+def test_the_skin_of_a_ct_is_found(ct_draft):
+    draft, warnings = ct_draft
+    assert not warnings
+    assert is_one_closed_body(draft.head)
+    errors = errors_mm(draft.head)
+    assert errors.mean() < 0.5
+    assert np.percentile(errors, 95) < 1.0
+
+
+def test_the_skull_of_a_ct_is_its_bone(ct_draft):
+    draft, _ = ct_draft
+    assert not draft.is_skull_approximate
+    upper = draft.skull.vertices[draft.skull.vertices[:, 2] > 0]
+    depth = depth_mm(upper)
+    outer = depth[depth < SCALP_MM + 3]
+    assert len(outer) > 1000
+    assert abs(np.median(outer) - SCALP_MM) < 0.7
+    assert "bone of the CT" in draft.method
+
+
+def test_a_scan_that_goes_on_below_the_neck_is_cut_200_mm_below_the_crown():
+    ijk = np.indices((24, 24, 90)).reshape(3, -1).T * 3.0
+    crown = np.linalg.norm(ijk - [36.0, 36.0, 220.0], axis=1) < 25.0
+    neck = (np.hypot(*(ijk[:, :2] - 36.0).T) < 14.0) & (ijk[:, 2] < 220.0)
+    values = np.where(crown | neck, 100.0, 0.0).reshape(24, 24, 90).astype(np.float32)
+    scan = Volume(values, np.diag([3.0, 3.0, 3.0, 1.0]))
+    found = find_head(scan, HeadSettings(), lambda _step, _share: None)
+    assert found.base_mm == pytest.approx(245.0 - 200.0, abs=3.0)
+
+
+def test_the_head_goes_into_a_segment_and_comes_back(scene):
+    grid = np.indices((70, 70, 60)).transpose(1, 2, 3, 0) - [35.0, 35.0, 20.0]
+    distance = np.linalg.norm(grid, axis=3)
+    level = np.clip(30.0 - distance, -1.0, 1.0)
+    origin = np.array([-35.0, -30.0, -20.0])
+    found = HeadBody(level, level > 0, origin, -10.0, 50.0, False)
+    node = scene.AddNewNodeByClass("vtkMRMLSegmentationNode")
+    show_segment(node, found)
+    segment = show_segment(node, found)
+    assert node.GetSegmentation().GetNumberOfSegments() == 1
+    settings = for_segment(HeadSettings(base_mm=-10.0))
+    mesh = extract_head(volume_of_segment(node, segment), settings)
+    assert is_one_closed_body(mesh)
+    upper = mesh.vertices[mesh.vertices[:, 2] > -8.0]
+    away = np.linalg.norm(upper - [0.0, 5.0, 0.0], axis=1) - 30.0
+    assert np.abs(away).mean() < 0.5
+
+
+def test_an_empty_segment_is_answered_with_a_sentence(scene):
+    node = scene.AddNewNodeByClass("vtkMRMLSegmentationNode")
+    with pytest.raises(InputError, match="segment of the head is not there"):
+        volume_of_segment(node, "Segment_1")
