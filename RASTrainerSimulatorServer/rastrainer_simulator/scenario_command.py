@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import signal
+import sys
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -123,6 +125,8 @@ def _tasks(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.scenarios.make import make_scenario
     from rastrainer_simulator.scenarios.wishes import wishes_of
 
+    # Slicer cancels so: what is half made is to be cleared away.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     wishes = wishes_of(arguments, "unknown")
     make_scenario(read_draft(arguments.draft), wishes, arguments.output, _tell)
     return 0
