@@ -85,7 +85,7 @@ def _delay(place: Place, page: Page, count: int) -> dict:
         client.send_command("Hello", hello)
         for index in range(count):
             camera = ("far", "close-up")[index % 2]
-            page.evaluate(f"window.drawn = ({WAIT_FOR_CAMERA})('{camera}')")
+            page.evaluate(f"void (window.drawn = ({WAIT_FOR_CAMERA})('{camera}'))")
             sent = 1000.0 * time.time()
             client.send_command("SetCamera", {"camera": camera})
             delays.append(page.evaluate("window.drawn") - sent)
