@@ -68,10 +68,10 @@ class WindowProcess:
         return (set(self.folder.glob("*.png")) - known).pop()
 
     def kill(self) -> None:
-        """End it as a crash would."""
+        """End it as a crash would; a second time changes nothing."""
         if self._process.poll() is None:
             self._process.kill()
-        self._process.communicate()
+            self._process.communicate()
 
     def stop(self) -> tuple[int, str]:
         """Wait for its end; return its exit status and what it has said."""

@@ -11,9 +11,9 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase, check_arguments
 from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.state import EventKind
-from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, REFUSALS
 from rastrainer_simulator.texts.english import ENGLISH
 from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, REFUSALS
 from rastrainer_simulator.training.training import Moment, Training, TrainingSettings
 
 ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())
