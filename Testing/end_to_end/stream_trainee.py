@@ -28,7 +28,7 @@ LEAST_PUSH = 0.35
 """Beyond the sticks' dead zone."""
 LONGEST_WAY_S = 6.0
 NEAR_M = 0.008
-MOST_ATTEMPTS = 4
+MOST_ATTEMPTS = 8
 
 
 class Hands(Protocol):
@@ -171,15 +171,19 @@ class StreamTrainee:
         """Record the fiducial under the tip; whoever missed it comes from above once more."""
         point, center = self.place_of(label), self.head_center
         outward = (point - center) / np.linalg.norm(point - center)
+        kept = self.touched
         for _attempt in range(MOST_ATTEMPTS):
             self.steer_to(point + 0.012 * outward, 0.008)
             self.steer_to(point, 0.004, fine=True)
+            self.hands.push(0.0, 0.0, 0.0, False)
             if np.linalg.norm(point - self.tip) < NEAR_M:
-                break
+                self.hands.tap("touch")
+                with suppress(AssertionError):
+                    wait_until(lambda: self.touched > kept, f"touch {label}", AGAIN_S)
+            if self.touched > kept:
+                return
             self.approach(label, 0.02)
-        self.hands.push(0.0, 0.0, 0.0, False)
-        kept = self.touched
-        self.press("touch", lambda: self.touched > kept, f"touch {label}")
+        raise AssertionError(f"touch {label} never came; the screen: {self.view.screen}")
 
     def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
         """Push the sticks toward a place (3,) World, m, until the tip is near it."""

@@ -158,7 +158,9 @@ def _agreeing(level: np.ndarray, body: np.ndarray) -> np.ndarray:
 
 def _check(mesh: HeadMesh) -> None:
     if not mesh.is_closed or mesh.euler_characteristic != 2:
-        raise InputError("The head's surface could not be closed; try another threshold or base.")
+        raise InputError(
+            "No head was found: its surface could not be closed; try another threshold or base."
+        )
     if len(mesh.triangles) > MOST_TRIANGLES:
         raise InputError(
             f"The head's surface has {len(mesh.triangles)} triangles, more than {MOST_TRIANGLES}; "

@@ -53,6 +53,8 @@ def find_tissue(values: np.ndarray, threshold: float | None, noise: float) -> Ti
         found = CT_SKIN - CT_AIR if is_ct else mask.otsu_threshold(_without_tail(smooth))
     else:
         found = threshold - air
+    if threshold is None and found <= 0:
+        raise InputError("No head was found: the image has no tissue that is brighter than air.")
     if found <= 0:
         raise InputError(f"The threshold must be above that of air, {air:g}: the skin is brighter.")
     level = np.clip(smooth / found - 1.0, -1.0, 1.0)
