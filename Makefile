@@ -5,7 +5,7 @@ KINEMATICS ?=
 BIN := .venv/bin
 UNAME := $(shell uname 2>/dev/null)
 
-.PHONY: demo test bench simulator lint format lock page clean
+.PHONY: demo test soak bench simulator lint format lock page clean
 
 demo: .venv/installed
 	$(BIN)/python tools/system_packages.py demo
@@ -18,7 +18,12 @@ simulator: .venv/installed page
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 -q
+	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadgroup -q
+
+# What takes minutes: the whole flow in the emulated headset.
+soak: .venv/test-installed page
+	$(BIN)/python tools/system_packages.py test
+	$(BIN)/python -m pytest -m soak -q
 
 bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test

@@ -9,6 +9,8 @@ from Testing.web.chromium import enter_headset, open_page, pixels
 from Testing.web.hands import Controllers
 from Testing.web.place import Place, scored_trial
 
+pytestmark = pytest.mark.soak
+
 IPD_M = 0.063
 EYES = """(() => {
   const eyes = page.stage.renderer.xr.getCamera().cameras;
