@@ -157,6 +157,8 @@ class StreamTrainee:
 
     def approach(self, label: str, near_m: float) -> None:
         """Carry the tip over the head to a place above a fiducial."""
+        # A task's scene is built while the trial has begun, the first time on a machine.
+        self.until(lambda: label in self.view.scene["fiducials"], f"fiducial {label}")
         point, center = self.place_of(label), self.head_center
         outward = (point - center) / np.linalg.norm(point - center)
         start = self.tip - center
