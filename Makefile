@@ -18,7 +18,7 @@ simulator: .venv/installed page
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadgroup -q
+	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile -q
 
 # What takes minutes: the whole flow in the emulated headset.
 soak: .venv/test-installed page

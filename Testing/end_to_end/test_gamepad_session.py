@@ -17,8 +17,6 @@ from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab, trial_of
 from Testing.end_to_end.stream_trainee import StreamTrainee
 
-pytestmark = pytest.mark.xdist_group("screen")
-
 SCREENSHOTS = Path(__file__).parents[2] / "Screenshots"
 SPEED = "4"
 STEADY_S = 0.4

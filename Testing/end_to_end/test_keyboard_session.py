@@ -9,8 +9,6 @@ from Testing.end_to_end.lab import Lab, trial_of
 from Testing.end_to_end.stream_trainee import StreamTrainee
 from Testing.end_to_end.window_process import wait_until
 
-pytestmark = pytest.mark.xdist_group("screen")
-
 SPEED = "3"
 SMALL = ("--size", "640x360", "--quality", "low")
 TRAINEE = "p07"

@@ -8,8 +8,6 @@ from Testing.web.chromium import PATIENCE_MS, SMALL, open_page, pixels
 from Testing.web.hands import BrowserPad, PageKeys
 from Testing.web.place import Place, scored_trial
 
-pytestmark = pytest.mark.xdist_group("screen")
-
 LARGEST_PAGE = 1_000_000
 LARGEST_SCENE = 5_000_000
 

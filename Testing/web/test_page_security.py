@@ -13,8 +13,6 @@ from Testing.web.chromium import PATIENCE_MS, SMALL, open_page
 from Testing.web.hands import PageKeys
 from Testing.web.place import Place
 
-pytestmark = pytest.mark.xdist_group("screen")
-
 NETWORK = re.compile(r"serves the local network on (https://\S+?:\d+)")
 TRY_TO_JOIN = """(url) => new Promise((done) => {
   const socket = new WebSocket(url + "/stream", "rastrainer.views.1");

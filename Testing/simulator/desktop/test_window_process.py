@@ -21,8 +21,6 @@ from rastrainer_simulator.view_server.operator_desk import Feedback, Hello
 from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ServedViews
 
-pytestmark = pytest.mark.xdist_group("screen")
-
 PATIENCE_S = 60.0
 PLAYED = ("touch", "proximity", "contact", "error", "finish", "undo", "touch")
 PAUSE_S = 1.0
