@@ -1,6 +1,7 @@
 """What Slicer's Extensions Manager installs: complete, importable, of its own conventions."""
 
 import ast
+import json
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -84,6 +85,26 @@ def test_the_extension_names_category_and_dependency():
     text = (ROOT / "CMakeLists.txt").read_text()
     assert 'set(EXTENSION_CATEGORY "Training")' in text
     assert 'set(EXTENSION_DEPENDS "SlicerOpenIGTLink")' in text
+
+
+def test_the_catalog_entry_keeps_the_rules_of_slicers_extensions_index():
+    """The rules are those of Slicer's schema of a catalog entry, version 1.0.1, and its template.
+
+    The extension's name is the file's; the repository's begins with "Slicer".
+    """
+    entry = json.loads((ROOT / "RASTrainer.json").read_text(encoding="utf-8"))
+    texts = {"$schema", "category", "scm_url", "scm_revision", "build_subdirectory"}
+    assert set(entry) == texts | {"build_dependencies", "tier"}
+    assert all(isinstance(entry[name], str) and entry[name] for name in texts)
+    assert entry["$schema"].endswith("slicer-extension-catalog-entry-schema-v1.0.1.json#")
+    assert re.fullmatch(r"https://\S+/Slicer\w+\.git", entry["scm_url"])
+    assert type(entry["tier"]) is int
+    assert 1 <= entry["tier"] <= 5
+    text = (ROOT / "CMakeLists.txt").read_text()
+    assert "project(RASTrainer" in text
+    assert f'set(EXTENSION_CATEGORY "{entry["category"]}")' in text
+    assert f'set(EXTENSION_DEPENDS "{" ".join(entry["build_dependencies"])}")' in text
+    assert entry["scm_url"].removesuffix(".git") in text
 
 
 def test_the_panels_use_only_widgets_that_the_ui_file_has():
