@@ -25,6 +25,7 @@ from rastrainer.scenario import FILE_NAME
 from rastrainer.surface_queries import outward_normal
 from rastrainer.tasks import LABELS
 from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.planning.skin_places import smooth_places
 from rastrainer_simulator.planning.task_proposal import (
     PLANS,
@@ -60,7 +61,9 @@ class Workbench:
         self.head_to_world = head_to_world(self.center)
         self.eye = transforms.apply(transforms.inverse(self.head_to_world), CLOSE_UP_MM)
         robot = load_robot()
-        self._collision = Collision(robot, self.mesh.vertices / MM_PER_M, self.mesh.triangles)
+        self._collision = Collision(
+            robot_shape(robot), self.mesh.vertices / MM_PER_M, self.mesh.triangles
+        )
         self._planner = TouchPlanner(robot, self._collision)
 
     def touchable(
