@@ -62,7 +62,8 @@ def expected_tre(
     Raises:
         InputError: the fit leaves no residuals, or a target is not finite.
     """
-    covariances = _tre_covariances(registration, targets, localization)
+    localization = localization or isotropic_error(registration)
+    covariances = _propagated(registration, targets, localization.covariances)
     return np.sqrt(np.trace(covariances, axis1=1, axis2=2))
 
 
@@ -88,7 +89,8 @@ def target_error(
         InputError: the fit leaves no residuals, or the target is not finite.
     """
     localization = localization or isotropic_error(registration)
-    covariance = _tre_covariances(registration, np.reshape(target, (1, -1)), localization)[0]
+    targets = np.reshape(target, (1, -1))
+    covariance = _propagated(registration, targets, localization.covariances)[0]
     expected = math.sqrt(np.trace(covariance))
     low, high = (0.0, 0.0)
     if expected > 0.0:
@@ -120,13 +122,6 @@ def tre_covariances(registration: Registration, targets: np.ndarray) -> np.ndarr
     """
     unit = np.tile(np.eye(3), (len(registration.labels), 1, 1))
     return _propagated(registration, targets, unit)
-
-
-def _tre_covariances(
-    registration: Registration, targets: np.ndarray, localization: LocalizationError | None
-) -> np.ndarray:
-    localization = localization or isotropic_error(registration)
-    return _propagated(registration, targets, localization.covariances)
 
 
 def _propagated(
