@@ -12,6 +12,7 @@ import numpy as np
 from rastrainer_simulator.scene.scene_glb import scene_glb
 from rastrainer_simulator.setup import load_setup
 from Testing.benchmarks.process_cost import cpu_share, resident_mb
+from Testing.benchmarks.row import row
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.scene.glb_reader import Glb
@@ -44,10 +45,10 @@ def _stream_rows(seconds: float) -> list[dict]:
             rss = resident_mb(simulator.pid)
     thread.stop()
     return [
-        _row("views.stream", [sum(sizes) / seconds / 1000], "kB/s"),
-        _row("views.states", [states / seconds], "1/s"),
-        _row("views.rss", [rss], "MB"),
-        _row("views.cpu", 100.0 * np.array(cpu), "%"),
+        row("views.stream", [sum(sizes) / seconds / 1000], "kB/s"),
+        row("views.states", [states / seconds], "1/s"),
+        row("views.rss", [rss], "MB"),
+        row("views.cpu", 100.0 * np.array(cpu), "%"),
     ]
 
 
@@ -61,22 +62,8 @@ def _scene_rows(quick: bool) -> list[dict]:
     parts = [Glb(content).primitives("world") for content in contents]
     triangles = [sum(len(part[2]) for part in primitives) for primitives in parts]
     return [
-        _row("scene.build", times, "s"),
-        _row("scene.size", [len(content) / 1e6 for content in contents], "MB"),
-        _row("scene.triangles", triangles, ""),
-        _row("scene.draw_calls", [len(primitives) for primitives in parts], ""),
+        row("scene.build", times, "s"),
+        row("scene.size", [len(content) / 1e6 for content in contents], "MB"),
+        row("scene.triangles", triangles, ""),
+        row("scene.draw_calls", [len(primitives) for primitives in parts], ""),
     ]
-
-
-def _row(name: str, values, unit: str) -> dict:
-    return {
-        "name": name,
-        "median": float(np.median(values)),
-        "p99": float(np.percentile(values, 99)),
-        "unit": unit,
-        "peer": None,
-        "peer_median": None,
-        "peer_p99": None,
-        "success": None,
-        "n": len(values),
-    }

@@ -6,11 +6,11 @@ import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
 from playwright.sync_api import Page, sync_playwright
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
+from Testing.benchmarks.row import row
 from Testing.web.chromium import launch, open_page
 from Testing.web.place import Place
 
@@ -34,7 +34,7 @@ WAIT_FOR_CAMERA = """(camera) => new Promise((done) => {
 def rows(quick: bool) -> list[dict]:
     """Return the rows `web.*`."""
     packed = sum((DIST / f"{name}.br").stat().st_size for name in PAGE_FILES) / KB
-    found = [_row("web.page compressed", [packed], "kB")]
+    found = [row("web.page compressed", [packed], "kB")]
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = launch(playwright)
         with Place(Path(folder)) as place:
@@ -56,8 +56,8 @@ def _scene(page: Page) -> list[dict]:
           return [triangles, calls]; })()"""
     )
     return [
-        _row("web.triangles", [counted[0]], ""),
-        _row("web.draw calls", [counted[1]], ""),
+        row("web.triangles", [counted[0]], ""),
+        row("web.draw calls", [counted[1]], ""),
     ]
 
 
@@ -74,7 +74,7 @@ def _bytes(page: Page, seconds: int) -> dict:
     page.wait_for_timeout(1000 * seconds)
     passed = time.monotonic() - begin
     session.detach()
-    return _row("web.stream per view", [sum(sizes) / KB / passed], "kB/s")
+    return row("web.stream per view", [sum(sizes) / KB / passed], "kB/s")
 
 
 def _delay(place: Place, page: Page, count: int) -> dict:
@@ -90,7 +90,7 @@ def _delay(place: Place, page: Page, count: int) -> dict:
             client.send_command("SetCamera", {"camera": camera})
             delays.append(page.evaluate("window.drawn") - sent)
             page.wait_for_timeout(800)
-    return _row("web.change to pixel", delays, "ms")
+    return row("web.change to pixel", delays, "ms")
 
 
 def _heap(page: Page, seconds: int) -> dict:
@@ -104,18 +104,4 @@ def _heap(page: Page, seconds: int) -> dict:
     page.wait_for_timeout(2000)
     before = used()
     page.wait_for_timeout(1000 * seconds)
-    return _row(f"web.heap growth in {seconds} s", [used() - before], "kB")
-
-
-def _row(name: str, values: list[float], unit: str) -> dict:
-    return {
-        "name": name,
-        "median": float(np.median(values)),
-        "p99": float(np.percentile(values, 99)),
-        "unit": unit,
-        "peer": None,
-        "peer_median": None,
-        "peer_p99": None,
-        "success": None,
-        "n": len(values),
-    }
+    return row(f"web.heap growth in {seconds} s", [used() - before], "kB")
