@@ -5,7 +5,7 @@ KINEMATICS ?=
 BIN := .venv/bin
 UNAME := $(shell uname 2>/dev/null)
 
-.PHONY: demo test soak bench simulator lint format lock page clean
+.PHONY: demo test soak bench simulator lint format lock audit page clean
 
 demo: .venv/installed
 	$(BIN)/python tools/system_packages.py demo
@@ -20,9 +20,10 @@ test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
 	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile -q
 
-# What takes minutes: the whole flow in the emulated headset.
-soak: .venv/test-installed page
+# What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
+soak: .venv/soak-installed page
 	$(BIN)/python tools/system_packages.py test
+	$(BIN)/python tools/system_packages.py soak
 	$(BIN)/python -m pytest -m soak -q
 
 bench: .venv/bench-installed page
@@ -35,6 +36,7 @@ page: .venv/installed
 lint: .venv/test-installed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/python tools/build_page.py --check
 
 format: .venv/test-installed
 	$(BIN)/ruff check --fix .
@@ -46,6 +48,14 @@ lock: .venv/installed
 	$(COMPILE) --extra page --extra slicer -o requirements.lock
 	$(COMPILE) --extra test --constraints requirements.lock -o requirements-test.lock
 	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock
+	$(COMPILE) --extra soak --constraints requirements-test.lock -o requirements-soak.lock
+	$(COMPILE) --extra supply --constraints requirements.lock -o requirements-supply.lock
+
+# Notices and bills of materials go to build; the audit asks a service in the internet.
+audit: .venv/supply-installed
+	$(BIN)/python tools/third_party_notices.py
+	$(BIN)/python tools/bill_of_materials.py
+	$(BIN)/python tools/audit_packages.py
 
 COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.10 \
 	--generate-hashes --no-emit-index-url --no-annotate --no-header --upgrade
@@ -64,6 +74,14 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-ver
 
 .venv/bench-installed: .venv/test-installed requirements-bench.lock
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-bench.lock
+	touch $@
+
+.venv/soak-installed: .venv/test-installed requirements-soak.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements-soak.lock
+	touch $@
+
+.venv/supply-installed: .venv/installed requirements-supply.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements-supply.lock
 	touch $@
 
 clean:

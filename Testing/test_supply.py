@@ -1,0 +1,107 @@
+"""What RASTrainer is made of: fixed by hashes, and told in notices and bills."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from importlib import import_module
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LOCKS = sorted(ROOT.glob("requirements*.lock"))
+PACKAGE_LOCK = ROOT / "RASTrainerSimulatorServer" / "web" / "package-lock.json"
+sys.path.insert(0, str(ROOT / "tools"))
+audit_packages, bill_of_materials, third_party_notices = map(
+    import_module, ("audit_packages", "bill_of_materials", "third_party_notices")
+)
+
+ENTRY = re.compile(r"^[a-z0-9][a-z0-9._-]*==[^\s\\]+(?: ; [^\\]+)? \\$")
+HASH = re.compile(r"^    --hash=sha256:[0-9a-f]{64}(?: \\)?$")
+
+
+def _kind(line: str) -> str:
+    if ENTRY.match(line):
+        return "entry"
+    return "hash" if HASH.match(line) else line
+
+
+@pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.name)
+def test_every_locked_package_is_fixed_by_hashes_and_by_no_address(lock):
+    lines = lock.read_text(encoding="utf-8").splitlines()
+    kinds = [_kind(line) for line in lines]
+    assert set(kinds) == {"entry", "hash"}
+    assert all(after == "hash" for kind, after in pairwise(kinds) if kind == "entry")
+    packages = json.loads(PACKAGE_LOCK.read_text(encoding="utf-8"))["packages"]
+    assert all("integrity" in entry for place, entry in packages.items() if place)
+    assert not any("resolved" in entry for entry in packages.values())
+
+
+def test_the_notices_name_every_installed_package_with_its_license(tmp_path):
+    count = third_party_notices.write_notices(tmp_path / "notices.txt")
+    notices = [*third_party_notices.python_notices(), *third_party_notices.page_notices()]
+    assert len(notices) == count > 60
+    text = (tmp_path / "notices.txt").read_text(encoding="utf-8")
+    for name in ("numpy", "vtk", "pin", "aiohttp", "python-fcl", "trimesh", "three"):
+        assert re.search(rf"^{name} \d\S*\nLicense: \S", text, re.MULTILINE), name
+    silent = [notice.name for notice in notices if not (notice.license or notice.texts)]
+    assert silent == []
+
+
+def test_the_bill_of_the_page_names_what_the_page_is_made_of(tmp_path):
+    bill = tmp_path / "page.json"
+    assert bill_of_materials.write_page_bill(bill) >= 1
+    content = json.loads(bill.read_text(encoding="utf-8"))
+    assert content["bomFormat"] == "CycloneDX"
+    assert "three" in {component["name"] for component in content["components"]}
+    first = bill.read_bytes()
+    bill_of_materials.write_page_bill(bill)
+    assert bill.read_bytes() == first
+
+
+def answering(monkeypatch, stdout: str) -> None:
+    """Have every program answer with `stdout`, as the audit's services would."""
+    done = subprocess.CompletedProcess([], 0, stdout, "")
+    monkeypatch.setattr(subprocess, "run", lambda *_arguments, **_others: done)
+
+
+@pytest.mark.parametrize(
+    ("answer", "status", "words"),
+    [
+        ('{"dependencies": [{"name": "a", "version": "1", "vulns": []}]}', 0, "nothing is known"),
+        (
+            '{"dependencies": [{"name": "a", "version": "1", "vulns": '
+            '[{"id": "CVE-1", "fix_versions": ["2"]}]}]}',
+            1,
+            "a 1: CVE-1, mended in 2",
+        ),
+        ("", 3, "not asked"),
+        (
+            '{"dependencies": [{"name": "a", "skip_reason": "not found"}, '
+            '{"name": "b", "version": "1", "vulns": []}]}',
+            3,
+            "not asked",
+        ),
+        ('{"error": "ENOTFOUND"}', 3, "not asked"),
+    ],
+)
+def test_an_audit_tells_what_is_known_and_whether_anybody_was_asked(
+    monkeypatch, answer, status, words
+):
+    answering(monkeypatch, answer)
+    found = audit_packages.audit_python(ROOT / "requirements.lock")
+    assert found[0] == status
+    assert words in found[1]
+
+
+def test_an_audit_that_could_not_ask_is_no_success(monkeypatch, capsys):
+    monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (0, "well"))
+    monkeypatch.setattr(audit_packages, "audit_page", lambda: (3, "not asked"))
+    assert audit_packages.main() == 3
+    monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (1, "known"))
+    assert audit_packages.main() == 1
+    assert "known" in capsys.readouterr().out

@@ -1,0 +1,90 @@
+"""Write what RASTrainer is made with as CycloneDX: build/rastrainer.cdx.json and the page's.
+
+Made from the lock files alone, so the same locks give the same bills. Needs `cyclonedx-bom` for the
+Python packages and npm for those of the page.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import build_page
+
+ROOT = Path(__file__).resolve().parents[1]
+BUILD = ROOT / "build"
+PYTHON_BILL = BUILD / "rastrainer.cdx.json"
+NO_VERSION = "0.0.0"
+PAGE_BILL = BUILD / "rastrainer-page.cdx.json"
+
+
+def write_python_bill(lock: Path = ROOT / "requirements.lock", output: Path = PYTHON_BILL) -> int:
+    """Write the bill of a lock and return how many packages it names.
+
+    Raises:
+        RuntimeError: `cyclonedx-bom` is missing, or has failed.
+    """
+    output.parent.mkdir(parents=True, exist_ok=True)
+    project = ["--pyproject", str(ROOT / "pyproject.toml")]
+    form = ["--output-reproducible", "--output-format", "JSON", "--output-file", str(output)]
+    command = [sys.executable, "-m", "cyclonedx_py", "requirements", str(lock)]
+    _run([*command, *project, *form])
+    return _count(output)
+
+
+def write_page_bill(output: Path = PAGE_BILL) -> int:
+    """Write the bill of what goes into the page and return how many packages it names.
+
+    Raises:
+        RuntimeError: there is no npm, or it has failed.
+    """
+    output.parent.mkdir(parents=True, exist_ok=True)
+    node, npm = build_page.node_and_npm()
+    path = os.pathsep.join([str(Path(node).parent), os.environ.get("PATH", "")])
+    words = ["sbom", "--package-lock-only", "--omit=dev", "--sbom-format=cyclonedx"]
+    with tempfile.TemporaryDirectory() as temporary:
+        # Its name stands in the bill.
+        folder = Path(temporary) / "rastrainer-page"
+        _with_a_version(build_page.WEB, folder)
+        text = _run([*npm, *words], cwd=folder, env={**os.environ, "PATH": path})
+    bill = json.loads(text)
+    # What differs from run to run says nothing of the page.
+    bill.pop("serialNumber", None)
+    bill["metadata"].pop("timestamp", None)
+    output.write_text(json.dumps(bill, indent=2) + "\n", encoding="utf-8")
+    return _count(output)
+
+
+def _with_a_version(web: Path, folder: Path) -> None:
+    """Copy what npm has to know; of a package without a version, as the page, it makes no bill."""
+    folder.mkdir()
+    for name in ("package.json", "package-lock.json"):
+        told = json.loads((web / name).read_text(encoding="utf-8"))
+        told["version"] = NO_VERSION
+        if "packages" in told:
+            told["packages"][""]["version"] = NO_VERSION
+        (folder / name).write_text(json.dumps(told), encoding="utf-8")
+
+
+def _count(bill: Path) -> int:
+    return len(json.loads(bill.read_text(encoding="utf-8"))["components"])
+
+
+def _run(command: list[str], **others: object) -> str:
+    done = subprocess.run(command, capture_output=True, text=True, check=False, **others)
+    if done.returncode != 0:
+        said = (done.stderr or done.stdout).strip().splitlines() or ["no reason given"]
+        raise RuntimeError(f"{command[0]} {command[1]} has failed: {said[-1]}")
+    return done.stdout
+
+
+if __name__ == "__main__":
+    try:
+        for written, count in ((PYTHON_BILL, write_python_bill()), (PAGE_BILL, write_page_bill())):
+            print(f"{written.relative_to(ROOT)} names {count} packages.")
+    except RuntimeError as error:
+        sys.exit(str(error))

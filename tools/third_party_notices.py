@@ -1,0 +1,121 @@
+"""Write build/third-party-notices.txt: whose work comes with ours, and under which license.
+
+It is made from what is installed: the packages that requirements.lock names, as their own metadata
+and license files tell, and the packages that go into the browser page.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+LOCK = ROOT / "requirements.lock"
+WEB = ROOT / "RASTrainerSimulatorServer" / "web"
+OUTPUT = ROOT / "build" / "third-party-notices.txt"
+LONGEST_FILE = 200_000
+MOST_FILES = 24
+"""Of one package; those nearest to its top tell what it is under."""
+RULE = "=" * 100
+INTRODUCTION = """RASTrainer is under the MIT license (LICENSE.txt).
+It is installed with the packages below, each under its own license; none is in its repository.
+"""
+_LEGAL = re.compile(r"(licen[cs]e|notice|copying|authors)", re.IGNORECASE)
+_TEXT_SUFFIXES = ("", ".txt", ".md", ".rst", ".APACHE", ".BSD", ".PSF")
+_LOCKED = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Notice:
+    """What one package says of itself."""
+
+    name: str
+    version: str
+    license: str
+    home: str
+    texts: tuple[str, ...]
+
+    def __str__(self) -> str:
+        head = f"{self.name} {self.version}\nLicense: {self.license or 'see below'}\n{self.home}"
+        return "\n\n".join((RULE + "\n" + head.rstrip(), *self.texts)) + "\n"
+
+
+def python_notices(lock: Path = LOCK) -> Iterator[Notice]:
+    """Give the notice of each package of a lock that is installed here, by name."""
+    for name in sorted(set(_LOCKED.findall(lock.read_text(encoding="utf-8")))):
+        try:
+            package = importlib.metadata.distribution(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue  # The lock is for every system; this package belongs to another.
+        told = package.metadata
+        yield Notice(
+            told["Name"],
+            package.version,
+            _license(told),
+            _home(told),
+            tuple(_legal_files(package)),
+        )
+
+
+def page_notices(web: Path = WEB) -> Iterator[Notice]:
+    """Give the notice of each package that goes into the page, not of what only builds it."""
+    lock = json.loads((web / "package-lock.json").read_text(encoding="utf-8"))
+    for place, entry in sorted(lock["packages"].items()):
+        folder = web / place
+        if not place or entry.get("dev") or not folder.is_dir():
+            continue
+        files = sorted(path for path in folder.iterdir() if _LEGAL.search(path.name))
+        texts = tuple(_text(path) for path in files if path.is_file())
+        name = place.rpartition("node_modules/")[2]
+        yield Notice(name, entry["version"], entry.get("license", ""), "", texts)
+
+
+def write_notices(output: Path = OUTPUT) -> int:
+    """Write all notices and return of how many packages they are."""
+    notices = [*python_notices(), *page_notices()]
+    output.parent.mkdir(parents=True, exist_ok=True)
+    output.write_text(INTRODUCTION + "\n" + "\n".join(map(str, notices)), encoding="utf-8")
+    return len(notices)
+
+
+def _license(told: importlib.metadata.PackageMetadata) -> str:
+    expression = told.get("License-Expression") or told.get("License") or ""
+    if expression and len(expression) < 80 and "\n" not in expression:
+        return expression
+    classifiers = told.get_all("Classifier") or []
+    return "; ".join(
+        line.rpartition(" :: ")[2] for line in classifiers if line.startswith("License ::")
+    )
+
+
+def _home(told: importlib.metadata.PackageMetadata) -> str:
+    links = [entry.partition(", ")[2] for entry in told.get_all("Project-URL") or []]
+    return told.get("Home-page") or (links[0] if links else "")
+
+
+def _legal_files(package: importlib.metadata.Distribution) -> Iterator[str]:
+    found = [
+        file
+        for file in package.files or ()
+        if _LEGAL.search(file.name) and file.suffix in _TEXT_SUFFIXES
+    ]
+    found.sort(key=lambda file: (len(file.parts), str(file)))
+    for file in found[:MOST_FILES]:
+        path = Path(str(package.locate_file(file)))
+        if path.is_file():
+            yield _text(path)
+
+
+def _text(path: Path) -> str:
+    return path.read_bytes()[:LONGEST_FILE].decode("utf-8", "replace").strip()
+
+
+if __name__ == "__main__":
+    count = write_notices()
+    print(f"The notices of {count} packages are in {OUTPUT.relative_to(ROOT)}.")
+    sys.exit(0 if count else 1)
