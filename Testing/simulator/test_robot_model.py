@@ -74,9 +74,9 @@ def test_other_meshes_replace_those_of_the_urdf(tmp_path, robot):
 @pytest.mark.parametrize(
     ("data", "sentence"),
     [
-        (b"", "not well-formed"),
-        (b"\x00" * 5_000_000, "larger than 4 MB"),
-        (b"\x00" * 500, "document type"),
+        (b"", "is empty"),
+        (b"\x00" * 5_000_000, "larger than 4 MiB"),
+        (b"\x00" * 500, "not a text file"),
         (b"\xff\xfe<\x00r\x00", "not UTF-8"),
         (b"solid cube", "not well-formed"),
         (b"<robot name='a'>", "not well-formed"),
@@ -100,7 +100,7 @@ def test_a_file_that_is_no_urdf_is_refused_in_one_sentence(tmp_path, data, sente
 
 
 def test_a_missing_file_is_refused(tmp_path):
-    with pytest.raises(InputError, match="cannot be read: No such file"):
+    with pytest.raises(InputError, match="There is no file"):
         load_robot(tmp_path / "none.urdf")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import fcl
 import numpy as np
@@ -28,18 +29,16 @@ class HeadSurface:
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         """Take (n, 3) float vertices and (m, 3) int triangles.
 
+        The same surface once more is there at once.
+
         Raises:
             InputError: the surface is not closed, or holds unusable numbers.
         """
-        self._surface = ClosedSurface(vertices, triangles)
-        vertices, triangles = self._surface.vertices, self._surface.triangles
+        self._surface, mesh = _shapes(_Numbers(vertices), _Numbers(triangles))
+        vertices = self._surface.vertices
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]
         self.base = (base.min(axis=0) + base.max(axis=0)) / 2.0
         """(3,) float: the middle of the lowest millimetre, on which the head stands."""
-        mesh = fcl.BVHModel()
-        mesh.beginModel(len(triangles), len(vertices))
-        mesh.addSubModel(vertices, triangles)
-        mesh.endModel()
         self._head = fcl.CollisionObject(mesh)
         self._point = thin_segment(np.zeros(3), np.zeros(3))
 
@@ -90,6 +89,31 @@ class HeadSurface:
         else:
             normal = (dx / distance, dy / distance, dz / distance)
         return Nearest(distance - radius, foot, normal, triangle)
+
+
+class _Numbers:
+    """An array that equals another where all its numbers do."""
+
+    def __init__(self, array: np.ndarray) -> None:
+        self.array = np.array(array)
+        self._content = (self.array.shape, self.array.dtype.str, self.array.tobytes())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Numbers) and self._content == other._content
+
+    def __hash__(self) -> int:
+        return hash(self._content)
+
+
+@lru_cache(maxsize=1)
+def _shapes(vertices: _Numbers, triangles: _Numbers) -> tuple[ClosedSurface, fcl.BVHModel]:
+    """Return what takes half a second to build; it is read only, so that all may share it."""
+    surface = ClosedSurface(vertices.array, triangles.array)
+    mesh = fcl.BVHModel()
+    mesh.beginModel(len(surface.triangles), len(surface.vertices))
+    mesh.addSubModel(surface.vertices, surface.triangles)
+    mesh.endModel()
+    return surface, mesh
 
 
 def _foot(start: Vector, end: Vector, point: np.ndarray) -> Vector:

@@ -8,7 +8,7 @@ from math import isfinite, sqrt
 from rastrainer.errors import InputError
 from rastrainer_simulator.robot.canonical_arm import clamped, inside
 from rastrainer_simulator.robot.srs_geometry import SrsGeometry
-from rastrainer_simulator.vectors import Vector, cross, dot, reject, unit
+from rastrainer_simulator.vectors import Vector, cross, reject, unit
 
 # A rotation whose columns are not perpendicular unit vectors to this is no rotation.
 _SKEW = 1e-6
@@ -73,10 +73,15 @@ class ArmFrame:
             (ax, bx, cx), (ay, by, cy), (az, bz, cz) = rows
         except (TypeError, ValueError) as error:
             raise InputError("The tool rotation must be three rows of three numbers.") from error
-        a, b, c = (ax, ay, az), (bx, by, bz), (cx, cy, cz)
-        lengths = (dot(a, a), dot(b, b), dot(cross(a, b), c))
-        slants = (dot(a, b), dot(b, c), dot(c, a))
-        if max(abs(value - 1.0) for value in lengths) + max(map(abs, slants)) > _SKEW:
+        skew = (
+            abs(ax * ax + ay * ay + az * az - 1.0)
+            + abs(bx * bx + by * by + bz * bz - 1.0)
+            + abs(ax * bx + ay * by + az * bz)
+            + abs(ay * bz - az * by - cx)
+            + abs(az * bx - ax * bz - cy)
+            + abs(ax * by - ay * bx - cz)
+        )
+        if skew > _SKEW:
             raise InputError(
                 "The tool rotation is none: its columns must be perpendicular unit vectors, "
                 "the third being the first cross the second."

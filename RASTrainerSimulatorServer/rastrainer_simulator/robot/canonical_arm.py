@@ -129,7 +129,6 @@ def tip(arm: CanonicalArm, links: Chain) -> Vector:
     return (a * ux + b * fx + c * tx, a * uy + b * fy + c * ty, a * uz + b * fz + c * tz)
 
 
-def clear(theta: Angles) -> bool:
-    """Tell whether shoulder, elbow and wrist are clear of their singularities."""
-    small = _SMALL_TILT
+def clear(theta: Angles, small: float = _SMALL_TILT) -> bool:
+    """Tell whether shoulder, elbow and wrist are clear of their singularities by `small` rad."""
     return not (-small < theta[1] < small or -small < theta[3] < small or -small < theta[5] < small)

@@ -21,8 +21,8 @@ from rastrainer_simulator.vectors import Vector, scale
 
 _FLAT = 1e-9
 _NO_MOTION = 2e-4
-# Squared: what no step of teleoperation asks of a joint away from a singularity, rad.
-_LEAP = 0.02 * 0.02
+LEAP = 0.02 * 0.02
+"""What no step of teleoperation asks of the joints away from a singularity, squared, rad²."""
 _MOST_SLIDES = 4
 _MOST_KEPT = 4
 
@@ -35,14 +35,14 @@ def with_least_motion(
     `theta` already holds the wrist (m) and the goal's tool, and so does what is returned.
     """
     theta, motion = _slide(arm, theta, circle, wrist, goal, last)
-    if motion < _LEAP:
+    if motion < LEAP:
         return theta
     # Close to a singularity the nearest elbow can need a pan to turn far: try to keep each.
     elbows = elbows_that_keep_a_pan(arm, circle, wrist, goal.tool, goal.roll, last)
     for elbow in islice(elbows, _MOST_KEPT):
         kept = _near(arm, elbow, wrist, goal, last)
-        if kept is not None and _motion(kept, last) < motion:
-            theta, motion = kept, _motion(kept, last)
+        if kept is not None and squared_motion(kept, last) < motion:
+            theta, motion = kept, squared_motion(kept, last)
     return _slide(arm, theta, circle, wrist, goal, last)[0]
 
 
@@ -50,7 +50,7 @@ def _slide(
     arm: CanonicalArm, theta: Angles, circle: ElbowCircle, wrist: Vector, goal: Goal, last: Angles
 ) -> tuple[Angles, float]:
     """Return θ after the elbow has slid, and the squared motion (rad²) from `last`."""
-    motion = _motion(theta, last)
+    motion = squared_motion(theta, last)
     for _ in range(_MOST_SLIDES):
         links = chain(theta)
         angle, way = _slide_angle(circle.axis, theta, links, last, goal.roll is not None)
@@ -60,9 +60,9 @@ def _slide(
         slid = close_at(arm, elbow, wrist, goal.tool, goal.roll, last)
         if slid is None:
             slid = _near(arm, elbow, wrist, goal, last)
-        if slid is None or _motion(slid, last) >= motion:
+        if slid is None or squared_motion(slid, last) >= motion:
             break
-        theta, motion = slid, _motion(slid, last)
+        theta, motion = slid, squared_motion(slid, last)
         if clear(theta):
             break
     return theta, motion
@@ -76,7 +76,8 @@ def _near(
     return close(arm, circle, wrist, goal.tool, goal.roll, last)
 
 
-def _motion(theta: Angles, last: Angles) -> float:
+def squared_motion(theta: Angles, last: Angles) -> float:
+    """Return by how much the joints move from `last`, as a sum of squares, rad²."""
     a1, a2, a3, a4, a5, a6, a7 = theta
     b1, b2, b3, b4, b5, b6, b7 = last
     return (
@@ -98,26 +99,41 @@ def _slide_angle(
     `axis` is that of the elbow's circle, `links` the chain of θ; `rolls` tells whether the tool's
     roll is held too.
     """
-    upper, fore, tool, axis2, _, axis6 = links
-    r1, r2, r3 = _rates(axis, (0.0, 0.0, 1.0), axis2, upper)
-    # Seen from the hand, which stays, it is the forearm that turns back.
-    r7, r6, r5 = _rates(axis, tool, axis6, fore)
-    if not rolls:
-        r7 = 0.0
-    square = r1 * r1 + r2 * r2 + r3 * r3 + r5 * r5 + r6 * r6 + r7 * r7
-    if not _FLAT < square < inf:
+    motion = self_motion(axis, links, rolls)
+    if motion is None:
         return 0.0, 0.0
+    r1, r2, r3, r5, r6, r7 = motion
     t1, t2, t3, _, t5, t6, t7 = theta
     l1, l2, l3, _, l5, l6, l7 = last
     along = (
         r1 * (t1 - l1)
         + r2 * (t2 - l2)
         + r3 * (t3 - l3)
-        - r5 * (t5 - l5)
-        - r6 * (t6 - l6)
-        - r7 * (t7 - l7)
+        + r5 * (t5 - l5)
+        + r6 * (t6 - l6)
+        + r7 * (t7 - l7)
     )
+    square = r1 * r1 + r2 * r2 + r3 * r3 + r5 * r5 + r6 * r6 + r7 * r7
     return -along / square, abs(along) / sqrt(square)
+
+
+def self_motion(
+    axis: Vector, links: Chain, rolls: bool
+) -> tuple[float, float, float, float, float, float] | None:
+    """Return the rates of joints 1, 2, 3, 5, 6 and 7 as the elbow turns, None where they are lost.
+
+    `axis` is the unit vector from shoulder to wrist; joint 4 rests. Joint 7 rests too unless the
+    tool's roll is held: `rolls`.
+    """
+    upper, fore, tool, axis2, _, axis6 = links
+    r1, r2, r3 = _rates(axis, (0.0, 0.0, 1.0), axis2, upper)
+    # Seen from the hand, which stays, it is the forearm that turns back.
+    r7, r6, r5 = _rates(axis, tool, axis6, fore)
+    if not rolls:
+        r7 = 0.0
+    if not _FLAT < r1 * r1 + r2 * r2 + r3 * r3 + r5 * r5 + r6 * r6 + r7 * r7 < inf:
+        return None
+    return r1, r2, r3, -r5, -r6, -r7
 
 
 def _rates(spin: Vector, first: Vector, second: Vector, third: Vector) -> Vector:

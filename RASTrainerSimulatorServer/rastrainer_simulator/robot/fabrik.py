@@ -1,8 +1,9 @@
 """FABRIK for 7R S-R-S arms: tool position, position and direction, or full pose to joint angles.
 
 1. A goal close by continues a motion: a position is predicted by a step along the Jacobian
-   (`prediction`), with the tool held the elbow slides to where the joints move least
-   (`elbow_slide`). A goal far away starts from the last posture.
+   (`prediction`); with the tool held the elbow's way is predicted (`elbow_prediction`), and close
+   to a singularity it is slid to where the joints move least (`elbow_slide`). A goal far away
+   starts from the last posture.
 2. FABRIK reaches backward from the target and forward from the base (`fabrik_passes`), and each
    pass closes the elbow exactly (`closure`, `elbow_circle`): FABRIK alone converges slowly below a
    micrometer (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
@@ -18,6 +19,7 @@ from math import inf
 from rastrainer.errors import InputError
 from rastrainer_simulator.robot.arm_frame import ArmFrame
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, chain
+from rastrainer_simulator.robot.elbow_prediction import follow
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
@@ -91,6 +93,10 @@ class Fabrik:
         else:
             if aim.tool is None:
                 start, links = predict(self._arm, start, links, aim.position)
+            else:
+                followed = follow(self._arm, start, links, aim)
+                if followed is not None:
+                    return self._solution(goal, Reached(followed, 1))
             reached = self._reach(goal, aim, start, links, _JUMP)
         return self._solution(goal, reached)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import Roll
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, tip
-from rastrainer_simulator.vectors import Vector, add, cross, dot, length, scale, subtract
+from rastrainer_simulator.vectors import Vector, add, dot, length, scale, subtract
 
 _TINY = 1e-12
 _NEAR_M = 0.03
@@ -57,26 +57,30 @@ class Goal(NamedTuple):
         position_error = dist(self.position, tip(arm, links))
         if self.tool is None:
             return position_error, 0.0
-        sine, cosine = self.turn(theta, links)
-        return position_error, atan2(length(sine), cosine)
+        (x, y, z), cosine = self._turn(theta, links)
+        return position_error, atan2(sqrt(x * x + y * y + z * z), cosine)
 
-    def turn(self, theta: Angles, links: Chain) -> tuple[Vector, float]:
+    def _turn(self, theta: Angles, links: Chain) -> tuple[Vector, float]:
         """Return axis · sine and the cosine of the rotation from θ's tool to the goal's."""
-        sine, cosine = cross(links[2], self.tool), dot(links[2], self.tool)
-        if self.roll:
-            # From the skew part and the trace: exact for small angles too.
-            (x, y), (goal_x, goal_y) = tool_axes(theta, links), self.roll
-            sine = scale(add(add(sine, cross(x, goal_x)), cross(y, goal_y)), 0.5)
-            cosine = (cosine + dot(x, goal_x) + dot(y, goal_y) - 1.0) / 2.0
-        return sine, cosine
+        (ax, ay, az), (bx, by, bz) = links[2], self.tool
+        x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        cosine = ax * bx + ay * by + az * bz
+        if self.roll is None:
+            return (x, y, z), cosine
+        # From the skew part and the trace: exact for small angles too.
+        trace = cosine
+        for (ax, ay, az), (bx, by, bz) in zip(tool_axes(theta, links), self.roll, strict=True):
+            x, y, z = x + ay * bz - az * by, y + az * bx - ax * bz, z + ax * by - ay * bx
+            trace += ax * bx + ay * by + az * bz
+        return (0.5 * x, 0.5 * y, 0.5 * z), 0.5 * (trace - 1.0)
 
 
 def tool_axes(theta: Angles, links: Chain) -> tuple[Vector, Vector]:
     """Return the tool's x and y axes."""
-    tilt_axis, tool = links[5], links[2]
-    across = cross(tilt_axis, tool)
+    (wx, wy, wz), (tx, ty, tz) = links[5], links[2]
+    ax, ay, az = wy * tz - wz * ty, wz * tx - wx * tz, wx * ty - wy * tx
     c, s = cos(theta[6]), sin(theta[6])
     return (
-        add(scale(across, c), scale(tilt_axis, s)),
-        add(scale(across, -s), scale(tilt_axis, c)),
+        (c * ax + s * wx, c * ay + s * wy, c * az + s * wz),
+        (c * wx - s * ax, c * wy - s * ay, c * wz - s * az),
     )

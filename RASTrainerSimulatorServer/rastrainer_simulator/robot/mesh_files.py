@@ -40,7 +40,8 @@ def mesh_parts(
     `mesh_folder` follows the custom of robot descriptions: `visual/link_3.stl` (or .dae, .obj,
     .ply, .glb) replaces what the link whose name ends in `link_3` shows, `collision/link_3.stl`
     what it collides with, and a plain `link_3.stl` both. Without any visual mesh for a link, its
-    collision mesh is shown. Raises InputError where `mesh_folder` fits no link.
+    collision mesh is shown. Raises InputError where `mesh_folder` fits no link, and where a mesh
+    lies outside of the folder in which it is looked for.
     """
     colors = {
         material.name: _rgba(material) for material in robot.materials if material.color is not None
@@ -67,7 +68,7 @@ def _replacement(link: str, kind: str, folder: Path) -> Path | None:
     names = [link, *(link[i + 1 :] for i, letter in enumerate(link) if letter == "_")]
     for place in (folder / kind, folder, folder / "collision"):
         for name, suffix in itertools.product(names, _SUFFIXES):
-            path = place / f"{name}{suffix}"
+            path = mesh_inside(folder, place / f"{name}{suffix}", link)
             if path.is_file():
                 return path
     return None
@@ -86,9 +87,31 @@ def _own_parts(
         origin = np.eye(4) if shape.origin is None else shape.origin
         color = _color(getattr(shape, "material", None), colors)
         parts.append(
-            MeshPart(link.name, kind, folder / name, origin, tuple(map(float, scale)), color)
+            MeshPart(
+                link.name,
+                kind,
+                mesh_inside(folder, folder / name, link.name),
+                origin,
+                tuple(map(float, scale)),
+                color,
+            )
         )
     return parts
+
+
+def mesh_inside(folder: Path, path: Path, link: str) -> Path:
+    """Return `path`, which a file names for a link.
+
+    Raises:
+        InputError: it leads out of `folder`.
+    """
+    try:
+        is_inside = path.resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # such as a ring of symbolic links
+        is_inside = False
+    if not is_inside:
+        raise InputError(f"The mesh {path} of {link} must lie in {folder} or below it.")
+    return path
 
 
 def _color(

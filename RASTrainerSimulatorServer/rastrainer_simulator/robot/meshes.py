@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.files import read_bytes
+from rastrainer_simulator.robot.mesh_content import checked_content
 from rastrainer_simulator.robot.mesh_files import MeshPart
 from rastrainer_simulator.robot.model import RobotModel
 
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 
     ColoredMesh = tuple[trimesh.Trimesh, tuple[float, float, float, float]]
 
-LARGEST_FILE = 50_000_000
+LARGEST_FILE = 50 * 2**20
 MOST_TRIANGLES = 500_000
 FARTHEST = 10.0
 
@@ -49,6 +51,7 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
     import trimesh
 
     data, kind = _read_bytes(part), part.path.suffix[1:].lower()
+    data = checked_content(data, kind, f"The mesh {part.path}")
     try:
         # From bytes there is no folder in which a mesh could ask for further files.
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type=kind, process=False)
@@ -57,31 +60,32 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
         raise InputError(
             f"{part.path} cannot be read as a {kind.upper()} mesh ({type(error).__name__})."
         ) from error
-    if len(faces) == 0:
-        raise InputError(f"{part.path} holds no triangles; it should hold a surface mesh.")
-    if len(faces) > MOST_TRIANGLES:
-        raise InputError(f"{part.path} has {len(faces)} triangles; at most {MOST_TRIANGLES} fit.")
-    if not np.all(np.abs(vertices * part.scale) <= FARTHEST):
-        raise InputError(
-            f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; "
-            "robot meshes should be in metres."
-        )
+    _check_shape(part, vertices, faces)
     mesh = trimesh.Trimesh(vertices * part.scale, faces, process=False)
     mesh.merge_vertices()
     return mesh.apply_transform(part.origin)
 
 
+def _check_shape(part: MeshPart, vertices: np.ndarray, faces: np.ndarray) -> None:
+    if len(faces) == 0:
+        raise InputError(f"{part.path} holds no triangles; it should hold a surface mesh.")
+    if len(faces) > MOST_TRIANGLES:
+        raise InputError(f"{part.path} has {len(faces)} triangles; at most {MOST_TRIANGLES} fit.")
+    is_surface = vertices.shape[1:] == faces.shape[1:] == (3,)
+    if not is_surface or faces.min() < 0 or faces.max() >= len(vertices):
+        raise InputError(f"{part.path} has faces that are no triangles of its vertices.")
+    if not np.all(np.abs(vertices * part.scale) <= FARTHEST):
+        raise InputError(
+            f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; "
+            "robot meshes should be in metres."
+        )
+
+
 def _read_bytes(part: MeshPart) -> bytes:
     try:
-        with part.path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise InputError(
-            f"The mesh {part.path} of {part.link} cannot be read: {error.strerror}."
-        ) from error
-    if len(data) > LARGEST_FILE:
-        raise InputError(f"{part.path} is larger than {LARGEST_FILE // 1_000_000} MB.")
-    return data
+        return read_bytes(part.path, LARGEST_FILE)
+    except InputError as error:
+        raise InputError(f"The mesh of {part.link} cannot be used: {error}") from None
 
 
 def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Trimesh]]) -> bool:

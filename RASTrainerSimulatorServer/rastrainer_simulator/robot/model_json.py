@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer_simulator.robot.mesh_files import MeshPart
+from rastrainer_simulator.robot.mesh_files import MeshPart, mesh_inside
 from rastrainer_simulator.robot.model import Joint, Link, RobotModel, make_model
 
 
@@ -32,7 +32,7 @@ def model_from_json(value: Mapping[str, Any], folder: Path) -> RobotModel:
     meshes = tuple(
         MeshPart(
             **_arrays(part, "origin")
-            | {"path": folder / part["path"]}
+            | {"path": mesh_inside(folder, folder / part["path"], part["link"])}
             | {name: tuple(part[name]) for name in ("scale", "color")}
         )
         for part in value["meshes"]

@@ -12,15 +12,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from rastrainer.errors import InputError
+from rastrainer.files import read_json
+
 FILE_NAME = "prepared.json"
+MOST_BYTES = 2**20
 
 
 def read_prepared(urdf: Path) -> Mapping[str, Any] | None:
     """Return what is written beside a URDF, None where nothing is or where it is out of date."""
     try:
-        prepared = json.loads((urdf.parent / FILE_NAME).read_bytes())
+        prepared = read_json(urdf.parent / FILE_NAME, MOST_BYTES)
         return prepared if prepared["sha256"] == _fingerprint(urdf) else None
-    except (OSError, ValueError, KeyError, TypeError):
+    except (InputError, OSError, KeyError, TypeError):
         return None
 
 

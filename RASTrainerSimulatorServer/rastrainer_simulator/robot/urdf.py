@@ -11,9 +11,10 @@ import numpy as np
 import yourdfpy
 
 from rastrainer.errors import InputError
+from rastrainer.files import read_bytes
+from rastrainer.plain_xml import plain_xml
 
-LARGEST_FILE = 4_000_000
-MOST_ELEMENTS = 20_000
+LARGEST_FILE = 4 * 2**20
 FARTHEST = 100.0
 _MOVABLE = ("revolute", "continuous")
 
@@ -21,14 +22,16 @@ _MOVABLE = ("revolute", "continuous")
 def read_urdf(path: Path) -> yourdfpy.Robot:
     """Return the links and joints of a URDF whose tree and numbers have been checked.
 
-    No mesh is opened. Raises InputError where the file cannot be read, declares a document type
-    (entities could expand without end), is not a tree of links, or holds unusable numbers.
+    No mesh is opened. Raises InputError where the file cannot be read, is not plain XML, is not a
+    tree of links, or holds unusable numbers.
     """
-    data = _read_bytes(path)
-    _check_markup(data, path)
+    text = plain_xml(read_bytes(path, LARGEST_FILE), f"The URDF {path}")
+    root = ElementTree.fromstring(text).tag
+    if root != "robot":
+        raise InputError(f"The URDF {path} starts with <{root}>; it should start with <robot>.")
     try:
         robot = yourdfpy.URDF.load(
-            io.BytesIO(data), build_scene_graph=False, load_meshes=False
+            io.BytesIO(text.encode()), build_scene_graph=False, load_meshes=False
         ).robot
     except Exception as error:  # a hostile file can break the parser in any way
         raise InputError(
@@ -39,35 +42,6 @@ def read_urdf(path: Path) -> yourdfpy.Robot:
     for joint in robot.joints:
         _check_joint(joint, path)
     return robot
-
-
-def _read_bytes(path: Path) -> bytes:
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise InputError(f"The URDF {path} cannot be read: {error.strerror}.") from error
-    if len(data) > LARGEST_FILE:
-        raise InputError(f"The URDF {path} is larger than {LARGEST_FILE // 1_000_000} MB.")
-    return data
-
-
-def _check_markup(data: bytes, path: Path) -> None:
-    # Only UTF-8 passes, so the words below cannot hide behind another encoding.
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(f"The URDF {path} is not UTF-8 text.") from error
-    if "\0" in text or "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise InputError(f"The URDF {path} declares a document type or entities; remove them.")
-    try:
-        root = ElementTree.fromstring(text.partition("?>")[2] if text.startswith("<?") else text)
-    except ElementTree.ParseError as error:
-        raise InputError(f"The URDF {path} is not well-formed XML: {error}.") from error
-    if root.tag != "robot":
-        raise InputError(f"The URDF {path} starts with <{root.tag}>; it should start with <robot>.")
-    if sum(1 for _ in root.iter()) > MOST_ELEMENTS:
-        raise InputError(f"The URDF {path} has more than {MOST_ELEMENTS} elements.")
 
 
 def _check_tree(robot: yourdfpy.Robot, path: Path) -> None:
