@@ -1,0 +1,18 @@
+"""Where logs are kept."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+
+def log_folder() -> Path:
+    """Return the user's folder of RASTrainer's logs; it need not exist."""
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA")
+        return Path(base or Path.home() / "AppData" / "Local") / "RASTrainer" / "Logs"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Logs" / "RASTrainer"
+    base = os.environ.get("XDG_STATE_HOME")
+    return Path(base or Path.home() / ".local" / "state") / "rastrainer" / "logs"

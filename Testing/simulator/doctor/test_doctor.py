@@ -1,0 +1,200 @@
+"""`rastrainer doctor` finds what is missing and says what to do."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import sys
+from datetime import datetime, timezone
+from pathlib import Path
+
+import pytest
+
+from rastrainer_simulator.cli import main
+from rastrainer_simulator.doctor import folders as folders_check
+from rastrainer_simulator.doctor import python_packages, real_time
+from rastrainer_simulator.doctor.clock import check_clock
+from rastrainer_simulator.doctor.finding import Verdict
+from rastrainer_simulator.doctor.folders import check_folders
+from rastrainer_simulator.doctor.gamepad import check_gamepad
+from rastrainer_simulator.doctor.graphics import check_graphics
+from rastrainer_simulator.doctor.ports import check_ports
+from rastrainer_simulator.doctor.python_packages import check_python
+from rastrainer_simulator.doctor.real_time import check_real_time
+from rastrainer_simulator.doctor.slicer_program import check_slicer
+from rastrainer_simulator.record.trial_archive import SUFFIX
+from Testing.end_to_end.virtual_display import VirtualDisplay
+from Testing.sdl_virtual_gamepad import VirtualGamepad
+
+NOW = datetime(2026, 3, 1, tzinfo=timezone.utc)
+
+
+def verdicts(findings):
+    return [finding.verdict for finding in findings]
+
+
+@pytest.fixture
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return listener.getsockname()[1]
+
+
+@pytest.fixture
+def held():
+    """Return a port that a program holds."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        yield listener.getsockname()[1]
+
+
+def test_a_free_port_is_ok_and_a_held_one_names_the_program_that_holds_it(free_port, held):
+    assert verdicts(check_ports(free_port, free_port)) == [Verdict.OK, Verdict.OK]
+    link, views = check_ports(held, held)
+    assert (link.verdict, views.verdict) == (Verdict.PROBLEM, Verdict.WARNING)
+    for finding in (link, views):
+        assert f"Port {held}" in finding.sentence
+        assert f"(process {os.getpid()}) holds it" in finding.sentence
+        assert finding.remedy
+
+
+def test_python_and_its_packages_are_there():
+    found = list(check_python())
+    assert Verdict.PROBLEM not in verdicts(found)
+    assert "numpy" in found[-1].sentence
+
+
+def test_a_missing_package_is_a_problem_with_the_command_that_mends_it(monkeypatch):
+    monkeypatch.setitem(python_packages.MODULES, "no-such-package", "no_such_module")
+    (finding,) = (each for each in check_python() if each.verdict is Verdict.PROBLEM)
+    assert "no-such-package cannot be loaded" in finding.sentence
+    assert "pip install" in finding.remedy
+
+
+def test_without_a_display_the_window_is_said_to_stay_closed(monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    (finding,) = check_graphics()
+    assert finding.verdict is Verdict.WARNING
+    assert "no display" in finding.sentence
+
+
+def test_on_a_display_the_renderer_of_opengl_is_named(monkeypatch):
+    with VirtualDisplay() as display:
+        monkeypatch.setenv("DISPLAY", display.name)
+        (finding,) = check_graphics()
+    assert "OpenGL works" in finding.sentence
+    if "llvmpipe" in finding.sentence:
+        assert finding.verdict is Verdict.WARNING
+        assert "driver" in finding.remedy
+
+
+@pytest.mark.parametrize(
+    ("script", "words"),
+    [
+        ("import os; os.abort()", "ended with -6"),
+        ("import sys; sys.exit('No window can be opened.')", "No window can be opened."),
+        ("print('renderer')", "OpenGL does not work"),
+    ],
+)
+def test_an_opengl_that_takes_its_process_down_is_told(monkeypatch, script, words):
+    monkeypatch.setenv("DISPLAY", ":0")
+    (finding,) = check_graphics((sys.executable, "-c", script))
+    assert finding.verdict is Verdict.WARNING
+    assert words in finding.sentence
+    assert finding.remedy
+
+
+def test_a_gamepad_is_named_and_none_is_a_warning(tmp_path):
+    (finding,) = check_gamepad(tmp_path)
+    assert finding.verdict is Verdict.WARNING
+    assert "No gamepad" in finding.sentence
+    gamepad = VirtualGamepad(lambda *_strengths: None)
+    gamepad.plug_in()
+    try:
+        (finding,) = check_gamepad(tmp_path)
+    finally:
+        gamepad.plug_out()
+    assert finding.verdict is Verdict.OK
+    assert "is plugged in" in finding.sentence
+
+
+def test_slicer_and_its_extension_are_found_or_it_is_said_where_to_get_them(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.delenv("SLICER_HOME", raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    (missing,) = check_slicer((tmp_path,))
+    assert missing.verdict is Verdict.WARNING
+    assert "download.slicer.org" in missing.remedy
+    slicer = tmp_path / "Slicer-5.10.0-linux-amd64"
+    slicer.mkdir()
+    (slicer / "Slicer").touch()
+    found, extension = check_slicer((tmp_path,))
+    assert str(slicer) in found.sentence
+    assert extension.verdict is Verdict.WARNING
+    assert "Extensions Manager" in extension.remedy
+    (slicer / "slicer.org" / "Extensions-33000" / "SlicerOpenIGTLink").mkdir(parents=True)
+    assert verdicts(check_slicer((tmp_path,))) == [Verdict.OK, Verdict.OK]
+
+
+def test_real_time_priority_is_tried_without_a_lasting_effect(monkeypatch):
+    before = os.sched_getscheduler(0)
+    (finding,) = check_real_time()
+    assert finding.verdict in (Verdict.OK, Verdict.WARNING)
+    assert os.sched_getscheduler(0) == before
+
+    def refuse(*_arguments):
+        raise PermissionError
+
+    monkeypatch.setattr(real_time.os, "sched_setscheduler", refuse)
+    (finding,) = check_real_time()
+    assert finding.verdict is Verdict.WARNING
+    assert "limits.conf" in finding.remedy
+
+
+def test_a_folder_is_judged_by_whether_it_can_be_written_to_and_by_its_room(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("notes")
+    missing, blocked = check_folders(
+        {"trials": tmp_path / "a" / "b", "settings": tmp_path / "file" / "c"}
+    )
+    assert missing.verdict in (Verdict.OK, Verdict.WARNING)
+    assert not (tmp_path / "a").exists()
+    assert blocked.verdict is Verdict.PROBLEM
+    assert "cannot be written to" in blocked.sentence
+    for megabytes, verdict in ((50, Verdict.PROBLEM), (600, Verdict.WARNING), (9000, Verdict.OK)):
+        usage = lambda _path, free=megabytes: type("Usage", (), {"free": free * 10**6})  # noqa: E731
+        monkeypatch.setattr(folders_check.shutil, "disk_usage", usage)
+        (finding,) = check_folders({"trials": tmp_path})
+        assert finding.verdict is verdict
+
+
+def test_a_clock_that_was_set_back_is_told_by_the_journals(tmp_path):
+    assert verdicts(check_clock(tmp_path, NOW)) == [Verdict.OK]
+    (tmp_path / f"20260501T120000Z_x{SUFFIX}").touch()
+    (finding,) = check_clock(tmp_path, NOW)
+    assert finding.verdict is Verdict.WARNING
+    assert "was set back" in finding.sentence
+    (finding,) = check_clock(tmp_path / "none", datetime(1970, 1, 1, tzinfo=timezone.utc))
+    assert "cannot be 1970" in finding.sentence
+
+
+def words(folder: Path, port: int):
+    return [
+        *("doctor", "--port", str(port), "--view-port", str(port)),
+        *("--records", str(folder), "--config", str(folder / "config")),
+    ]
+
+
+def test_the_doctor_tells_a_line_a_check_and_ends_with_1_where_there_is_a_problem(
+    tmp_path, free_port, held, capsys
+):
+    assert main(words(tmp_path, free_port)) == 0
+    lines = capsys.readouterr().out.splitlines()
+    checks = {line[9:19].strip() for line in lines if line[:8].strip()}
+    assert checks == {
+        *("python", "packages", "graphics", "gamepad", "ports"),
+        *("slicer", "real time", "folders", "clock"),
+    }
+    assert main([*words(tmp_path, held), "--json"]) == 1
+    findings = json.loads(capsys.readouterr().out)
+    assert {"check", "verdict", "sentence", "remedy"} == set(findings[0])
+    assert "problem" in {finding["verdict"] for finding in findings}
