@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -23,6 +24,12 @@ class DisplayReport:
     refresh_hz: float
     shown: int
     dropped: int
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> DisplayReport:
+        """Return what `entry` made an entry of."""
+        named = (entry[name] for name in ("view", "device", "refreshHz", "shown", "dropped"))
+        return cls(*named)
 
     def entry(self) -> dict[str, Any]:
         """Return what goes into the journal, without its times."""

@@ -4,29 +4,26 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_reader import Integrity, JournalReading
-from rastrainer.protocol import CommandName, check_arguments
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
+from rastrainer_simulator.record.interrupted_trial import InterruptedTrial, recorded_command
 from rastrainer_simulator.record.replay_metrics import ReplayMetrics
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.settings import SimulationSettings, settings_from_json
-from rastrainer_simulator.setup import SimulationSetup, load_setup
+from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.state import StartingPoint
-from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
+from rastrainer_simulator.state import StartingPoint, StepResult
 
 LONGEST_TRIAL_TICKS = 10_000_000
 """A journal that claims more (11 hours at 250 Hz) is not replayed."""
 SHORTEST_TICK_S, LONGEST_TICK_S = 1e-4, 0.1
 
 _NOT_SIMULATED = frozenset({"header", "display", "stopped", "scored", "acknowledged"})
-_OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record"})
+_OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record", "versions"})
 
 
 @dataclass(frozen=True)
@@ -55,17 +52,22 @@ class ReplayReport:
         return self.difference is None
 
 
-def replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
+def replay(
+    reading: JournalReading,
+    setup: SimulationSetup,
+    watch: Callable[[StepResult], None] = lambda _result: None,
+) -> ReplayReport:
     """Simulate a trial again from its recorded inputs.
 
     The replay forms the journal's entries anew and compares them with the recorded ones: events,
-    touches, 50 postures a second, and the hash over the posture of every single tick.
+    touches, 50 postures a second, and the hash over the posture of every single tick. `watch` is
+    given each step as it is simulated.
 
     Raises:
         InputError: the journal's entries are not those of a trial.
     """
     try:
-        return _replay(reading, setup)
+        return _replay(reading, setup, watch)
     except InputError:
         raise
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
@@ -74,61 +76,96 @@ def replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
         ) from None
 
 
-def setup_of(header: Mapping[str, Any], scenario_folder: Path | None = None) -> SimulationSetup:
-    """Return the setup that a journal's header describes.
-
-    Raises:
-        InputError: the scenario here is another, or the header is not usable.
-    """
-    try:
-        settings = settings_from_json(SimulationSettings, header["settings"])
-        name, sha256 = header["scenario"]["name"], header["scenario"]["sha256"]
-    except (KeyError, TypeError, AttributeError):
-        raise InputError("The journal's header lacks the scenario or the settings.") from None
-    setup = load_setup(scenario_folder, settings)
-    if setup.scenario_sha256 != sha256:
-        raise InputError(
-            f"The trial was recorded with a scenario {name!r} whose files differ from those of "
-            f"{setup.scenario.name!r} here: give its folder with --scenario."
-        )
-    return setup
-
-
-def _replay(reading: JournalReading, setup: SimulationSetup) -> ReplayReport:
+def _replay(
+    reading: JournalReading, setup: SimulationSetup, watch: Callable[[StepResult], None]
+) -> ReplayReport:
     header = reading.header
-    recorded = [entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED]
     start = StartingPoint(**header["before"])
-    last = max((entry["tick"] for entry in recorded), default=start.tick)
+    simulated = [entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED]
+    last = max((entry["tick"] for entry in simulated), default=start.tick)
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
         raise InputError(f"{reading.path} claims {last - start.tick} ticks: no trial is so long.")
     if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:
         raise InputError(f"{reading.path} claims ticks of {header['tickS']} s: no loop has them.")
     simulation = Simulation(setup, header["seed"])
     simulation.continue_from(start)
-    dt = header["tickS"]
-    entries: TrialEntries | None = None
-    metrics = ReplayMetrics()
-    for operator_input in _inputs(recorded, start.tick, last):
-        before = simulation.state
-        result = simulation.step(dt, operator_input)
-        if entries is None:
-            entries = TrialEntries(simulation, before, result, dt)
-        entries.add(simulation, operator_input, result)
-        metrics = metrics.after(dt, before, result)
-    again = entries.taken()[1:] if entries else []
-    if reading.integrity is Integrity.CUT_SHORT:
-        again = _without_what_was_cut(again, recorded)
+    player = _Player(simulation, header["tickS"], watch)
     compared: dict[str, int] = defaultdict(int)
-    for entry in recorded:
-        compared[entry["kind"]] += 1
+    for first, end in _parts(reading.entries):
+        part = [e for e in reading.entries[first:end] if e["kind"] not in _NOT_SIMULATED]
+        again = player.go_on(reading.entries[:first], part)
+        if end < len(reading.entries) or reading.integrity is Integrity.CUT_SHORT:
+            again = _without_what_was_cut(again, part)
+        for entry in part:
+            compared[entry["kind"]] += 1
+        difference = _first_difference(part, again)
+        if difference is not None:
+            break
     return ReplayReport(
         trial_id=header["trialId"],
-        ticks=last - start.tick,
+        ticks=simulation.state.tick - start.tick,
         compared=dict(compared),
-        difference=_first_difference(recorded, again),
-        changed_versions=_changed(header["versions"], entries.versions if entries else {}),
-        metrics=metrics,
+        difference=difference,
+        changed_versions=_changed(header["versions"], player.versions),
+        metrics=player.metrics,
     )
+
+
+def _parts(entries: Sequence[Mapping[str, Any]]) -> Iterator[tuple[int, int]]:
+    """Yield first and end of what each server has written: a trial may have been interrupted."""
+    starts = [n for n, entry in enumerate(entries) if entry["kind"] == "continued"]
+    return zip((0, *starts), (*starts, len(entries)), strict=True)
+
+
+class _Player:
+    """Simulates the parts of one trial and forms their entries anew."""
+
+    def __init__(
+        self, simulation: Simulation, dt: float, watch: Callable[[StepResult], None]
+    ) -> None:
+        self._simulation = simulation
+        self._dt = dt
+        self._watch = watch
+        self._entries: TrialEntries | None = None
+        self.versions: Mapping[str, str] = {}
+        self.metrics = ReplayMetrics()
+
+    def go_on(
+        self, earlier: Sequence[Mapping[str, Any]], part: Sequence[Mapping[str, Any]]
+    ) -> list[dict[str, Any]]:
+        """Return the entries of one part, but for the header, formed anew."""
+        if earlier:
+            self._take_up(earlier, part[0])
+        self._play(part)
+        if self._entries is None:
+            return []
+        self.versions = self._entries.versions
+        return self._entries.taken()[0 if earlier else 1 :]
+
+    def _take_up(self, earlier: Sequence[Mapping[str, Any]], go_on: Mapping[str, Any]) -> None:
+        """Take the trial up as the server has that found the earlier parts."""
+        interrupted = InterruptedTrial.of(earlier)
+        if interrupted is None:
+            raise InputError("The journal goes on with a trial that was not open.")
+        point = StartingPoint(go_on["tick"], go_on["simTime"], camera=go_on["camera"])
+        self._simulation.take_up(interrupted, point)
+        since = interrupted.point.sim_time
+        self._entries = TrialEntries.continued(
+            self._simulation, self._simulation.state, earlier, since, self._dt
+        )
+
+    def _play(self, part: Sequence[Mapping[str, Any]]) -> None:
+        simulation, dt = self._simulation, self._dt
+        first = simulation.state.tick
+        last = max((entry["tick"] for entry in part), default=first)
+        for operator_input in _inputs(part, first, last):
+            before = simulation.state
+            result = simulation.step(dt, operator_input)
+            self._watch(result)
+            if self._entries is None:
+                self._entries = TrialEntries.begun(simulation, before, result, dt)
+            self._entries.add(simulation, operator_input, result)
+            self.metrics = self.metrics.after(dt, before, result)
 
 
 def _inputs(
@@ -146,21 +183,11 @@ def _inputs(
                 operator=entry["operator"],
             )
         elif entry["kind"] == "command":
-            commands[entry["tick"]].append(_command(entry))
+            commands[entry["tick"]].append(recorded_command(entry))
     held = HANDS_OFF
     for tick in range(before + 1, last + 1):
         held = sticks.get(tick, held)
         yield replace(held, commands=tuple(commands[tick])) if tick in commands else held
-
-
-def _command(entry: Mapping[str, Any]) -> Command:
-    """Return a recorded command; its arguments are checked anew, as the file may be forged."""
-    name = entry["name"]
-    arguments = {key: value for key, value in entry["arguments"].items() if value is not None}
-    if name == RECORDING_FAILED:
-        return Command(name, arguments)
-    own = {"trialId": arguments.pop("trialId")} if name == CommandName.START_TASK else {}
-    return Command(name, check_arguments(name, arguments) | own, 0, entry["sender"])
 
 
 def _first_difference(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import struct
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -34,13 +35,10 @@ _Q = struct.Struct("<7d")
 class TrialEntries:
     """What one trial adds to its journal; `pending` is what has not been handed to the writer."""
 
-    def __init__(
-        self, simulation: Simulation, before: SimulationState, result: StepResult, dt: float
-    ) -> None:
-        """Begin with the header; `before` is the state in which StartTask was carried out."""
-        state = result.state
-        training = state.training
-        self.trial_id = training.trial_id
+    def __init__(self, simulation: Simulation, trial_id: str, started_utc: str, dt: float) -> None:
+        """Prepare the entries of the simulation's present trial; `begun` and `continued` do."""
+        self.trial_id = trial_id
+        self.started_utc = started_utc
         self._seed = simulation.trial_seed
         self._scenario = simulation.setup.scenario.name
         self.versions = versions() | {"kinematics": simulation.kinematics_name}
@@ -50,10 +48,18 @@ class TrialEntries:
         self._utc: dict[float, str] = {}
         self._recording = Recording()
         self._display = DisplayUse()
-        times = stamp(state.tick, state.sim_time)
-        self.started_utc = times["utc"]
         self.pending: list[dict[str, Any]] = []
-        self._append(
+
+    @classmethod
+    def begun(
+        cls, simulation: Simulation, before: SimulationState, result: StepResult, dt: float
+    ) -> TrialEntries:
+        """Begin with the header; `before` is the state in which StartTask was carried out."""
+        state = result.state
+        training = state.training
+        times = stamp(state.tick, state.sim_time)
+        entries = cls(simulation, training.trial_id, times["utc"], dt)
+        entries._append(
             {
                 "kind": "header",
                 "format": FORMAT,
@@ -63,13 +69,50 @@ class TrialEntries:
                 "trainee": training.trainee,
                 "task": training.task,
                 "mode": training.mode,
-                "seed": self._seed,
+                "seed": entries._seed,
                 "tickS": dt,
                 "before": asdict(StartingPoint.after(before)),
                 **simulation.setup.description(),
-                "versions": self.versions,
+                "versions": entries.versions,
             }
         )
+        return entries
+
+    @classmethod
+    def continued(
+        cls,
+        simulation: Simulation,
+        state: SimulationState,
+        earlier: Sequence[Mapping[str, Any]],
+        since: float,
+        dt: float,
+    ) -> TrialEntries:
+        """Go on from a state of a trial that was interrupted.
+
+        `earlier` are its entries before; since their last one, at the simulated time `since` in s,
+        the trial's time stands still.
+        """
+        training = state.training
+        entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
+        for entry in earlier:
+            entries._recording.add(entry)
+            if entry["kind"] == "touch":
+                entries._utc[entry["simTime"] - dt] = entry["utc"]
+            elif entry["kind"] == "display":
+                entries._display.add(DisplayReport.of(entry))
+        entries._append(
+            {
+                "kind": "continued",
+                **stamp(state.tick, state.sim_time),
+                "since": since,
+                "camera": state.camera,
+                "phase": training.phase.value,
+                "kept": len(training.touches),
+                "nextPoint": training.next_point,
+                "versions": entries.versions,
+            }
+        )
+        return entries
 
     def add(
         self, simulation: Simulation, operator_input: OperatorInput, result: StepResult

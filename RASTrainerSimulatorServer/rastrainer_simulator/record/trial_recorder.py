@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.journal.journal_reader import JournalReading
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.operator_input import OperatorInput
@@ -55,6 +56,17 @@ class TrialRecorder:
         self._journal: Journal | None = None
         self._registering: Future[Any] | None = None
         self._is_stuck = False
+        self._waiting: tuple[JournalReading, float] | None = None
+
+    def take_up(self, simulation: Simulation, reading: JournalReading) -> None:
+        """Go on with the journal of the trial that the simulation has just taken up.
+
+        While the trial is paused the file stays as it is.
+        """
+        state = simulation.state
+        self._waiting = reading, state.sim_time
+        if state.training.phase is not Phase.PAUSED:
+            self._go_on(simulation, state)
 
     def record(
         self,
@@ -67,6 +79,8 @@ class TrialRecorder:
         training = result.state.training
         if training.trial_id and training.trial_id != before.training.trial_id:
             self._begin(simulation, before, result)
+        if self._waiting is not None and any(e.kind in MUST_LAST for e in result.events):
+            self._go_on(simulation, before)
         if self._entries is None:
             return None
         if any(command.name == RECORDING_FAILED for command in operator_input.commands):
@@ -97,11 +111,18 @@ class TrialRecorder:
         self._hand_over_and_leave()
 
     def _begin(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
-        self._entries = TrialEntries(simulation, before, result, self._dt)
+        self._entries = TrialEntries.begun(simulation, before, result, self._dt)
         name = f"{file_stamp(self._entries.started_utc)}_{self._entries.trial_id}{SUFFIX}"
         self._journal = Journal(self._folder / name)
         self._registering = None
         self._is_stuck = False
+
+    def _go_on(self, simulation: Simulation, state: SimulationState) -> None:
+        """Append to the journal of an interrupted trial from now on."""
+        reading, since = self._waiting
+        self._waiting = None
+        self._entries = TrialEntries.continued(simulation, state, reading.entries, since, self._dt)
+        self._journal = Journal.continuing(reading)
 
     def _is_registered(self) -> bool:
         future = self._registering

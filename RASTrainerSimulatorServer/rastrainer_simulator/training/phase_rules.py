@@ -12,6 +12,9 @@ from rastrainer_simulator.texts.texts import Texts
 RECORDING_FAILED = "RecordingFailed"
 """By it the control loop takes back what could not be written; clients cannot send it."""
 
+INTERRUPTED = "Interrupted"
+"""By it a trial that a server's end has cut short is taken up; clients cannot send it."""
+
 _OPEN = {Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE}
 _FINISHED = {Phase.REGISTERED, Phase.SCORED}
 _AFTER_REGISTRATION = {
@@ -45,6 +48,7 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
     CommandName.PLAN_TARGET: _AFTER_REGISTRATION,
     CommandName.GET_TRIAL: {Phase.IDLE: "no trial"},
     RECORDING_FAILED: {},
+    INTERRUPTED: dict.fromkeys((Phase.IDLE, *_FINISHED), "no trial"),
 }
 """For each command of the simulation the phases that it is wrong in, and the sentence's key."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ from rastrainer.protocol import CommandName, Phase
 from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.state import Event, EventKind, Touch, TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import Texts
-from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, refusal
+from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED, refusal
 from rastrainer_simulator.training.touch_rule import MM, refused_touch
 from rastrainer_simulator.training.trial_clock import TrialClock
 from rastrainer_simulator.training.trial_seed import trial_id, trial_seed
@@ -87,12 +87,25 @@ class Training:
             CommandName.TRIAL_SCORED: self._scored,
             CommandName.GET_TRIAL: self._get_trial,
             RECORDING_FAILED: self._recording_failed,
+            INTERRUPTED: self._interrupted,
         }
 
     def continue_from(self, revision: int) -> None:
         """Count revisions on from another simulation's, before the first trial."""
         self.state = replace(self.state, revision=revision)
         self._history = {revision: self.state}
+
+    def take_up(self, revision: int, steps: Iterable[tuple[Command, Moment]]) -> None:
+        """Bring the trial of a journal to where it was when the server ended.
+
+        `revision` is that before the trial, `steps` what was carried out since. A trial whose time
+        was running is paused from the last step on.
+        """
+        self._leave()
+        self.state = TrainingState(revision=revision)
+        self._history = {revision: self.state}
+        for command, moment in steps:
+            self.handle(command, moment)
 
     def handles(self, command: str) -> bool:
         """Return whether a command is the trial's business."""
@@ -266,6 +279,17 @@ class Training:
         back = replace(kept, revision=self.state.revision)
         event = self._enter(back, "not recorded", now, reason=command.arguments["reason"])
         return Reply(True, message=sentence, events=(event,))
+
+    def _interrupted(self, _command: Command, now: Moment) -> Reply:
+        """Pause a trial that runs; one whose points are all touched has no time to stop."""
+        if self.state.phase is Phase.COMPLETE:
+            event = self._enter(self.state, "interrupted complete", now)
+        else:
+            self._clock.pause(now.sim_time)
+            paused = replace(self.state, phase=Phase.PAUSED)
+            kept = len(paused.touches)
+            event = self._enter(paused, "interrupted", now, kept=kept)
+        return Reply(True, events=(event,))
 
     def _enter(self, state: TrainingState, key: str, now: Moment, **values: object) -> Event:
         """Take on a state of another phase and return the event that tells of it."""

@@ -19,7 +19,7 @@ from rastrainer.journal.journal_line import (
 
 ENDS = frozenset({"registered", "aborted", "stopped"})
 """Kinds of entries after which nothing of the trial itself is missing."""
-_STEPS = frozenset({"header", "phase", *ENDS})
+_STEPS = frozenset({"header", "phase", "continued", *ENDS})
 
 
 class Integrity(str, Enum):

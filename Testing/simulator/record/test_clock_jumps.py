@@ -1,0 +1,69 @@
+"""The computer's clock may be set while a trial runs: durations and the record do not mind."""
+
+from __future__ import annotations
+
+import time
+from datetime import datetime, timedelta
+from types import SimpleNamespace
+
+import pytest
+
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.study import Study
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.record import stamps
+from rastrainer_simulator.record.replay import replay
+from rastrainer_simulator.record.trial_archive import SUFFIX
+
+PATIENCE_S = 30.0
+
+
+@pytest.fixture
+def jumping(monkeypatch):
+    """Return an object whose `by` is how far the clock has been set."""
+    jump = SimpleNamespace(by=timedelta())
+
+    def now(zone):
+        return datetime.now(zone) + jump.by
+
+    monkeypatch.setattr(stamps, "datetime", SimpleNamespace(now=now))
+    return jump
+
+
+@pytest.mark.parametrize("days", [-400, 400], ids=["back", "forward"])
+def test_a_clock_that_jumps_in_a_trial_changes_no_duration(
+    simulation, anywhere, tmp_path, jumping, days
+):
+    records = tmp_path / "records"
+    started = time.monotonic()
+    with ControlLoop(simulation, records, speed=None) as loop:
+
+        def do(command, **arguments):
+            checked = check_arguments(command, arguments)
+            answer = loop.submit(command, checked).result(PATIENCE_S)
+            assert answer.ok or command == CommandName.ABORT, answer.message
+
+        do(CommandName.ABORT)
+        do(CommandName.START_TASK, task="task-1", trainee="P01")
+        while loop.latest.training.phase is Phase.RUNNING:
+            do(CommandName.CAPTURE)
+            jumping.by += timedelta(days=days)
+        do(CommandName.REGISTER)
+        (record,) = loop.unacknowledged()
+    (path,) = records.glob(f"*{SUFFIX}")
+    reading = read_journal(path)
+    assert reading.integrity is Integrity.INTACT
+    assert replay(reading, anywhere).difference is None
+    times = [entry["monotonic"] for entry in reading.entries]
+    assert times == sorted(times)
+    assert times[-1] - times[0] <= time.monotonic() - started
+    simulated = reading.entries[-1]["simTime"] - reading.header["before"]["sim_time"]
+    assert 0.0 < record.completion_time_s <= simulated
+    years = {point.utc[:4] for point in record.points}
+    assert len(years) > 10
+    assert TrialRecord.from_json(record.to_json()) == record
+    with Study.open(tmp_path / "study.db") as study:
+        assert study.add_trial(record)
+        assert study.history("P01")[0].record.completion_time_s == record.completion_time_s

@@ -1,0 +1,309 @@
+"""A trial whose server has ended is taken up where it was, and written on in the same journal."""
+
+from __future__ import annotations
+
+import errno
+import os
+import random
+import shutil
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.journal.recording import Recording
+from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.record.interrupted_trial import InterruptedTrial, find_interrupted
+from rastrainer_simulator.record.replay import replay
+from rastrainer_simulator.record.trial_archive import SUFFIX
+
+PATIENCE_S = 30.0
+
+
+class Server:
+    """A control loop over a folder, as a server runs it; `end` is its end in the middle."""
+
+    def __init__(self, simulation, folder):
+        found = find_interrupted(folder)
+        reading = None
+        if found is not None:
+            reading, interrupted = found
+            simulation.take_up(interrupted)
+        self.loop = ControlLoop(simulation, folder, speed=None, interrupted=reading)
+        self.folder = folder
+        self.taken_up = self.loop.latest
+
+    def __enter__(self):
+        self.loop.start()
+        return self
+
+    def __exit__(self, *_exception):
+        self.loop.stop()
+
+    @property
+    def training(self):
+        return self.loop.latest.training
+
+    @property
+    def path(self):
+        (path,) = self.folder.glob(f"*{SUFFIX}")
+        return path
+
+    def do(self, command, **arguments):
+        checked = check_arguments(command, arguments)
+        return self.loop.submit(command, checked, "tester").result(PATIENCE_S)
+
+    def start(self):
+        self.do(CommandName.ABORT)
+        return self.do(CommandName.START_TASK, task="task-1", trainee="P01").data["trialId"]
+
+    def move(self, translation=(0.4, -0.3, 0.2), ticks=20):
+        self.loop.hold_sticks(OperatorInput(translation, operator="gamepad"))
+        until = self.loop.latest.tick + ticks
+        while self.loop.latest.tick < until:
+            self.do(CommandName.LIST_TASKS)
+        self.loop.hold_sticks(OperatorInput())
+
+    def finish(self):
+        while self.training.phase is not Phase.COMPLETE:
+            assert self.do(CommandName.CAPTURE).ok
+        assert self.do(CommandName.REGISTER).ok
+
+
+def cut(path, size):
+    """Make of a journal what a kill leaves behind."""
+    with path.open("r+b") as file:
+        file.truncate(size)
+
+
+def test_the_trial_goes_on_from_the_next_fiducial_and_its_one_journal_replays_bit_by_bit(
+    simulation, anywhere, tmp_path
+):
+    with Server(simulation, tmp_path) as server:
+        trial_id = server.start()
+        server.do(CommandName.SET_CAMERA, camera="far")
+        for _ in range(4):
+            server.move()
+            assert server.do(CommandName.CAPTURE).ok
+        assert server.do(CommandName.UNDO).ok
+        server.move((-0.5, 0.1, 0.3), 60)
+        touches = server.training.touches
+        server.loop.stop()
+        size = server.path.read_bytes().rindex(b'{"n"')
+    cut(server.path, size)
+    last_sample = read_journal(server.path).of_kind("sample")[-1]
+
+    with Server(simulation, tmp_path) as server:
+        assert server.taken_up.training.trial_id == trial_id
+        assert server.taken_up.training.phase is Phase.PAUSED
+        assert server.taken_up.training.next_point == "4"
+        assert server.taken_up.q == tuple(last_sample["q"])
+        assert server.taken_up.camera == "far"
+        np.testing.assert_allclose(
+            [t.position for t in server.taken_up.training.touches],
+            [t.position for t in touches],
+            rtol=1e-15,  # The journal has them in mm.
+        )
+        assert "3 of 15 points are kept" in server.training.instruction
+        assert server.do(CommandName.RESUME).ok
+        server.move()
+        assert server.do(CommandName.CAPTURE).data["label"] == "4"
+        server.finish()
+        (record,) = server.loop.unacknowledged()
+    reading = read_journal(server.path)
+    assert reading.integrity is Integrity.INTACT
+    report = replay(reading, anywhere)
+    assert report.difference is None
+    assert report.compared["continued"] == 1
+    assert record.trial_id == trial_id
+    assert record.undone_touches == 1
+    assert [point.position_mm for point in record.points[:3]] == [
+        tuple(entry["positionMm"]) for entry in reading.of_kind("touch")[:3]
+    ]
+
+
+def test_a_journal_cut_at_any_byte_is_taken_up_with_every_touch_that_is_whole(simulation, tmp_path):
+    original = tmp_path / "original"
+    with Server(simulation, original) as server:
+        server.start()
+        for number in range(6):
+            assert server.do(CommandName.CAPTURE).ok
+            if number == 2:
+                assert server.do(CommandName.UNDO).ok
+                assert server.do(CommandName.PAUSE).ok
+                assert server.do(CommandName.RESUME).ok
+    data = server.path.read_bytes()
+    rng = random.Random(4)
+    for number in range(30):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        path = folder / server.path.name
+        path.write_bytes(data[: rng.randrange(len(data))])
+        found = find_interrupted(folder)
+        entries = read_journal(path).entries if path.stat().st_size else ()
+        if not any(entry["kind"] == "phase" for entry in entries):
+            assert found is None
+            continue
+        kept = [touch.label for touch in Recording.of(entries).trajectory().touches]
+        simulation.take_up(found[1])
+        training = simulation.state.training
+        assert training.phase is Phase.PAUSED
+        assert [touch.label for touch in training.touches] == kept
+        assert training.next_point == str(len(kept) + 1)
+
+
+def test_ten_ends_in_one_trial_leave_one_intact_journal(simulation, anywhere, tmp_path):
+    rng = random.Random(8)
+    with Server(simulation, tmp_path) as server:
+        trial_id = server.start()
+    touched = 0
+    for _ in range(10):
+        with Server(simulation, tmp_path) as server:
+            training = server.taken_up.training
+            assert len(training.touches) >= touched
+            if training.phase is Phase.PAUSED:
+                assert server.do(CommandName.RESUME).ok
+            server.move(tuple(rng.uniform(-0.5, 0.5) for _ in range(3)), rng.randrange(1, 30))
+            for _ in range(2):
+                if server.training.phase is Phase.RUNNING:
+                    assert server.do(CommandName.CAPTURE).ok
+            touched = len(server.training.touches)
+            size = server.path.stat().st_size
+            server.move(ticks=70)
+        # What was acknowledged is on the disk; of the rest, a kill may leave any part.
+        if rng.random() < 0.8:
+            cut(server.path, rng.randrange(size, server.path.stat().st_size + 1))
+    with Server(simulation, tmp_path) as server:
+        assert server.training.phase is Phase.COMPLETE
+        assert "all 15 points are kept" in server.training.instruction
+        assert server.do(CommandName.REGISTER).ok
+        (record,) = server.loop.unacknowledged()
+    assert record.trial_id == trial_id
+    assert record.labels == tuple(str(i) for i in range(1, 16))
+    reading = read_journal(server.path)
+    assert reading.integrity is Integrity.INTACT
+    assert replay(reading, anywhere).difference is None
+
+
+def test_the_time_of_the_trial_stands_still_until_it_is_gone_on_with(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        assert server.do(CommandName.CAPTURE).ok
+        server.move(ticks=100)
+    last = max(entry["simTime"] for entry in read_journal(server.path).entries)
+    with Server(simulation, tmp_path) as server:
+        elapsed = server.taken_up.elapsed
+        server.move(ticks=500)
+        assert server.loop.latest.elapsed == elapsed
+        assert server.do(CommandName.RESUME).ok
+        server.finish()
+        (record,) = server.loop.unacknowledged()
+        at_end = server.loop.latest.sim_time
+    started = read_journal(server.path).header["before"]["sim_time"]
+    assert elapsed == pytest.approx(last - started, abs=1e-6)
+    assert elapsed <= record.completion_time_s < at_end - started - 500 * 0.004
+    times = Recording.of(read_journal(server.path).entries).trajectory().times_s
+    assert np.all(np.diff(times) > 0.0)
+
+
+def test_a_trial_that_waits_leaves_its_journal_as_it_is(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        server.do(CommandName.CAPTURE)
+    before = server.path.read_bytes()
+    for _ in range(3):
+        with Server(simulation, tmp_path) as server:
+            assert server.training.phase is Phase.PAUSED
+            server.do(CommandName.SET_CAMERA, camera="far")
+            server.move(ticks=120)
+    assert server.path.read_bytes() == before
+
+
+def test_an_interrupted_trial_can_be_aborted_and_another_begun(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+    with Server(simulation, tmp_path) as server:
+        refused = server.do(CommandName.START_TASK, task="task-2", trainee="P02")
+        assert "P01 is still at task-1" in refused.message
+        assert server.do(CommandName.ABORT).ok
+        assert read_journal(server.path).integrity is Integrity.INTACT
+        assert server.do(CommandName.START_TASK, task="task-2", trainee="P02").ok
+
+
+def test_only_the_newest_trial_is_gone_on_with(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+    older = tmp_path / "older"
+    older.mkdir()
+    shutil.copy(server.path, older / f"20000101T000000Z_x{SUFFIX}")
+    with Server(simulation, tmp_path) as server:
+        server.do(CommandName.ABORT)
+    shutil.copy(server.path, older)
+    assert find_interrupted(older) is None
+
+
+def test_a_full_disk_when_the_trial_is_gone_on_with_pauses_it_again(
+    simulation, tmp_path, monkeypatch, anywhere
+):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        server.do(CommandName.CAPTURE)
+
+    def full(*_arguments):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with Server(simulation, tmp_path) as server:
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "write", full)
+            refused = server.do(CommandName.RESUME)
+        assert not refused.ok
+        assert "No space left" in refused.message
+        while server.training.phase is not Phase.PAUSED:
+            server.do(CommandName.LIST_TASKS)
+        assert server.do(CommandName.RESUME).ok
+        server.finish()
+    reading = read_journal(server.path)
+    assert reading.integrity is Integrity.INTACT
+    assert replay(reading, anywhere).difference is None
+    record = TrialRecord.from_json(reading.of_kind("registered")[-1]["record"])
+    assert record.labels == tuple(str(i) for i in range(1, 16))
+
+
+def test_an_altered_journal_is_not_gone_on_with_and_named(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        server.do(CommandName.CAPTURE)
+    path = server.path
+    path.write_bytes(path.read_bytes().replace(b'"P01"', b'"P02"', 1))
+    with pytest.raises(InputError, match=r"altered: line 1 .* cannot be continued"):
+        find_interrupted(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"kind": "command", "arguments": None},
+        {"kind": "touch", "positionMm": "here"},
+        {"kind": "sample", "q": 7},
+        {"kind": "header", "before": 3},
+        {"kind": "header", "tickS": "soon"},
+        {"kind": "phase", "tick": "never"},
+        {"kind": "proximity", "to": "inside"},
+    ],
+)
+def test_a_forged_journal_is_refused_with_a_sentence(simulation, tmp_path, change):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        server.do(CommandName.CAPTURE)
+        server.move(ticks=30)
+    entries = [dict(entry) for entry in read_journal(server.path).entries]
+    entries.append({"kind": "proximity", "to": "free", "tick": entries[-1]["tick"], "simTime": 0})
+    for entry in entries:
+        if entry["kind"] == change["kind"]:
+            entry.update(change)
+    with pytest.raises(InputError):
+        InterruptedTrial.of(entries)
