@@ -28,6 +28,7 @@ class _Turn:
 
     at_work: int = 0
     waiting: deque[tuple[Command, Mapping[str, Any]]] = field(default_factory=deque)
+    waiting_bytes: int = 0
 
 
 class CommandHandler:
@@ -52,10 +53,12 @@ class CommandHandler:
             self._refuse(connection, command, str(error))
             return
         turn = self._turns.setdefault(connection, _Turn())
-        if len(turn.waiting) >= self._limits.waiting_commands:
+        is_full = len(turn.waiting) >= self._limits.waiting_commands
+        if is_full or turn.waiting_bytes > self._limits.waiting_command_bytes:
             self._refuse(connection, command, "Too many commands wait: wait for their answers.")
             return
         turn.waiting.append((command, arguments))
+        turn.waiting_bytes += len(command.body)
         self._go_on(connection, turn)
 
     def forget(self, connection: Connection) -> None:
@@ -65,6 +68,7 @@ class CommandHandler:
     def _go_on(self, connection: Connection, turn: _Turn) -> None:
         while turn.waiting and turn.at_work < self._limits.commands_at_once:
             command, arguments = turn.waiting.popleft()
+            turn.waiting_bytes -= len(command.body)
             turn.at_work += 1
             future = self._submit(connection, command.name, arguments)
             future.add_done_callback(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import Counter
+from dataclasses import dataclass
 from typing import Protocol
 
 from rastrainer.igtl.message import CONTENTS, Message
@@ -42,6 +43,23 @@ class ConnectionOwner(Protocol):
         """Forget a connection; `reason` is empty when the peer left."""
 
 
+@dataclass
+class _HalfMessage:
+    """A message that has begun to arrive.
+
+    Attributes:
+        number: of the messages before it; None while none has begun.
+        since: when it began, s.
+        excused_s: time in which we did not read.
+        received: bytes since then, with those among which it began.
+    """
+
+    number: int | None = None
+    since: float = 0.0
+    excused_s: float = 0.0
+    received: int = 0
+
+
 class Connection(asyncio.BufferedProtocol):
     """One peer.
 
@@ -74,6 +92,7 @@ class Connection(asyncio.BufferedProtocol):
         self._read_on: asyncio.TimerHandle | None = None
         self._drop_slow: asyncio.TimerHandle | None = None
         self._drop_stalled: asyncio.TimerHandle | None = None
+        self._half = _HalfMessage()
         self._reason = ""
 
     def send(self, message: Outgoing) -> None:
@@ -125,6 +144,7 @@ class Connection(asyncio.BufferedProtocol):
         pause = self._budget.charge(spent, self._owner.reading_share, self._loop.time())
         if pause > 0.0 and self._is_open:
             self._transport.pause_reading()
+            self._half.excused_s += pause
             self._read_on = self._loop.call_later(pause, self._transport.resume_reading)
 
     def _read(self, nbytes: int) -> None:
@@ -137,7 +157,7 @@ class Connection(asyncio.BufferedProtocol):
             self._reader.errors.clear()
         if self._reader.refusal:
             self.drop(self._reader.refusal)
-        self._watch_half_message()
+        self._watch_half_message(nbytes)
 
     def pause_writing(self) -> None:
         """Give the peer some seconds to read on."""
@@ -186,14 +206,30 @@ class Connection(asyncio.BufferedProtocol):
         while self._queue and not self._is_paused and self._is_open:
             self._transport.write(self._queue.take(self._limits.buffer_bytes))
 
-    def _watch_half_message(self) -> None:
+    def _watch_half_message(self, nbytes: int) -> None:
+        """See to it that a message that has begun comes to its end."""
+        number = None if self._reader.is_between_messages else self._reader.taken
+        if number is not None and number == self._half.number:
+            self._half.received += nbytes
+            return
         if self._drop_stalled is not None:
             self._drop_stalled.cancel()
             self._drop_stalled = None
-        if not self._reader.is_between_messages:
-            self._drop_stalled = self._loop.call_later(
-                self._limits.half_message_s, self.drop, "It left a message half sent."
-            )
+        self._half = _HalfMessage(number, self._loop.time(), received=nbytes)
+        if number is not None:
+            self._look_again()
+
+    def _look_again(self) -> None:
+        wait = self._limits.half_message_s
+        self._drop_stalled = self._loop.call_later(wait, self._drop_if_stalled)
+
+    def _drop_if_stalled(self) -> None:
+        """Drop a peer whose message comes too slowly, be it a byte now and then."""
+        waited = self._loop.time() - self._half.since - self._half.excused_s
+        if self._half.received < waited * self._limits.slowest_bytes_per_s:
+            self.drop("It left a message half sent.")
+        else:
+            self._look_again()
 
 
 def _words(error: Exception | None) -> str:

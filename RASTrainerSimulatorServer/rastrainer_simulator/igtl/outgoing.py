@@ -42,7 +42,7 @@ class OutgoingQueue:
         self._most_messages = most_messages
         self._most_bytes = most_bytes
         self._lasting: deque[bytes] = deque()
-        self._lasting_bytes = 0
+        self._bytes = 0
         self._latest: dict[tuple[str, str], bytes] = {}
 
     def __len__(self) -> int:
@@ -51,15 +51,16 @@ class OutgoingQueue:
     @property
     def is_overfull(self) -> bool:
         """Whether more waits than one client may cost."""
-        return len(self) > self._most_messages or self._lasting_bytes > self._most_bytes
+        return len(self) > self._most_messages or self._bytes > self._most_bytes
 
     def put(self, data: bytes) -> None:
         """Append what must not be lost."""
         self._lasting.append(data)
-        self._lasting_bytes += len(data)
+        self._bytes += len(data)
 
     def put_latest(self, key: tuple[str, str], data: bytes) -> None:
         """Replace what waits under the same key."""
+        self._bytes += len(data) - len(self._latest.get(key, b""))
         self._latest[key] = data
 
     def take(self, about: int) -> bytes:
@@ -68,8 +69,8 @@ class OutgoingQueue:
         while size < about and self._lasting:
             taken.append(self._lasting.popleft())
             size += len(taken[-1])
-            self._lasting_bytes -= len(taken[-1])
         while size < about and self._latest:
             taken.append(self._latest.pop(next(iter(self._latest))))
             size += len(taken[-1])
+        self._bytes -= size
         return b"".join(taken)

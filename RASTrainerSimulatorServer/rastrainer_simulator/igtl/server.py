@@ -12,6 +12,7 @@ from rastrainer.igtl.message import Message
 from rastrainer_simulator.igtl.connection import Connection
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.link_log import LinkLog
+from rastrainer_simulator.listener import Listener
 
 _CONNECT_TIMEOUT_S = 5.0
 _CLOSE_TIMEOUT_S = 0.5
@@ -43,7 +44,7 @@ class IgtlServer:
         self._log = LinkLog()
         self._connections: set[Connection] = set()
         self._opened: set[Connection] = set()
-        self._listener: asyncio.AbstractServer | None = None
+        self._listener: Listener | None = None
 
     @property
     def clients(self) -> Collection[Connection]:
@@ -61,16 +62,17 @@ class IgtlServer:
         Raises:
             InputError: the address cannot be listened on.
         """
-        loop = asyncio.get_running_loop()
+        listener = Listener(lambda: Connection(self), self.limits.new_clients_per_s)
         try:
-            self._listener = await loop.create_server(lambda: Connection(self), host, port)
+            found = await listener.listen(host, port)
         except OSError as error:
             reason = error.strerror or str(error)
             raise InputError(
                 f"Cannot listen on {host}:{port} ({reason}); "
                 "choose another --port, or stop the program that uses it."
             ) from None
-        return self._listener.sockets[0].getsockname()[1]
+        self._listener = listener
+        return found
 
     async def keep_connected_to(self, host: str, port: int) -> None:
         """Be the client of a Slicer that listens, and come back whenever it went; never returns."""

@@ -93,8 +93,20 @@ def test_reader_finds_the_next_message_after_one_whose_body_was_cut(reader):
     assert reader.errors == {StreamError.CHECKSUM: 1, StreamError.GARBAGE: 1}
 
 
+@pytest.mark.parametrize(
+    "beginning",
+    [b"POST / HTTP/1.1\r\nHost: a\r\n\r\n", b"\x16\x03\x01" + bytes(60), b"\0\3" + bytes(60)],
+    ids=["HTTP", "TLS", "unknown version"],
+)
+def test_a_stream_that_does_not_begin_with_a_message_is_not_searched_for_one(reader, beginning):
+    assert reader.feed(beginning + bytes(60)) == []
+    assert reader.feed(pack(CALL)) == []
+    assert reader.refusal == "It does not begin with an OpenIGTLink message."
+
+
 def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):
     generator = random.Random(2)
+    assert reader.feed(pack(TIP)) == [TIP]
     for _ in range(MOST_GARBAGE // 1000 + 2):
         reader.feed(bytes(generator.choices(range(65, 91), k=1000)))
         assert len(reader._buffer) < 2000
@@ -102,7 +114,8 @@ def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):
 
 
 def test_header_of_an_unknown_version_is_no_header(reader):
-    assert reader.feed(header(b"TRANSFORM", 48, version=3) + bytes(48) + pack(TIP)) == [TIP]
+    unknown = header(b"TRANSFORM", 48, version=3) + bytes(48)
+    assert reader.feed(pack(STATE) + unknown + pack(TIP)) == [STATE, TIP]
     assert reader.errors == {StreamError.GARBAGE: 1}
 
 

@@ -1,8 +1,9 @@
 // A client of the OpenIGTLink reference library (Debian's libopenigtlink-dev, header version 1).
 //
-// reference_client PORT sends one message of each type to the server on 127.0.0.1, prints the
-// first message of each device that it gets back, one a line, and ends when it has seen the
-// devices in EXPECTED. The library of this version has no COMMAND: both of its forms are added
+// reference_client PORT [hostile] sends one message of each type to the server on 127.0.0.1, prints
+// the first message of each device that it gets back, one a line, and ends when it has seen the
+// devices in EXPECTED. A hostile one sends before what the server cannot use: images, trackers,
+// requests, lies about lengths, damaged bodies; and ends in the middle of a message. The library of this version has no COMMAND: both of its forms are added
 // here the way the library's own types are made.
 
 #include <cstdint>
@@ -14,11 +15,16 @@
 
 #include <arpa/inet.h>
 
+#include "igtlCapabilityMessage.h"
 #include "igtlClientSocket.h"
+#include "igtlImageMessage.h"
 #include "igtlMessageHeader.h"
 #include "igtlPointMessage.h"
+#include "igtlPositionMessage.h"
+#include "igtlSensorMessage.h"
 #include "igtlStatusMessage.h"
 #include "igtlStringMessage.h"
+#include "igtlTrackingDataMessage.h"
 #include "igtlTransformMessage.h"
 
 namespace {
@@ -129,6 +135,54 @@ void SendOneOfEach() {
   Send(command, "command");
 }
 
+// Sends what is packed with one byte changed, counted from the message's first.
+void SendDamaged(igtl::MessageBase *message, int position) {
+  message->SetDeviceName("Damaged");
+  message->Pack();
+  char *bytes = static_cast<char *>(message->GetPackPointer());
+  bytes[position] = static_cast<char>(bytes[position] ^ 0x5a);
+  server->Send(bytes, message->GetPackSize());
+}
+
+void SendWhatNobodyWants() {
+  igtl::ImageMessage::Pointer image = igtl::ImageMessage::New();
+  image->SetDimensions(64, 64, 20);
+  image->SetSpacing(1.0f, 1.0f, 1.0f);
+  image->SetScalarType(igtl::ImageMessage::TYPE_UINT8);
+  image->AllocateScalars();
+  std::memset(image->GetScalarPointer(), 0, image->GetImageSize());
+  Send(image, "Image");
+
+  igtl::PositionMessage::Pointer position = igtl::PositionMessage::New();
+  position->SetPosition(1, 2, 3);
+  Send(position, "Position");
+
+  igtl::SensorMessage::Pointer sensor = igtl::SensorMessage::New();
+  sensor->SetLength(6);
+  Send(sensor, "Sensor");
+
+  igtl::GetImageMessage::Pointer getImage = igtl::GetImageMessage::New();
+  Send(getImage, "GetImage");
+  igtl::StartTrackingDataMessage::Pointer start = igtl::StartTrackingDataMessage::New();
+  start->SetResolution(10);
+  Send(start, "Start");
+  igtl::StopTrackingDataMessage::Pointer stop = igtl::StopTrackingDataMessage::New();
+  Send(stop, "Stop");
+
+  for (int position = 50; position < 106; ++position) {
+    igtl::TransformMessage::Pointer transform = igtl::TransformMessage::New();
+    SendDamaged(transform, position);
+  }
+}
+
+void LeaveInTheMiddleOfAMessage() {
+  igtl::StringMessage::Pointer text = igtl::StringMessage::New();
+  text->SetString(std::string(1000, 'x').c_str());
+  text->SetDeviceName("Half");
+  text->Pack();
+  server->Send(text->GetPackPointer(), text->GetPackSize() / 2);
+}
+
 // Receives the body that belongs to a header; false where the library finds it damaged.
 bool Receive(igtl::MessageBase *message, igtl::MessageHeader *header) {
   message->SetMessageHeader(header);
@@ -207,8 +261,9 @@ void ReceiveOne(std::set<std::string> &seen) {
 } // namespace
 
 int main(int argc, char **argv) {
-  if (argc != 2) {
-    std::puts("usage: reference_client PORT");
+  const bool isHostile = argc == 3 && std::string(argv[2]) == "hostile";
+  if (argc != 2 && !isHostile) {
+    std::puts("usage: reference_client PORT [hostile]");
     return 2;
   }
   server = igtl::ClientSocket::New();
@@ -217,10 +272,14 @@ int main(int argc, char **argv) {
     return 1;
   }
   server->SetReceiveTimeout(10000);
+  if (isHostile)
+    SendWhatNobodyWants();
   SendOneOfEach();
   std::set<std::string> seen;
   while (seen.size() < EXPECTED.size())
     ReceiveOne(seen);
+  if (isHostile)
+    LeaveInTheMiddleOfAMessage();
   server->CloseSocket();
   return 0;
 }

@@ -6,6 +6,7 @@ the metadata and the checksum.
 
 from __future__ import annotations
 
+import asyncio
 import json
 import signal
 import socket
@@ -23,7 +24,7 @@ from rastrainer.igtl.content import Status, String, Transform
 from rastrainer.igtl.message import Message
 from rastrainer.igtl.points import Point, Points
 from rastrainer_simulator.state import Touch, TrainingState
-from Testing.simulator.igtl.servers import at_rest
+from Testing.simulator.igtl.servers import PlainServer, at_rest
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])
 TRANSFORM = Transform.from_matrix(MATRIX)
@@ -167,6 +168,45 @@ def test_our_client_and_a_pyigtl_server_understand_each_other(pyigtl_server):
         assert pyigtl_server.wait_for_message("Points", 10).names == ["7"]
         pyigtl_server.send_message(pyigtl.StringMessage("hello", device_name="Note"))
         assert client.wait_for("Note", timeout=10).content == String("hello")
+
+
+def test_what_pyigtl_sends_and_we_cannot_use_costs_nobody_the_connection(link_server, connected):
+    hostile, good = connected(link_server.port), connected(link_server.port)
+    voxels = np.zeros((20, 64, 64), np.uint8)
+    cut = pyigtl.TransformMessage(MATRIX, device_name="Cut")
+    cut._pack_content = lambda: b"\0" * 20
+    long = pyigtl.StringMessage("x" * 60_000, device_name="Long")
+    long.metadata = {f"key {number}": "x" * 300 for number in range(100)}
+    for _ in range(20):
+        for message in (
+            pyigtl.ImageMessage(voxels, device_name="Image"),
+            pyigtl.PositionMessage([1, 2, 3], device_name="Position"),
+            pyigtl.TransformMessage(np.full((4, 4), np.nan), device_name="Probe"),
+            CommandMessage(1, "X" * 128, "{" * 10_000),
+            cut,
+            long,
+        ):
+            hostile.send_message(message)
+    for client in (hostile, good):
+        client.send_message(pyigtl.TransformMessage(MATRIX, device_name="Probe"))
+        echo = client.wait_for_message("Probe", 10)
+        np.testing.assert_array_equal(echo.matrix, MATRIX)
+
+
+def test_a_pyigtl_server_that_sends_what_we_cannot_use_is_not_left(pyigtl_server, start):
+    server = start(PlainServer, reconnect_s=0.05)
+    connecting = server.server.keep_connected_to("127.0.0.1", pyigtl_server.port)
+    task = asyncio.run_coroutine_threadsafe(connecting, server.thread.loop)
+    server.handler.wait_until(lambda: server.handler.connections)
+    for _ in range(20):
+        voxels = np.zeros((20, 64, 64), np.uint8)
+        pyigtl_server.send_message(pyigtl.ImageMessage(voxels, device_name="Image"))
+        nothing = pyigtl.TransformMessage(np.full((4, 4), np.inf), device_name="Probe")
+        pyigtl_server.send_message(nothing)
+    pyigtl_server.send_message(pyigtl.StringMessage("still there", device_name="Note"))
+    assert server.handler.wait_for_messages(1)[0].content == String("still there")
+    assert server.handler.left == []
+    task.cancel()
 
 
 def test_many_pyigtl_clients_at_once_get_their_echo(link_server, connected):

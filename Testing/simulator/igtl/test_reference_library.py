@@ -1,4 +1,4 @@
-"""The C++ reference library, as a client of ours: every type, both ways."""
+"""The C++ reference library, as a client of ours: every type, both ways, and as a hostile one."""
 
 from __future__ import annotations
 
@@ -36,9 +36,12 @@ def reference_client(tmp_path_factory) -> Path:
     return program
 
 
-@pytest.fixture(scope="module")
-def exchange(reference_client):
-    """What each side read of the other: our server's messages, and the client's lines by device."""
+@pytest.fixture(scope="module", params=["", "hostile"], ids=["good", "hostile"])
+def exchange(reference_client, request):
+    """What each side read of the other: our server's messages, and the client's lines by device.
+
+    A hostile client sends what cannot be used before all else: that costs it and others nothing.
+    """
 
     thread = LoopThread()
     server = LinkServer(thread, Limits())
@@ -55,7 +58,9 @@ def exchange(reference_client):
     server.link.received = keep_and_receive
     beat = asyncio.run_coroutine_threadsafe(server.link.beat(), thread.loop)
     process = subprocess.Popen(
-        [reference_client, str(server.port)], stdout=subprocess.PIPE, text=True
+        [reference_client, str(server.port), *request.param.split()],
+        stdout=subprocess.PIPE,
+        text=True,
     )
     sim_time = 0.0
     while process.poll() is None:

@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.checksum import crc64
-from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.command import STATUS_KEY, Command, CommandReply
 from rastrainer.igtl.content import Status, String, Transform
 from rastrainer.igtl.points import Points
 from rastrainer.igtl.wire import decode_text, encode_text, pack_name, unpack_name
@@ -81,7 +81,8 @@ def pack(message: Message) -> bytes:
     Raises:
         InputError: something in it cannot travel, or would do harm in Slicer: a content that is
             none of ours, a name that is too long, a body without a byte, an empty list without
-            metadata (Slicer would not clear its points).
+            metadata (Slicer would not clear its points), an answer without its status (Slicer
+            would take it for a failure).
     """
     if type(message.content) not in CONTENTS.values():
         known = ", ".join(CONTENTS)
@@ -110,6 +111,8 @@ def _pack_body(message: Message) -> bytes:
         return content
     if message.version != 2:
         raise InputError("The header version must be 1 or 2.")
+    if type(message.content) is CommandReply and STATUS_KEY not in message.metadata:
+        raise InputError("An answer must tell in its metadata whether the command succeeded.")
     if not (content or message.metadata):
         raise InputError("An empty list must be sent with metadata.")
     index, entries = _pack_metadata(message.metadata)
@@ -123,6 +126,8 @@ def _pack_metadata(metadata: Mapping[str, str]) -> tuple[bytes, bytes]:
     index, entries = [_COUNT.pack(len(metadata))], []
     for key, value in metadata.items():
         key_bytes = pack_name(key, 255, "A metadata key")
+        if not key_bytes:
+            raise InputError("A metadata key must not be empty.")
         encoding, value_bytes = encode_text(value)
         index.append(_ENTRY.pack(len(key_bytes), encoding, len(value_bytes)))
         entries += (key_bytes, value_bytes)

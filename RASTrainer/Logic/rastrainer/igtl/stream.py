@@ -44,9 +44,11 @@ class MessageReader:
 
     A message that cannot be used is passed over by the length its header claims; after bytes that
     are no header the reader looks for the next one. Memory stays below `largest_kept` and one
-    piece, whatever arrives.
+    piece, whatever arrives. A stream that does not begin with a header is given up at once: a page
+    in somebody's browser can make it send an HTTP request to any port, with messages in its body.
 
     Attributes:
+        taken: messages that were used up, and stretches of waste between them.
         errors: how often each kind of trouble came up.
         refusal: empty, or why nothing more is read: the sentence to close the connection with.
     """
@@ -57,6 +59,7 @@ class MessageReader:
         self._buffer = bytearray()
         self._to_skip = 0
         self._garbage = 0
+        self.taken = 0
         self.errors: Counter[StreamError] = Counter()
         self.refusal = ""
 
@@ -72,7 +75,7 @@ class MessageReader:
         self._buffer += data
         messages: list[Message] = []
         while self._take_one(messages):
-            pass
+            self.taken += 1
         return messages
 
     def _take_one(self, messages: list[Message]) -> bool:
@@ -124,6 +127,9 @@ class MessageReader:
             self.errors[StreamError.CONTENT] += 1
 
     def _find_next_header(self) -> bool:
+        if not self.taken:
+            self.refusal = "It does not begin with an OpenIGTLink message."
+            return False
         if not self._garbage:
             self.errors[StreamError.GARBAGE] += 1
         start = _HEADER_START.search(self._buffer, 1)

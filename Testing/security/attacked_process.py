@@ -1,0 +1,61 @@
+"""What an attack costs the process that is attacked: memory, descriptors, punctuality."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from rastrainer.igtl.client import Client
+from Testing.benchmarks.process_cost import resident_mb
+
+MOST_GROWTH_MB = 48.0
+MOST_MORE_DESCRIPTORS = 4
+"""An attack may have started a trial, whose journal is then open."""
+PATIENCE_S = 30.0
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Of a process at one moment: MB in use, open descriptors, the control loop's ticks so far."""
+
+    resident_mb: float
+    descriptors: int
+    ticks: int
+    late: int
+    skipped: int
+
+
+def cost_of(pid: int, client: Client) -> Cost:
+    """Return what a simulator costs now, as Linux and its own heartbeat tell it."""
+    old = client.latest.get("SimServer")
+    beat = json.loads(client.wait_for("SimServer", lambda now: now is not old).content.message)
+    return Cost(
+        resident_mb(pid),
+        len(list(Path(f"/proc/{pid}/fd").iterdir())),
+        beat["ticks"],
+        beat["lateTicks"],
+        beat["skippedTicks"],
+    )
+
+
+def settled(pid: int, client: Client, wanted: Cost) -> Cost:
+    """Return the cost once the attack's connections are gone, or as it stays."""
+    end = time.monotonic() + PATIENCE_S
+    while True:
+        cost = cost_of(pid, client)
+        if cost.descriptors <= wanted.descriptors + MOST_MORE_DESCRIPTORS or time.monotonic() > end:
+            return cost
+
+
+def told(before: Cost, after: Cost) -> str:
+    """Return in words what has changed, the share of ticks on time among it."""
+    ticks = after.ticks - before.ticks
+    late = after.late - before.late
+    due = ticks + after.skipped - before.skipped
+    return (
+        f"{100.0 * (ticks - late) / max(1, due):.3f} % of {due} ticks on time, "
+        f"{after.resident_mb - before.resident_mb:+.1f} MB, "
+        f"{after.descriptors - before.descriptors:+d} descriptors"
+    )

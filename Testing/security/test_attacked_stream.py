@@ -1,0 +1,56 @@
+"""Whatever a view sends ends at worst that view."""
+
+from __future__ import annotations
+
+import secrets
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.security.attacked_process import (
+    MOST_GROWTH_MB,
+    MOST_MORE_DESCRIPTORS,
+    cost_of,
+    settled,
+    told,
+)
+from Testing.security.stream_attack import StreamAttack
+from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.view_server.served import ViewClient
+
+
+def attack(folder, warm_up: int, count: int, capsys) -> None:
+    key, thread = secrets.token_urlsafe(), LoopThread()
+    arguments = (folder, "--view-port", "0", "--seed", "1")
+    with (
+        ViewedSimulator(*arguments, key=key) as simulator,
+        Client(port=simulator.port) as slicer,
+        ViewClient(thread, simulator.url, key) as view,
+    ):
+        view.join()
+        slicer.wait_for("SimServer", timeout=20)
+        attacked = StreamAttack(simulator.view_port, key, seed=7)
+        attacked.run(warm_up)
+        before = settled(simulator.pid, slicer, cost_of(simulator.pid, slicer))
+        attacked.run(count)
+        after = settled(simulator.pid, slicer, before)
+        with capsys.disabled():
+            print(f"\n{attacked.sent} messages of {attacked.closed} views: {told(before, after)}")
+        assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
+        assert after.resident_mb - before.resident_mb < MOST_GROWTH_MB
+        assert view.next("state")["type"] == "state"
+        status, errors = simulator.stop()
+    thread.stop()
+    assert status == 0
+    assert "Traceback" not in errors
+    assert " ERROR " not in errors
+
+
+def test_two_hundred_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
+    attack(tmp_path / "records", 20, 200, capsys)
+
+
+@pytest.mark.soak
+def test_ten_thousand_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
+    attack(tmp_path / "records", 3_000, 10_000, capsys)

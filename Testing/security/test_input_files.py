@@ -1,0 +1,316 @@
+"""Input files that are made to do harm are refused with a sentence, whichever loader gets them."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sqlite3
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+import trimesh
+
+from rastrainer.errors import InputError
+from rastrainer.experiment.study_protocol import read_study_protocol
+from rastrainer.markups import read_markups
+from rastrainer.plain_xml import DEEPEST, MOST_ELEMENTS
+from rastrainer.point_files import read_points
+from rastrainer.report.study_notes import read_notes
+from rastrainer.scenario import load_scenario
+from rastrainer.scenario_package import checked_scenario, unpack
+from rastrainer.scenario_setup import read_setup
+from rastrainer.study import Study
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.controls.bindings_file import read_bindings, write_bindings
+from rastrainer_simulator.flow.preferences import Preferences, read_preferences, write_preferences
+from rastrainer_simulator.robot.meshes import load_meshes
+from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.robot.prepared import read_prepared
+from rastrainer_simulator.settings import (
+    SimulationSettings,
+    settings_from_json,
+    settings_to_json,
+)
+from Testing.security.hostile_content import HOSTILE_GLB, HOSTILE_JSON, HOSTILE_XML, mutations
+
+SCENARIO = asset_path("scenarios", "colin27")
+STUDIES = asset_path("studies")
+ROBOT = asset_path("robots", "iiwa7")
+MESH = next((ROBOT / "meshes" / "visual").glob("*.stl"))
+TASK = SCENARIO / "tasks" / "task-1.mrk.json"
+
+
+class Family(NamedTuple):
+    """A kind of file: its loader, and the bytes of a good one."""
+
+    read: Callable[[Path], object]
+    good: Callable[[Path], bytes]
+    name: str = "file.json"
+
+
+def _saved(write: Callable[[Path], None]) -> Callable[[Path], bytes]:
+    def content(folder: Path) -> bytes:
+        write(folder / "saved.json")
+        return (folder / "saved.json").read_bytes()
+
+    return content
+
+
+def _scenario(path: Path) -> object:
+    """Load the shipped scenario with another `scenario.json`."""
+    folder = path.parent / "scenario"
+    if not folder.is_dir():
+        shutil.copytree(SCENARIO, folder)
+    shutil.copyfile(path, folder / "scenario.json")
+    return load_scenario(folder)
+
+
+JSON_FAMILIES = {
+    "scenario": Family(_scenario, lambda _: (SCENARIO / "scenario.json").read_bytes()),
+    "set-up": Family(read_setup, lambda _: b'{"robotBaseMm": [0, 0]}'),
+    "markups": Family(read_markups, lambda _: TASK.read_bytes()),
+    "study protocol": Family(
+        read_study_protocol, lambda _: (STUDIES / "published-protocol.json").read_bytes()
+    ),
+    "study notes": Family(read_notes, lambda _: (STUDIES / "published.json").read_bytes()),
+    "bindings": Family(read_bindings, _saved(lambda path: write_bindings(path, DEFAULT_BINDINGS))),
+    "preferences": Family(
+        read_preferences, _saved(lambda path: write_preferences(path, Preferences()))
+    ),
+}
+OTHER_FAMILIES = {
+    "points": Family(read_points, lambda _: b"label,x,y,z\n1,1,2,3\n2,4,5,6\n3,7,8,9\n", "p.csv"),
+    "URDF": Family(load_robot, lambda _: (ROBOT / "iiwa7.urdf").read_bytes(), "robot.urdf"),
+}
+FAMILIES = {**JSON_FAMILIES, **OTHER_FAMILIES}
+
+
+def refused(family: Family, path: Path) -> str:
+    """Return the sentence with which a file is refused."""
+    with pytest.raises(InputError) as caught:
+        family.read(path)
+    sentence = str(caught.value)
+    assert sentence.count("\n") == 0
+    assert len(sentence) < 1000
+    return sentence
+
+
+@pytest.mark.parametrize("family", JSON_FAMILIES.values(), ids=JSON_FAMILIES.keys())
+def test_json_that_is_made_to_do_harm_is_refused_by_every_loader(tmp_path, family):
+    for content in HOSTILE_JSON.values():
+        (tmp_path / "file.json").write_bytes(content)
+        assert "file" in refused(family, tmp_path / "file.json") or "scenario" in str(family)
+
+
+@pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES.keys())
+def test_what_is_no_plain_file_or_too_large_is_refused_unread_by_every_loader(tmp_path, family):
+    path = tmp_path / family.name
+    with path.open("wb") as file:
+        file.truncate(20 * 2**30)
+    if family.read is not _scenario:  # which copies it first
+        assert "larger than" in refused(family, path)
+    path.unlink()
+    if hasattr(os, "mkfifo") and family.read is not _scenario:
+        os.mkfifo(path)
+        refused(family, path)
+        path.unlink()
+    path.mkdir()
+    if family.read is not _scenario:
+        refused(family, path)
+
+
+@pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES.keys())
+def test_a_damaged_file_is_read_or_refused_and_breaks_nothing(tmp_path, family):
+    path = tmp_path / family.name
+    good = family.good(tmp_path)
+    path.write_bytes(good)
+    if family.read is not load_robot:
+        family.read(path)
+    outcomes = set()
+    for content in mutations(good, 60, seed=9):
+        path.write_bytes(content)
+        try:
+            family.read(path)
+            outcomes.add("read")
+        except InputError:
+            outcomes.add("refused")
+    assert "refused" in outcomes
+
+
+def test_xml_that_is_made_to_do_harm_is_refused(tmp_path):
+    for name, content in HOSTILE_XML.items():
+        path = tmp_path / "robot.urdf"
+        path.write_bytes(content)
+        sentence = refused(OTHER_FAMILIES["URDF"], path)
+        wanted = {
+            "deep": f"more than {DEEPEST} deep",
+            "many": f"more than {MOST_ELEMENTS} elements",
+            "entities that expand": "document type",
+            "an entity of a file": "document type",
+            "a document type elsewhere": "document type",
+        }
+        assert wanted.get(name, "") in sentence
+
+
+COLLADA = (
+    b"<?xml version='1.0' encoding='%s'?>%s<COLLADA xmlns='http://www.collada.org/2005/11/"
+    b"COLLADASchema' version='1.4.1'><asset/>%s</COLLADA>"
+)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (COLLADA % (b"utf-8", b"<!DOCTYPE a [<!ENTITY b 'c'>]>", b"&b;"), "document type"),
+        (COLLADA % (b"utf-8", b"", b"<a>" * 100 + b"</a>" * 100), "deep"),
+        (COLLADA % (b"utf-8", b"", b"<a/>" * 100_000), "elements"),
+        (COLLADA % (b"utf-7", b"", b""), "cannot be read as a DAE mesh"),
+    ],
+)
+def test_a_collada_mesh_is_xml_that_is_checked_too(tmp_path, content, words):
+    (tmp_path / "link_2.dae").write_bytes(content)
+    with pytest.raises(InputError, match=words):
+        load_meshes(load_robot(mesh_folder=tmp_path))
+
+
+@pytest.mark.parametrize("content", HOSTILE_GLB.values(), ids=HOSTILE_GLB.keys())
+def test_a_mesh_that_claims_more_than_it_holds_is_refused_before_it_unfolds(tmp_path, content):
+    (tmp_path / "link_2.glb").write_bytes(content)
+    with pytest.raises(InputError, match=r"unfolds into|not a GLB"):
+        load_meshes(load_robot(mesh_folder=tmp_path))
+
+
+@pytest.mark.parametrize("name", ["../secret.stl", "/etc/passwd", "meshes/../../secret.stl"])
+def test_no_mesh_path_of_a_urdf_climbs_out_of_its_folder(tmp_path, name):
+    folder = tmp_path / "robot"
+    folder.mkdir()
+    shutil.copyfile(MESH, tmp_path / "secret.stl")
+    text = (ROBOT / "iiwa7.urdf").read_text(encoding="utf-8")
+    first = text.partition('filename="')[2].partition('"')[0]
+    (folder / "robot.urdf").write_text(text.replace(f'"{first}"', f'"{name}"'), encoding="utf-8")
+    with pytest.raises(InputError, match="must lie in"):
+        load_robot(folder / "robot.urdf")
+
+
+def test_no_link_of_a_urdf_s_folder_and_no_link_s_name_leads_out(tmp_path):
+    folder = tmp_path / "robot"
+    (folder / "meshes").mkdir(parents=True)
+    secret = tmp_path / "secret.stl"
+    shutil.copyfile(MESH, secret)
+    text = (ROBOT / "iiwa7.urdf").read_text(encoding="utf-8")
+    first = text.partition('filename="')[2].partition('"')[0]
+    (folder / "meshes" / "link.stl").symlink_to(secret)
+    (folder / "a.urdf").write_text(text.replace(f'"{first}"', '"meshes/link.stl"'))
+    with pytest.raises(InputError, match="must lie in"):
+        load_robot(folder / "a.urdf")
+    (folder / "b.urdf").write_text(text.replace("iiwa_tool_tip_ee", "../../secret"))
+    with pytest.raises(InputError, match="must lie in"):
+        load_robot(folder / "b.urdf", mesh_folder=folder / "meshes")
+
+
+def _mesh(kind: str) -> bytes:
+    content = trimesh.creation.box((0.1, 0.1, 0.1)).export(file_type=kind)
+    return content if isinstance(content, bytes) else content.encode()
+
+
+@pytest.mark.parametrize("kind", ["stl", "ply", "obj", "glb", "dae"])
+def test_a_damaged_mesh_is_read_or_refused_and_breaks_nothing(tmp_path, kind):
+    robot = load_robot()
+    path = tmp_path / f"link_7.{kind}"
+    path.write_bytes(_mesh(kind))
+    robot = load_robot(mesh_folder=tmp_path)
+    assert load_meshes(robot, "collision")
+    for content in mutations(_mesh(kind), 40, seed=10):
+        path.write_bytes(content)
+        try:
+            meshes = load_meshes(robot, "collision")
+        except InputError:
+            continue
+        assert all(np.isfinite(mesh.vertices).all() for mesh, _ in meshes["iiwa_link_7"])
+
+
+def test_what_is_written_beside_a_robot_is_believed_only_if_it_is_ours(tmp_path):
+    folder = tmp_path / "robot"
+    shutil.copytree(ROBOT, folder)
+    urdf, prepared = folder / "iiwa7.urdf", folder / "prepared.json"
+    assert read_prepared(urdf) is not None
+    for content in HOSTILE_JSON.values():
+        prepared.write_bytes(content)
+        assert read_prepared(urdf) is None
+    with prepared.open("wb") as file:
+        file.truncate(20 * 2**30)
+    assert read_prepared(urdf) is None
+
+
+@pytest.mark.parametrize(
+    "value",
+    [float("nan"), float("inf"), 1e300, -1e300, 10**30, True, None, "fast", [1.0], {"a": 1}],
+)
+def test_a_setting_of_a_journal_is_a_reasonable_number_or_refused(value):
+    good = settings_to_json(SimulationSettings())
+    assert settings_from_json(SimulationSettings, json.loads(json.dumps(good)))
+    for group, name in [
+        ("fabrik", "max_iterations"),
+        ("training", "acceptance_radius"),
+        ("teleoperation", "coarse_speed"),
+    ]:
+        with pytest.raises(InputError, match=name):
+            settings_from_json(SimulationSettings, {group: {name: value}})
+    with pytest.raises(InputError, match="have no __class__"):
+        settings_from_json(SimulationSettings, {"__class__": "os.system"})
+
+
+def test_a_scenario_s_files_stay_in_its_folder(tmp_path):
+    folder = tmp_path / "scenario"
+    shutil.copytree(SCENARIO, folder)
+    shutil.copyfile(SCENARIO / "head.ply", tmp_path / "head.ply")
+    (folder / "link.ply").symlink_to(tmp_path / "head.ply")
+    good = json.loads((folder / "scenario.json").read_text(encoding="utf-8"))
+    for name in ("../head.ply", str(tmp_path / "head.ply"), "link.ply", "tasks/../../head.ply"):
+        (folder / "scenario.json").write_text(json.dumps({**good, "head": name}))
+        with pytest.raises(InputError, match="inside the scenario's folder"):
+            load_scenario(folder)
+
+
+def test_a_damaged_head_is_read_or_refused_and_breaks_nothing(tmp_path):
+    folder = tmp_path / "scenario"
+    shutil.copytree(SCENARIO, folder)
+    good = (SCENARIO / "head.ply").read_bytes()
+    for content in mutations(good[:400], 40, seed=11):
+        (folder / "head.ply").write_bytes(content + good[400:])
+        try:
+            checked_scenario(folder)
+        except InputError:
+            continue
+
+
+def test_a_package_of_a_scenario_leads_nowhere_else_and_is_no_bomb(tmp_path):
+    package, library = tmp_path / "package.zip", tmp_path / "library"
+    for name in ("../../evil.txt", "/evil.txt", "a\\..\\evil.txt", "con", "a/../evil.txt"):
+        with zipfile.ZipFile(package, "w") as archive:
+            archive.writestr(name, "evil")
+        with pytest.raises(InputError, match="is no package of a scenario"):
+            unpack(package, library)
+    with zipfile.ZipFile(package, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("head.ply", bytes(200_000_000))
+    assert package.stat().st_size < 1_000_000
+    with pytest.raises(InputError, match="more than 100 MB"):
+        unpack(package, library)
+    assert not list(tmp_path.rglob("evil*"))
+
+
+def test_a_study_that_carries_commands_of_its_own_runs_none(tmp_path):
+    path = tmp_path / "study.db"
+    Study.open(path).close()
+    with sqlite3.connect(path) as database:
+        database.execute(
+            "CREATE TRIGGER evil AFTER INSERT ON trainees BEGIN DELETE FROM trials; END"
+        )
+    with pytest.raises(InputError, match="triggers or views"):
+        Study.open(path)

@@ -1,0 +1,153 @@
+"""Nothing that would crash or upset 3D Slicer can be sent: all that is sent passes one gate."""
+
+from __future__ import annotations
+
+import ast
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as some
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.points import Point, Points
+from rastrainer_simulator.igtl.outgoing import Outgoing, OutgoingQueue
+from Testing.security.wire_police import SENT_TYPES, OffenseError, WirePolice
+
+LINK = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator/igtl"
+# Whatever may go wrong in the calling code: any text, any number, with what is at the edges.
+NUMBERS = some.floats(width=64) | some.sampled_from([3.4e38, 3.5e38, 1e308])
+TEXTS = some.text(max_size=300) | some.sampled_from(["", "\0", "x" * 65_535, "x" * 65_536])
+NAMES = some.text(max_size=70) | some.sampled_from(["command", "x" * 20, "x" * 21, "", " "])
+POINTS = some.builds(
+    lambda label, position, group: (label, position, group),
+    NAMES,
+    some.tuples(NUMBERS, NUMBERS, NUMBERS),
+    some.sampled_from(["", "Unselected", "g" * 33]),
+)
+MAKERS = (
+    some.tuples(some.just(Transform), some.tuples(some.tuples(*[NUMBERS] * 12))),
+    some.tuples(some.just(String), some.tuples(TEXTS)),
+    some.tuples(
+        some.just(Status), some.tuples(some.integers(-1, 2**16), some.integers(), NAMES, TEXTS)
+    ),
+    some.tuples(some.just(Command), some.tuples(some.integers(-1, 2**33), NAMES, TEXTS)),
+    some.tuples(some.just(CommandReply), some.tuples(some.integers(-1, 2**33), NAMES, TEXTS)),
+    some.tuples(some.just(Points), some.tuples(some.lists(POINTS, max_size=20))),
+)
+
+
+def content_of(kind, arguments):
+    if kind is Points:
+        return Points(tuple(Point(*point[:2], group=point[2]) for point in arguments[0]))
+    return kind(*arguments)
+
+
+@given(
+    some.one_of(*MAKERS),
+    NAMES,
+    some.dictionaries(NAMES, TEXTS, max_size=3) | some.just({"Status": "SUCCESS"}),
+    some.sampled_from([1, 2, 2, 2, 0, 3]),
+    some.none() | NUMBERS,
+)
+def test_what_the_gate_lets_pass_never_harms_slicer(made, device, metadata, version, timestamp):
+    kind, arguments = made
+    police = WirePolice()
+    try:
+        content = content_of(kind, arguments)
+        message = Message(device, content, metadata, 1, timestamp, version)
+        packed = [Outgoing(message).packed(header_version) for header_version in (1, 2)]
+    except InputError:
+        return
+    for data in packed:
+        if data is None:
+            continue
+        police.feed(data)
+        assert police._buffer == b""
+
+
+@dataclass(frozen=True)
+class Invented:
+    """A content whose type has a prefix, such as those that crash Slicer."""
+
+    TYPE: ClassVar[str] = "GET_STATUS"
+
+    def pack(self) -> bytes:
+        return b"x"
+
+
+class Disguised(Transform):
+    TYPE = "STT_TDATA"
+
+
+@pytest.mark.parametrize(
+    "content", [Invented(), Disguised((0.0,) * 12), None, b"raw", Transform], ids=repr
+)
+def test_a_type_that_is_none_of_ours_cannot_be_sent(content):
+    with pytest.raises(InputError, match="must be one of"):
+        pack(Message("Device", content))
+
+
+@pytest.mark.parametrize(
+    ("harm", "data"),
+    [
+        ("type", struct.pack(">H12s20sIIQQ", 2, b"GET_STATUS", b"D", 0, 0, 0, 0)),
+        ("type", struct.pack(">H12s20sIIQQ", 2, b"RTS_STATUS", b"D", 0, 0, 12, 0)),
+        ("type", struct.pack(">H12s20sIIQQ", 1, b"POLYDATA", b"D", 0, 0, 12, 0)),
+        ("body of 0", struct.pack(">H12s20sIIQQ", 1, b"STRING", b"D", 0, 0, 0, 0)),
+        ("body of 2147483648", struct.pack(">H12s20sIIQQ", 1, b"STRING", b"D", 0, 0, 2**31, 0)),
+        ("device name", struct.pack(">H12s20sIIQQ", 1, b"STRING", b"", 0, 0, 1, 0)),
+        ("checksum", struct.pack(">H12s20sIIQQ", 1, b"STRING", b"D", 0, 0, 4, 1) + bytes(4)),
+        (
+            "would not clear",
+            struct.pack(">H12s20sIIQQ", 2, b"POINT", b"D", 0, 0, 12, 0x0)
+            + struct.pack(">HHII", 12, 0, 0, 0),
+        ),
+    ],
+)
+def test_the_police_of_these_tests_knows_what_harms(harm, data, monkeypatch):
+    if harm == "would not clear":
+        monkeypatch.setattr("Testing.security.wire_police._crc64", lambda _body: 0)
+    with pytest.raises(OffenseError, match=harm):
+        WirePolice().feed(data)
+
+
+def test_every_type_that_the_gate_knows_is_one_that_slicer_takes():
+    from rastrainer.igtl.message import CONTENTS
+
+    assert {kind.encode() for kind in CONTENTS} == SENT_TYPES
+
+
+def test_bytes_reach_a_client_in_one_place_and_only_from_the_gate():
+    writes, queued, packs = [], [], []
+    for path in sorted(LINK.glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            if name in ("write", "writelines", "sendall", "sendto", "sock_sendall"):
+                writes.append((path.name, ast.unparse(node.args[0])))
+            if name in ("put", "put_latest"):
+                queued.append((path.name, ast.unparse(node.args[-1])))
+            if name == "pack":
+                packs.append(path.name)
+    assert writes == [("connection.py", "self._queue.take(self._limits.buffer_bytes)")]
+    assert set(queued) == {("connection.py", "data")}
+    assert set(packs) == {"outgoing.py"}
+
+
+def test_the_queue_gives_whole_messages_only():
+    queue, police = OutgoingQueue(100, 10**6), WirePolice()
+    for number in range(50):
+        data = Outgoing(Message("Text", String("x" * 100 * number), {"n": "1"})).packed(2)
+        queue.put(data) if number % 2 else queue.put_latest(("STRING", str(number)), data)
+    while queue:
+        police.feed(queue.take(3_000))
+        assert police._buffer == b""
+    assert police.seen == {b"STRING": 50}
