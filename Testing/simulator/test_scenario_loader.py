@@ -8,9 +8,11 @@ from types import SimpleNamespace
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.scenario_writer import new_folder, write_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.scenario_loader import ScenarioLoader
+from rastrainer_simulator.scenario_loader import BUSY, ScenarioLoader
 from rastrainer_simulator.state import Answer
+from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
 
 
 class Loop:
@@ -35,12 +37,24 @@ def simulation_of(folder):
 
 
 @pytest.fixture
-def make():
+def library(tmp_path):
+    """A user's library with one scenario, and one that is broken."""
+    ball = tmp_path / "library" / "ball"
+    (tmp_path / "library" / "broken").mkdir(parents=True)
+    (tmp_path / "library" / "broken" / "scenario.json").write_text("{")
+    with new_folder(ball) as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+        (made / "preview.png").write_bytes(png())
+    return tmp_path / "library"
+
+
+@pytest.fixture
+def make(library):
     """Makes loaders, and ends them."""
     loaders = []
 
     def make_one(loop, may_be_anywhere):
-        loaders.append(ScenarioLoader(loop, simulation_of, may_be_anywhere))
+        loaders.append(ScenarioLoader(loop, simulation_of, may_be_anywhere, library))
         return loaders[-1]
 
     yield make_one
@@ -56,6 +70,24 @@ def test_scenario_that_comes_with_us_is_loaded_by_its_name(make, may_be_anywhere
     assert loop.simulations[0].folder == asset_path("scenarios", "colin27")
 
 
+@pytest.mark.parametrize("may_be_anywhere", [True, False])
+def test_scenario_of_the_library_is_loaded_by_its_name(make, library, may_be_anywhere):
+    loop = Loop()
+    assert make(loop, may_be_anywhere).load("ball").result(10).ok
+    assert loop.simulations[0].folder == library / "ball"
+
+
+def test_scenarios_are_listed_with_their_pictures_and_problems(make, library):
+    loader = make(Loop(), may_be_anywhere=False)
+    assert loader.picture("ball") is None
+    listed = {entry.name: entry for entry in loader.list().result(10)}
+    assert set(listed) == {"ball", "broken", "colin27"}
+    assert "scenario.json" in listed["broken"].problem
+    assert loader.picture("ball") == library / "ball" / "preview.png"
+    assert loader.picture("colin27") == asset_path("scenarios", "colin27", "preview.png")
+    assert loader.picture("broken") is loader.picture("../ball") is None
+
+
 def test_any_folder_may_be_loaded_by_its_path_on_one_computer(make, tmp_path):
     assert make(Loop(), may_be_anywhere=True).load(str(tmp_path)).result(10).ok
 
@@ -65,8 +97,20 @@ def test_client_of_another_computer_reaches_no_other_folder(make, folder):
     loop = Loop()
     answer = make(loop, may_be_anywhere=False).load(folder).result(10)
     assert not answer.ok
-    assert "LoadScenario takes one of colin27" in answer.message
+    assert "LoadScenario takes one of ball, colin27;" in answer.message
     assert loop.simulations == []
+
+
+def test_while_a_scenario_is_being_loaded_no_further_one_is(make):
+    loop = Loop()
+    handover = Future()
+    loop.replace_simulation = lambda _simulation: handover
+    loader = make(loop, may_be_anywhere=True)
+    first = loader.load("colin27")
+    assert [loader.load("colin27").result(10) for _ in range(3)] == [Answer(0, False, BUSY)] * 3
+    handover.set_result(loop.answer)
+    assert first.result(10).ok
+    assert loader.load("colin27").result(10).ok
 
 
 def test_folder_that_cannot_be_used_is_refused_in_one_sentence(make, tmp_path):

@@ -1,6 +1,6 @@
-"""Picture the six tasks of the default scenario from four sides.
+"""Picture the default scenario: for lists, and its six tasks from four sides.
 
-python assets/scenarios/make_preview.py        writes colin27/preview.png
+python assets/scenarios/make_preview.py        writes colin27/preview.png and colin27-tasks.png
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.head_mesh import HeadMesh, read_head_mesh
-from rastrainer.scenario import load_scenario
+from rastrainer.scenario import PREVIEW_NAME, load_scenario
 from rastrainer.tasks import Task
+from rastrainer_simulator.scenarios.picture import draw_preview
 
 FOLDER = Path(__file__).parent / "colin27"
 TILE = (300, 270)
@@ -31,7 +32,7 @@ BALL, WAY, TEXT = (0.1, 0.35, 0.9), (0.9, 0.45, 0.1), (0.05, 0.1, 0.35)
 
 
 def main() -> int:
-    """Write the picture."""
+    """Write the pictures."""
     scenario = load_scenario(FOLDER)
     mesh = read_head_mesh(scenario.head_mesh)
     window = vtk.vtkRenderWindow()
@@ -53,8 +54,9 @@ def main() -> int:
     writer = vtk.vtkPNGWriter()
     writer.SetCompressionLevel(9)
     writer.SetInputConnection(picture.GetOutputPort())
-    writer.SetFileName(str(FOLDER / "preview.png"))
+    writer.SetFileName(str(FOLDER.parent / "colin27-tasks.png"))
     writer.Write()
+    draw_preview(FOLDER / PREVIEW_NAME, scenario, mesh)
     return 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
+from rastrainer.files import write_text
 from rastrainer.head_pose import Perturbation
 from rastrainer.scenario import Camera, Furniture
 
@@ -109,6 +111,26 @@ def read_setup(path: Path) -> SetUp:
         _number(stand, "diameterMm", 1.0, 500.0, usual.stand_diameter),
         _point(fields, "robotBaseMm", usual.robot_base),
     )
+
+
+def write_setup(path: Path, setup: SetUp) -> None:
+    """Write a set-up as `read_setup` reads it.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    content = {
+        "head": {"centerMm": setup.head_center, "yawDeg": setup.head_yaw_deg},
+        "perturbation": {
+            "translationMm": setup.perturbation.translation_mm,
+            "yawDeg": setup.perturbation.yaw_deg,
+            "tiltDeg": setup.perturbation.tilt_deg,
+        },
+        "table": {"centerMm": setup.table_center, "sizeMm": setup.table_size},
+        "stand": {"diameterMm": setup.stand_diameter},
+        "robotBaseMm": setup.robot_base,
+    }
+    write_text(path, json.dumps(content, indent=2) + "\n")
 
 
 def _part(fields: Fields, name: str) -> Fields | None:

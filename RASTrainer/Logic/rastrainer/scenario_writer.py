@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import shutil
 import uuid
 from collections.abc import Iterator
@@ -18,7 +19,7 @@ from rastrainer.head_mesh import HeadMesh, write_head_mesh
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
 from rastrainer.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
-from rastrainer.tasks import Task
+from rastrainer.tasks import Task, is_task_name
 
 HEAD_NAME, SKULL_NAME = "head.ply", "skull.ply"
 _DECIMALS = 4
@@ -43,6 +44,20 @@ def new_folder(folder: Path) -> Iterator[Path]:
         raise InputError(f"The folder {folder} cannot be written: {error.strerror}.") from None
     finally:
         shutil.rmtree(partial, ignore_errors=True)
+
+
+def scenario_name(title: str) -> str:
+    """Return a name for commands and records, made of a title.
+
+    Raises:
+        InputError: none can be made of it.
+    """
+    name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40].strip("-")
+    if not is_task_name(name):
+        raise InputError(
+            f"{title!r} cannot be a scenario's title: it needs a Latin letter or digit."
+        )
+    return name
 
 
 def write_scenario(

@@ -117,8 +117,16 @@ class TaskProposer:
         self._target = target
         self._accepts = accepts
 
-    def propose_rising(self, plans: Sequence[TaskPlan], seed: int) -> list[Proposal]:
+    def propose_rising(
+        self, plans: Sequence[TaskPlan], seed: int, begins_easy: bool = False
+    ) -> list[Proposal]:
         """Return a task for each plan, each more demanding than the one before.
+
+        Args:
+            plans: what the tasks shall demand.
+            seed: of the draws.
+            begins_easy: take the easiest of many draws as the first task: where little of the
+                head can be touched, the others are not much harder.
 
         Raises:
             InputError: there is no room for the fiducials, or none of many draws is so.
@@ -128,6 +136,8 @@ class TaskProposer:
         for plan, own_seeds in zip(plans, seeds.tolist(), strict=True):
             least = RISE * proposals[-1].complexity.index if proposals else 0.0
             draws = (self.propose(plan, own_seed) for own_seed in own_seeds)
+            if begins_easy and not proposals:
+                draws = iter(sorted(draws, key=lambda draw: draw.complexity.index))
             harder = (draw for draw in draws if draw.complexity.index >= least)
             rising = next(filter(self._accepts, harder), None)
             if rising is None:

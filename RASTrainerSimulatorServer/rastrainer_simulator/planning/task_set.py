@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cached_property
 
@@ -68,7 +68,9 @@ class TaskSetProposer:
             self._progress("Placing fiducials", 0.45 + 0.12 * attempt)
             try:
                 proposer = self._proposer(places)
-                proposals = proposer.propose_rising(_plans(attempt), seed + attempt)
+                proposals = proposer.propose_rising(
+                    _plans(attempt), seed + attempt, begins_easy=attempt > 0
+                )
             except InputError as error:
                 problem = str(error)
                 continue
@@ -92,11 +94,8 @@ class TaskSetProposer:
         if len(face):
             away = np.array([np.linalg.norm(face - place, axis=1).min() for place in positions])
             positions, normals = positions[away > FACE_MARGIN_MM], normals[away > FACE_MARGIN_MM]
-        poses = bench.poses(SCREENING_SEEDS, WIDER)
-        for index, pose in enumerate(poses):
-            self._progress("Finding what the robot can touch", 0.05 + 0.3 * index / len(poses))
-            can_be = bench.touchable(positions, normals, [pose])
-            positions, normals = positions[can_be], normals[can_be]
+        can_be = bench.touchable(positions, normals, self._screening_poses())
+        positions, normals = positions[can_be], normals[can_be]
         if len(positions) < len(LABELS):
             raise InputError(
                 f"The robot can touch only {len(positions)} of {len(vertices)} places of this head "
@@ -104,6 +103,13 @@ class TaskSetProposer:
             )
         self._progress("Finding what the view shows", 0.38)
         return places_seen_from(bench.mesh, positions, normals, bench.eye)
+
+    def _screening_poses(self) -> Iterator[np.ndarray]:
+        """Yield poses of the head that are worse than a trial's, and tell the progress."""
+        poses = self._bench.poses(SCREENING_SEEDS, WIDER)
+        for index, pose in enumerate(poses):
+            self._progress("Finding what the robot can touch", 0.05 + 0.3 * index / len(poses))
+            yield pose
 
     def _proposer(self, places: Places) -> TaskProposer:
         bench = self._bench

@@ -65,13 +65,35 @@ class TouchPlanner:
             normal: (3,) float, outward unit normal there, World.
         """
         for leaning_deg, direction in tool_directions(normal):
-            for start in self._starts:
-                solution = self._fabrik.solve(position, direction, q_start=start)
-                if not solution.converged:
-                    break
-                clearance = self._collision.check(self._kinematics.links(solution.q))
-                if self._is_clear(clearance):
-                    return Touch(solution.q, direction, leaning_deg, clearance)
+            touch = self._touch_along(position, leaning_deg, direction)
+            if touch is not None:
+                return touch
+        return None
+
+    def working_direction(
+        self, position: np.ndarray, normal: np.ndarray, likely: int = 0
+    ) -> int | None:
+        """Return which of the `tool_directions` works, None where `touch` finds none either.
+
+        The `likely` one is tried first: what has worked in one pose of the head mostly works in
+        others, too, which saves many tries.
+        """
+        directions = list(tool_directions(normal))
+        for number in (likely, *(each for each in range(len(directions)) if each != likely)):
+            if self._touch_along(position, *directions[number]) is not None:
+                return number
+        return None
+
+    def _touch_along(
+        self, position: np.ndarray, leaning_deg: float, direction: np.ndarray
+    ) -> Touch | None:
+        for start in self._starts:
+            solution = self._fabrik.solve(position, direction, q_start=start)
+            if not solution.converged:
+                return None
+            clearance = self._collision.check(self._kinematics.links(solution.q))
+            if self._is_clear(clearance):
+                return Touch(solution.q, direction, leaning_deg, clearance)
         return None
 
     def _is_clear(self, clearance: Clearance) -> bool:

@@ -30,11 +30,15 @@ def touchable(
         poses: HeadToWorld, (4, 4) float, mm, one after the other.
     """
     can_be = np.ones(len(positions), dtype=bool)
+    likely = np.zeros(len(positions), dtype=int)
     for head_to_world in poses:
         pose = np.array(head_to_world, dtype=float)
         pose[:3, 3] /= MM_PER_M
         collision.set_head_pose(pose)
         for place in np.flatnonzero(can_be):
             position = transforms.apply(pose, positions[place] / MM_PER_M)
-            can_be[place] = planner.touch(position, pose[:3, :3] @ normals[place]) is not None
+            normal = pose[:3, :3] @ normals[place]
+            found = planner.working_direction(position, normal, int(likely[place]))
+            can_be[place] = found is not None
+            likely[place] = found or 0
     return can_be

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cached_property
 
@@ -68,7 +69,7 @@ class Workbench:
         return [nominal, *(perturbed_pose(nominal, pivot, wide, seed) for seed in seeds)]
 
     def touchable(
-        self, positions: np.ndarray, normals: np.ndarray, poses: list[np.ndarray]
+        self, positions: np.ndarray, normals: np.ndarray, poses: Iterable[np.ndarray]
     ) -> np.ndarray:
         """Return which places (n,) bool can be touched in every pose of the head.
 

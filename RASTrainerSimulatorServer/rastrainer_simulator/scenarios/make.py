@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -14,8 +13,8 @@ from rastrainer.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenari
 from rastrainer.scenario_draft import HeadDraft
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp
-from rastrainer.scenario_writer import new_folder, write_scenario
-from rastrainer.tasks import LIMIT_MM, Task, is_task_name, read_task
+from rastrainer.scenario_writer import new_folder, scenario_name, write_scenario
+from rastrainer.tasks import LIMIT_MM, Task, read_task
 from rastrainer_simulator.planning.task_check import check_tasks, measured
 from rastrainer_simulator.planning.task_proposal import PLANS
 from rastrainer_simulator.planning.task_set import Progress, TaskSetProposer
@@ -82,20 +81,6 @@ def make_scenario(
     return load_scenario(folder)
 
 
-def name_of(title: str) -> str:
-    """Return a name for commands and records, made of a title.
-
-    Raises:
-        InputError: none can be made of it.
-    """
-    name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40].strip("-")
-    if not is_task_name(name):
-        raise InputError(
-            f"{title!r} cannot be a scenario's title: it needs a Latin letter or digit."
-        )
-    return name
-
-
 def without_tasks(draft: HeadDraft, wishes: Wishes) -> Scenario:
     """Return the scenario of a head without tasks.
 
@@ -107,7 +92,7 @@ def without_tasks(draft: HeadDraft, wishes: Wishes) -> Scenario:
     setup.check_height(float(head.vertices[:, 2].min()), middle)
     scenario = Scenario(
         folder=Path(),
-        name=name_of(wishes.title),
+        name=scenario_name(wishes.title),
         title=wishes.title,
         head_mesh=Path(),
         target_name=CENTER,

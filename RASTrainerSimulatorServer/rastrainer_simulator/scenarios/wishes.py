@@ -9,8 +9,9 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp, read_setup
+from rastrainer.scenario_writer import scenario_name
 from rastrainer.tasks import LIMIT_MM
-from rastrainer_simulator.scenarios.make import Wishes, name_of
+from rastrainer_simulator.scenarios.make import Wishes
 
 LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
 
@@ -22,7 +23,7 @@ def wishes_of(arguments: argparse.Namespace, source: str) -> Wishes:
         InputError: a text or a number cannot be used.
     """
     title = _text("--title", arguments.title or arguments.output.absolute().name, LONGEST_TITLE)
-    name_of(title)
+    scenario_name(title)
     trajectory = None
     if arguments.trajectory:
         name, *numbers = arguments.trajectory

@@ -50,6 +50,14 @@ def test_each_task_asks_more_than_the_one_before(proposer):
         assert len(proposal.fiducials) == 15
 
 
+def test_where_it_is_wanted_the_first_task_is_the_easiest_of_many(proposer):
+    usual, easy = (
+        proposer.propose_rising(PLANS[1:2], seed=1, begins_easy=begins_easy)[0]
+        for begins_easy in (False, True)
+    )
+    assert easy.complexity.index < usual.complexity.index
+
+
 def test_the_same_seed_proposes_the_same_task(proposer):
     first, again = (proposer.propose(PLANS[2], 5) for _ in range(2))
     assert np.array_equal(first.fiducials, again.fiducials)

@@ -67,6 +67,21 @@ def test_what_cannot_be_touched_has_no_touch(planner, position):
     assert planner.touch(np.array(position), np.array([0.0, 0.0, -1.0])) is None
 
 
+def test_what_is_likely_is_tried_first_and_nothing_is_missed(planner):
+    for normal in map(np.array, OUTWARD.values()):
+        outward = normal / np.linalg.norm(normal)
+        place = CENTER + RADIUS * outward
+        found = planner.working_direction(place, outward)
+        leaning, direction = list(tool_directions(outward))[found]
+        touch = planner.touch(place, outward)
+        assert touch.leaning_deg == leaning
+        assert np.array_equal(touch.direction, direction)
+        assert planner.working_direction(place, outward, likely=24) is not None
+        assert planner.working_direction(place, outward, likely=found) == found
+    below = CENTER - [0, 0, RADIUS]
+    assert planner.working_direction(below, np.array([0.0, 0.0, -1.0]), likely=7) is None
+
+
 def test_a_place_is_touchable_only_if_it_is_so_in_every_pose(planner, collision):
     positions = RADIUS * 1000 * np.array([[0, 0, 1], [0.8, 0, 0.6]])
     normals = positions / (RADIUS * 1000)

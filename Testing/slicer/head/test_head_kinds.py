@@ -51,6 +51,13 @@ def test_the_skull_of_a_ct_is_its_bone(ct_draft):
     assert "bone of the CT" in draft.method
 
 
+def test_thick_slices_give_a_whole_head_and_a_warning():
+    draft, warnings = make_draft(phantom(spacing=(1.0, 1.0, 5.0)), SETTINGS, has_skull=False)
+    assert "5.0 mm apart" in warnings[0]
+    assert is_one_closed_body(draft.head)
+    assert errors_mm(draft.head).mean() < 1.0
+
+
 def test_a_scan_that_goes_on_below_the_neck_is_cut_200_mm_below_the_crown():
     ijk = np.indices((24, 24, 90)).reshape(3, -1).T * 3.0
     crown = np.linalg.norm(ijk - [36.0, 36.0, 220.0], axis=1) < 25.0

@@ -1,20 +1,22 @@
-"""The section Scenario: the head, the task, the robot, and other heads to look at."""
+"""The section Scenario: the head, the task, the robot, and other heads to look at or to give."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
+import qt
 import slicer
 
-from rastrainer.errors import InputError
 from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setUsable
 from rastrainer.protocol import TRIAL_RUN
+from rastrainer.scenario_library import ListedScenario
 from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.placing import jumpTo
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
 
-SAMPLE = "MRBrainTumor1"
+PICTURE_HEIGHT = 180
 
 
 class ScenarioPanel:
@@ -30,16 +32,19 @@ class ScenarioPanel:
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self.showRobot)
         ui.useHeadButton.connect("clicked()", self.useHead)
-        ui.sampleDataButton.connect("clicked()", self.loadSampleData)
+        ui.exportScenarioButton.connect("clicked()", self.give)
+        ui.importScenarioButton.connect("clicked()", self.takeIn)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         session.link.statusChanged.connect(self._showUsable)
         session.training.answered.connect(self._tell)
+        session.scenarioMade.connect(self.goOnWith)
         self._fill()
 
     def close(self) -> None:
         """Listen to the session no more."""
         self._session.link.statusChanged.disconnect(self._showUsable)
         self._session.training.answered.disconnect(self._tell)
+        self._session.scenarioMade.disconnect(self.goOnWith)
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
@@ -53,7 +58,7 @@ class ScenarioPanel:
         """Let the simulator go on with the chosen head."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not loaded.")):
             scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
-            self._session.training.loadScenario(str(scenario.folder))
+            self._session.training.loadScenario(scenario.name)
             self._tell(_("The simulator is asked to load {title}.").format(title=scenario.title))
 
     def showRobot(self, shown: bool) -> None:
@@ -71,17 +76,36 @@ class ScenarioPanel:
                 "{name} is the head now; the simulator keeps its own."
             ).format(name=model.GetName())
 
-    def loadSampleData(self) -> None:
-        """Download an MRI through Slicer's Sample Data."""
-        with slicer.util.tryWithErrorDisplay(
-            _("The sample could not be downloaded; check the network."), waitCursor=True
-        ):
-            logic = slicer.util.getModuleLogic("SampleData")
-            volume = logic.downloadSample(SAMPLE)
-            application = slicer.app.applicationLogic()
-            application.GetSelectionNode().SetActiveVolumeID(volume.GetID())
-            application.PropagateVolumeSelection()
-            self._ui.otherHeadText.text = _("{name} is in the scene.").format(name=volume.GetName())
+    def takeIn(self) -> None:
+        """Take a scenario in that comes as a zip file, and choose it."""
+        with slicer.util.tryWithErrorDisplay(_("The scenario was not added."), waitCursor=True):
+            path = qt.QFileDialog.getOpenFileName(
+                slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
+            )
+            if path:
+                scenario = self._session.scenarioMaker.takeIn(Path(path))
+                self._fill(scenario.name)
+                self._tell(_("{title} is added.").format(title=scenario.title))
+
+    def give(self) -> None:
+        """Write the chosen scenario as a zip file."""
+        with slicer.util.tryWithErrorDisplay(_("The scenario was not saved."), waitCursor=True):
+            name = chosenData(self._ui.scenarioComboBox)
+            path = qt.QFileDialog.getSaveFileName(
+                slicer.util.mainWindow(), _("Save the scenario"), f"{name}.zip", "Zip (*.zip)"
+            )
+            if path:
+                own = self._ui.programPathLineEdit.currentPath
+                keepsFace = not self._ui.removeFaceCheckBox.checked
+                self._session.scenarioMaker.give(name, Path(path), keepsFace, own)
+                self._tell(_("{path} is written.").format(path=path))
+
+    def goOnWith(self, name: str) -> None:
+        """Choose a scenario that has just been made, show it, and have the simulator take it."""
+        self._fill(name)
+        self.show()
+        if self._session.link.status.state is LinkState.CONNECTED:
+            self.loadIntoSimulator()
 
     def _progress(self, step: str, share: float) -> None:
         self._ui.otherHeadText.text = f"{step}: {100 * share:.0f} %"
@@ -91,19 +115,28 @@ class ScenarioPanel:
         """Show what may have changed in the scene meanwhile."""
         setChecked(self._ui.robotCheckBox, self._desk.isRobotShown)
 
-    def _fill(self) -> None:
-        try:
-            entries = [(scenario.title, scenario.name) for scenario in self._desk.scenarios()]
-        except InputError as error:
-            self._tell(str(error))
-            return
-        fillComboBox(self._ui.scenarioComboBox, entries, entries[0][1] if entries else "")
+    def _fill(self, wanted: str = "") -> None:
+        """Offer the scenarios there are, and choose one; the first where it is not there."""
+        listed = self._desk.listed()
+        names = [entry.name for entry in listed if not entry.problem] or [""]
+        chosen = wanted if wanted in names else names[0]
+        combo = self._ui.scenarioComboBox
+        fillComboBox(combo, [(entry.title, entry.name) for entry in listed], chosen)
+        for row, entry in enumerate(listed):
+            if entry.preview is not None:
+                combo.setItemIcon(row, qt.QIcon(str(entry.preview)))
         self._showTasks()
-        self._showUsable()
 
     def _showTasks(self, _index: int = 0) -> None:
+        """Show the chosen scenario's picture and tasks, or why it cannot be used."""
         name = chosenData(self._ui.scenarioComboBox)
-        if not name:
+        entry = next((each for each in self._desk.listed() if each.name == name), None)
+        self._showPicture(entry)
+        isUsable = entry is not None and not entry.problem
+        self._ui.taskComboBox.enabled = isUsable
+        self._showUsable()
+        if not isUsable:
+            self._tell(_("There is no scenario.") if entry is None else entry.problem)
             return
         scenario = self._desk.find(name)
         tasks = [(task.title, task.name) for task in scenario.tasks]
@@ -112,6 +145,13 @@ class ScenarioPanel:
         chosen = self._session.task if self._session.task in known else first
         fillComboBox(self._ui.taskComboBox, tasks, chosen)
         self._chooseTask()
+
+    def _showPicture(self, entry: ListedScenario | None) -> None:
+        label = self._ui.scenarioPicture
+        hasPicture = entry is not None and entry.preview is not None
+        if hasPicture:
+            label.setPixmap(qt.QPixmap(str(entry.preview)).scaledToHeight(PICTURE_HEIGHT))
+        label.visible = hasPicture
 
     def _chooseTask(self, _index: int = 0) -> None:
         scenario = self._desk.find(chosenData(self._ui.scenarioComboBox))
@@ -125,11 +165,14 @@ class ScenarioPanel:
 
     def _showUsable(self, *_arguments: Any) -> None:
         isConnected = self._session.link.status.state is LinkState.CONNECTED
+        isUsable = self._ui.taskComboBox.enabled
+        broken = _("Choose a scenario that can be used.")
+        self._ui.showScenarioButton.enabled = self._ui.exportScenarioButton.enabled = isUsable
         setUsable(
             self._ui.loadScenarioButton,
-            isConnected,
+            isConnected and isUsable,
             _("Let the simulator go on with this head; only between two trials."),
-            _("Connect to the simulator first."),
+            _("Connect to the simulator first.") if isUsable else broken,
         )
         setUsable(
             self._ui.useHeadButton,

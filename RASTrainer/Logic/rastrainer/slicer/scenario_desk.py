@@ -8,6 +8,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.scenario import Scenario
+from rastrainer.scenario_library import ListedScenario
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.polydata import trianglesPolyData
 from rastrainer.slicer.robot_scene import robotNode, setRobotVisible, showRobot
@@ -25,9 +26,9 @@ class ScenarioDesk:
         self._shelf = shelf
         self._robotFolder = robotFolder
 
-    def scenarios(self) -> tuple[Scenario, ...]:
-        """Return the scenarios that come with the module."""
-        return self._shelf.scenarios()
+    def listed(self) -> tuple[ListedScenario, ...]:
+        """Return the scenarios that come with the module and those of the user."""
+        return self._shelf.listed()
 
     def find(self, scenarioName: str) -> Scenario:
         """Return the scenario of that name; raise `InputError` if there is none."""

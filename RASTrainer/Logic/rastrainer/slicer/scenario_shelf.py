@@ -3,43 +3,55 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.scenario import FILE_NAME, Scenario, load_scenario
+from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.scenario_library import ListedScenario, list_folders, list_scenarios
 
 
 class ScenarioShelf:
-    """Reads scenarios when they are first asked for, and once."""
+    """Reads scenarios when they are first asked for; `refresh` looks what has come since."""
 
     def __init__(self, *folders: Path) -> None:
         """Put the scenarios of these folders on the shelf."""
-        self._folders = folders
-        self._scenarios: tuple[Scenario, ...] | None = None
+        self._list: Callable[[], Iterable[ListedScenario]] = lambda: list_folders(folders)
+        self._listed: tuple[ListedScenario, ...] | None = None
+        self._scenarios: dict[str, Scenario] = {}
 
     @classmethod
-    def below(cls, folder: Path) -> ScenarioShelf:
-        """Return the shelf of all scenario folders in a folder."""
-        return cls(*sorted(path.parent for path in folder.glob(f"*/{FILE_NAME}")))
+    def below(cls, *libraries: Path) -> ScenarioShelf:
+        """Return the shelf of all scenarios in these folders of folders."""
+        shelf = cls()
+        shelf._list = lambda: list_scenarios(libraries)
+        return shelf
 
-    def scenarios(self) -> tuple[Scenario, ...]:
-        """Return all scenarios of the shelf.
+    def listed(self) -> tuple[ListedScenario, ...]:
+        """Return what is on the shelf; what cannot be used says why."""
+        if self._listed is None:
+            self._listed = tuple(self._list())
+        return self._listed
 
-        Raises:
-            InputError: a scenario's folder cannot be used.
-        """
-        if self._scenarios is None:
-            self._scenarios = tuple(load_scenario(folder) for folder in self._folders)
-        return self._scenarios
+    def refresh(self) -> None:
+        """Look anew at the next question."""
+        self._listed = None
+        self._scenarios.clear()
 
     def find(self, name: str) -> Scenario:
-        """Return the scenario of that name.
+        """Return the scenario of that name, which may have come since it was last looked.
 
         Raises:
-            InputError: there is none, or a scenario's folder cannot be used.
+            InputError: there is none, or it cannot be used.
         """
-        for scenario in self.scenarios():
-            if scenario.name == name:
-                return scenario
-        known = ", ".join(scenario.name for scenario in self.scenarios()) or "none"
+        if name not in self._scenarios:
+            self._listed = None
+            self._scenarios[name] = load_scenario(self._folder(name))
+        return self._scenarios[name]
+
+    def _folder(self, name: str) -> Path:
+        for entry in self.listed():
+            if entry.name == name:
+                return entry.folder
+        known = ", ".join(entry.name for entry in self.listed() if not entry.problem) or "none"
         raise InputError(f"The scenario {json.dumps(name)} is not here; those that are: {known}.")

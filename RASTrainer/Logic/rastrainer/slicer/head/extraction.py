@@ -103,11 +103,12 @@ def find_head(volume: Volume, settings: HeadSettings, progress: Progress) -> Hea
             f"not at {base:.0f} mm."
         )
     below = max(0, int((base - lowest) / SPACING_MM) - 1)
-    level = beyond_image.continued(found.level[:, :, below:], MARGIN)
+    around = _around(found.level > 0, below)
+    level = beyond_image.continued(found.level[around], MARGIN)
     progress("Filling cavities", 0.3)
     body = _body(level > 0, settings, progress)
-    origin = grid.ijk_to_ras[:3, 3] - MARGIN * SPACING_MM
-    origin[2] += below * SPACING_MM
+    first = np.array([part.start for part in around])
+    origin = grid.ijk_to_ras[:3, 3] + (first - MARGIN) * SPACING_MM
     return HeadBody(level, body, origin, base, found.threshold, found.is_ct)
 
 
@@ -129,11 +130,22 @@ def skin_of(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadM
     return mesh
 
 
+def _around(inside: np.ndarray, below: int) -> tuple[slice, slice, slice]:
+    """Return the part of the image that the head needs; what is below and much air costs time."""
+    spans = []
+    for axis, count in enumerate(inside.shape):
+        others = tuple(other for other in range(3) if other != axis)
+        set_ = np.flatnonzero(inside.any(axis=others))
+        spans.append((max(0, set_[0] - MARGIN), min(count, set_[-1] + 1 + MARGIN)))
+    return slice(*spans[0]), slice(*spans[1]), slice(below, spans[2][1])
+
+
 def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.ndarray:
     """Return the head without cavities and tunnels, as little filled as possible."""
     hull = mask.without_cavities(mask.closed_by_ball(inside, settings.opening_mm / 2))
     progress("Filling cavities", 0.45)
-    deep = mask.depth_inside(hull) > settings.cavity_depth_mm / SPACING_MM
+    depth = settings.cavity_depth_mm / SPACING_MM
+    deep = mask.depth_inside(hull, depth) > depth
     wanted = mask.without_cavities(inside | deep)
     progress("Closing tunnels", 0.55)
     ball = _ball_like(wanted, settings)

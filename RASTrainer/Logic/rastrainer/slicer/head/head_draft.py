@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from rastrainer.scenario_draft import HeadDraft
 from rastrainer.slicer.head.dicom_series import read_dicom_folder
 from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, Progress, find_head, skin_of
+from rastrainer.slicer.head.segment import for_segment
 from rastrainer.slicer.head.skull import SCALP_MM, skull_of
+from rastrainer.slicer.head.tissue import is_hounsfield
 from rastrainer.slicer.head.volume import Volume, read_volume
 from rastrainer.slicer.head.volume_checks import check_head, check_volume
 
@@ -26,6 +29,7 @@ def make_draft(
     settings: HeadSettings | None = None,
     has_skull: bool = True,
     progress: Progress = lambda _step, _share: None,
+    segment: Volume | None = None,
 ) -> tuple[HeadDraft, list[str]]:
     """Return a head and warnings, one sentence each.
 
@@ -34,13 +38,19 @@ def make_draft(
         settings: what to choose otherwise than usual.
         has_skull: whether the skull is wanted too.
         progress: told each step's name and the share of the work done; may raise to cancel.
+        segment: the head as `volume_of_segment` returns it; None finds it in the volume.
 
     Raises:
         InputError: the volume cannot be used, or there is no head in it.
     """
     settings = settings or HeadSettings()
     warnings = check_volume(volume)
-    found = find_head(volume, settings, lambda step, share: progress(step, 0.8 * share))
+    if segment is not None:
+        settings = for_segment(settings)
+    searched = volume if segment is None else segment
+    found = find_head(searched, settings, lambda step, share: progress(step, 0.8 * share))
+    if segment is not None:
+        found = replace(found, is_ct=is_hounsfield(volume.values))
     mesh = skin_of(found, settings, lambda step, share: progress(step, 0.8 * share))
     check_head(mesh)
     skull = None
@@ -48,15 +58,16 @@ def make_draft(
         progress("Making the skull", 0.85)
         skull = skull_of(volume, found)
     progress("Done", 1.0)
-    is_approximate = has_skull and not found.is_ct
-    return HeadDraft(mesh, _method(found, has_skull), skull, is_approximate), warnings
+    method = _method(found, has_skull, segment is not None)
+    return HeadDraft(mesh, method, skull, has_skull and not found.is_ct), warnings
 
 
-def _method(found: HeadBody, has_skull: bool) -> str:
+def _method(found: HeadBody, has_skull: bool, is_segment: bool) -> str:
     kind = "CT" if found.is_ct else "MRI"
+    how = "segment edited by hand" if is_segment else f"threshold {found.threshold:.5g}"
     sentences = [
-        f"Surface of the skin from {kind} by rastrainer, threshold {found.threshold:.5g}, cavities "
-        f"filled, cut flat at {found.base_mm:.1f} mm (S)."
+        f"Surface of the skin from {kind} by rastrainer, {how}, cavities filled, cut flat at "
+        f"{found.base_mm:.1f} mm (S)."
     ]
     if has_skull and found.is_ct:
         sentences.append("Skull: bone of the CT.")

@@ -6,12 +6,17 @@ process of its own.
 
 from __future__ import annotations
 
+import contextlib
 import re
 import tempfile
+import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.scenario import Scenario, load_scenario
@@ -20,6 +25,8 @@ from rastrainer.slicer.child_process import ChildProcess
 from rastrainer.slicer.head.extraction import HeadSettings, Progress
 from rastrainer.slicer.head.head_draft import make_draft
 from rastrainer.slicer.head.volume import Volume
+
+T = TypeVar("T")
 
 HEAD_SHARE = 0.5
 PERIOD_S = 0.1
@@ -31,14 +38,15 @@ class BuildRequest:
     """What to build.
 
     Attributes:
-        volume: of a volume node (`volume_from_node`) or a segment (`volume_of_segment`).
+        volume: of a volume node (`volume_from_node`).
         folder: to be made; must be new or empty.
         source: where the images come from, for the scenario's provenance.
         license: under which the scenario may be used.
         title: for people; None takes the folder's name.
-        settings: of the head's extraction; a segment needs `for_segment`.
+        settings: of the head's extraction.
         has_skull: whether the skull is wanted too.
         words: further arguments of `rastrainer scenario tasks`, such as `--setup FILE`.
+        segment: the head in the volume (`volume_of_segment`); None finds it.
     """
 
     volume: Volume
@@ -49,6 +57,7 @@ class BuildRequest:
     settings: HeadSettings = field(default_factory=HeadSettings)
     has_skull: bool = True
     words: tuple[str, ...] = ()
+    segment: Volume | None = None
 
 
 def build_scenario(
@@ -69,13 +78,52 @@ def build_scenario(
     Raises:
         InputError: the volume, the folder or the simulator's program cannot be used.
     """
-    draft, warnings = make_draft(
-        request.volume,
-        request.settings,
-        request.has_skull,
+    draft, warnings = in_background(
+        lambda tell: make_draft(
+            request.volume, request.settings, request.has_skull, tell, request.segment
+        ),
         lambda step, share: progress(step, HEAD_SHARE * share),
     )
     return finish_scenario(draft, request, command, environment, progress), warnings
+
+
+def in_background(work: Callable[[Progress], T], progress: Progress) -> T:
+    """Return what `work` returns; meanwhile `progress` is told of it ten times a second.
+
+    Args:
+        work: is given what it tells its progress; is broken off there once `progress` has raised.
+        progress: may let the application draw, and may raise to cancel.
+    """
+    told: list[tuple[str, float]] = [("", 0.0)]
+    is_cancelled = threading.Event()
+
+    def tell(step: str, share: float) -> None:
+        told.append((step, share))
+        if is_cancelled.is_set():
+            raise _BrokenOffError
+
+    future: Future[T] = Future()
+
+    def run() -> None:
+        try:
+            future.set_result(work(tell))
+        except BaseException as error:
+            future.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()
+    try:
+        while not future.done():
+            progress(*told[-1])
+            with contextlib.suppress(FutureTimeoutError):
+                future.exception(PERIOD_S)
+    except BaseException:
+        is_cancelled.set()
+        raise
+    return future.result()
+
+
+class _BrokenOffError(Exception):
+    """Nobody waits for the work any more."""
 
 
 def finish_scenario(

@@ -54,4 +54,5 @@ def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
 
 
 def _below_scalp(head: HeadBody) -> np.ndarray:
-    return np.clip(mask.depth_inside(head.body) - SCALP_MM / SPACING_MM, -1.0, 1.0)
+    scalp = SCALP_MM / SPACING_MM
+    return np.clip(mask.depth_inside(head.body, scalp + 1.0) - scalp, -1.0, 1.0)

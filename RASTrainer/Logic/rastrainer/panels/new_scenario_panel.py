@@ -1,0 +1,150 @@
+"""The section New scenario: from a volume to something to train on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import slicer
+
+from rastrainer.panels.setup_form import SetUpForm
+from rastrainer.panels.widgets import setSentence, setUsable
+from rastrainer.scenario import Scenario
+from rastrainer.slicer.scenario_maker import ScenarioWishes
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.translation import _
+
+SAMPLE = "MRBrainTumor1"
+
+
+class _CanceledError(Exception):
+    """The user has pressed Cancel."""
+
+
+class NewScenarioPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: Session) -> None:
+        self._ui = ui
+        self._session = session
+        self._maker = session.scenarioMaker
+        self._setUp = SetUpForm(ui.setUpGroupBox)
+        self._isAtWork = False
+        self._isCanceled = False
+        ui.sampleDataButton.connect("clicked()", self.loadSampleData)
+        ui.makeScenarioButton.connect("clicked()", self.makeOrCancel)
+        ui.previewHeadButton.connect("clicked()", self.preview)
+        ui.scanComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
+        setSentence(ui.newScenarioText, "")
+        self._showUsable()
+
+    def close(self) -> None:
+        """Break off what is under way."""
+        self._isCanceled = True
+
+    def loadSampleData(self) -> None:
+        """Download an MRI through Slicer's Sample Data, and choose it."""
+        with slicer.util.tryWithErrorDisplay(
+            _("The sample could not be downloaded; check the network."), waitCursor=True
+        ):
+            logic = slicer.util.getModuleLogic("SampleData")
+            volume = logic.downloadSample(SAMPLE)
+            application = slicer.app.applicationLogic()
+            application.GetSelectionNode().SetActiveVolumeID(volume.GetID())
+            application.PropagateVolumeSelection()
+            self._ui.scanComboBox.setCurrentNode(volume)
+            self._tell(_("{name} is in the scene.").format(name=volume.GetName()))
+
+    def preview(self) -> None:
+        """Show the head that is found, to accept it or to change it."""
+        with slicer.util.tryWithErrorDisplay(_("No head could be shown.")):
+            made = self._work(lambda: self._maker.preview(*self._wanted(), self._progress))
+            if made is not None:
+                self._tell(
+                    _(
+                        "This head is found. Change the threshold or the cut and find it again, "
+                        "or change its segment in the Segment Editor; then make the scenario."
+                    )
+                )
+                slicer.util.resetThreeDViews()
+
+    def makeOrCancel(self) -> None:
+        """Make the scenario and go on with it, or break off."""
+        if self._isAtWork:
+            self._isCanceled = True
+            return
+        with slicer.util.tryWithErrorDisplay(_("The scenario was not made.")):
+            own = self._ui.programPathLineEdit.currentPath
+            made = self._work(lambda: self._maker.make(*self._wanted(), self._progress, own))
+            if made is not None:
+                self._goOn(*made)
+
+    def _goOn(self, scenario: Scenario, warnings: list[str]) -> None:
+        """Choose the new scenario, show it, and have the simulator take it."""
+        self._session.scenarioMade.emit(scenario.name)
+        told = _("{title} is made and chosen above.").format(title=scenario.title)
+        self._tell(" ".join([told, *warnings]))
+
+    def _wanted(self) -> tuple[Any, ScenarioWishes]:
+        ui = self._ui
+        return ui.scanComboBox.currentNode(), ScenarioWishes(
+            title=ui.titleLineEdit.text,
+            threshold=_chosen(ui.thresholdSpinBox),
+            cutMm=_chosen(ui.cutSpinBox),
+            hasSkull=ui.skullCheckBox.checked,
+            setUp=self._setUp.setUp(),
+            targets=ui.plannedTargetsComboBox.currentNode(),
+            trajectory=ui.plannedTrajectoryComboBox.currentNode(),
+            isHandPlaced=ui.handPlacedCheckBox.checked,
+        )
+
+    def _work(self, work: Any) -> Any:
+        """Return what the work returns, None where the user has canceled it."""
+        self._isAtWork, self._isCanceled = True, False
+        self._showUsable()
+        try:
+            return work()
+        except _CanceledError:
+            self._tell(_("Canceled; nothing has changed."))
+            return None
+        except BaseException:
+            setSentence(self._ui.newScenarioText, "")
+            raise
+        finally:
+            self._isAtWork = False
+            self._showUsable()
+
+    def _progress(self, step: str, share: float) -> None:
+        if step:
+            self._tell(step)
+        self._ui.newScenarioProgressBar.value = round(100 * share)
+        slicer.app.processEvents()
+        if self._isCanceled:
+            raise _CanceledError
+
+    def _showUsable(self, *_arguments: Any) -> None:
+        ui = self._ui
+        hasVolume = ui.scanComboBox.currentNode() is not None
+        reason = _("Choose a volume first.")
+        ui.newScenarioProgressBar.visible = self._isAtWork
+        ui.makeScenarioButton.text = _("Cancel") if self._isAtWork else _("Make scenario")
+        setUsable(
+            ui.makeScenarioButton,
+            hasVolume or self._isAtWork,
+            _("Find the head, place fiducials and tasks, and train on it at once."),
+            reason,
+        )
+        setUsable(
+            ui.previewHeadButton,
+            hasVolume and not self._isAtWork,
+            _("Show the head that is found, and as a segment that may be edited."),
+            reason if not hasVolume else _("A head is being looked for."),
+        )
+        ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not self._isAtWork
+
+    def _tell(self, sentence: str) -> None:
+        setSentence(self._ui.newScenarioText, sentence)
+
+
+def _chosen(box: Any) -> float | None:
+    """Return a spin box's value; None where it shows its special text."""
+    return None if box.value == box.minimum else box.value

@@ -1,0 +1,66 @@
+"""What leaves the house: without the face unless somebody wants it kept."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.face_removal import face_vertices
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.scenario import load_scenario
+from rastrainer.scenario_package import unpack
+from rastrainer.scenario_writer import write_scenario
+from rastrainer.surface_queries import nearest_on_mesh
+from rastrainer_simulator.cli import main
+from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
+from Testing.simulator.scenarios.heads import egg
+
+
+def written(folder, spots):
+    """Write a scenario whose two tasks have these vertices of an egg as fiducials."""
+    head = egg()
+    scenario = made_up_scenario()
+    points = head.vertices[spots].astype(float).round(4)
+    tasks = tuple(replace(task, fiducials=points) for task in scenario.tasks)
+    folder.mkdir()
+    write_scenario(folder, replace(scenario, tasks=tasks), head, ball_head(60.0))
+    (folder / "preview.png").write_bytes(png())
+    return folder
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A scenario whose fiducials are all on the crown."""
+    return written(tmp_path / "egg", np.argsort(-egg().vertices[:, 2])[:300:20])
+
+
+def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(folder, tmp_path):
+    assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 0
+    given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
+    head, before = read_head_mesh(given.head_mesh), egg()
+    nose = before.vertices[face_vertices(before)][:, 1].max()
+    assert head.vertices[:, 1].max() < nose - 3.0
+    assert given.skull_mesh is None
+    assert "The face was taken off." in given.provenance.method
+    assert given.preview.read_bytes() != png()
+    away = [nearest_on_mesh(head, point).distance for point in given.tasks[0].fiducials]
+    assert max(away) < 0.05
+
+
+def test_the_face_is_kept_where_that_is_wanted(folder, tmp_path):
+    words = ["scenario", "pack", str(folder), str(tmp_path / "out.zip"), "--keep-face"]
+    assert main(words) == 0
+    given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
+    assert given.head_mesh.read_bytes() == (folder / "head.ply").read_bytes()
+    assert given.skull_mesh is not None
+    assert given.preview.read_bytes() == png()
+
+
+def test_fiducials_on_the_face_are_told_and_nothing_is_written(tmp_path, capsys):
+    head = egg()
+    spots = np.argsort(-head.vertices[:, 2])[:300:20]
+    spots[3] = head.vertices[:, 1].argmax()
+    folder = written(tmp_path / "egg", spots)
+    assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 2
+    assert "has fiducials on the face (4)" in capsys.readouterr().err
+    assert not (tmp_path / "out.zip").exists()

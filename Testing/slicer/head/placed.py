@@ -1,0 +1,34 @@
+"""What tests do with the phantom of a head in a scene: its volume, and fiducials on its skin."""
+
+from __future__ import annotations
+
+import numpy as np
+import slicer
+import vtk
+
+from Testing.slicer.head.phantoms import SEMI_AXES
+
+ROWS = ((5, 26.0), (10, 50.0))
+"""Rings of fiducials: how many, and their angle from the crown."""
+
+
+def add_volume(scene, volume, name):
+    """Return a volume node of the scene with an image of `Volume`."""
+    node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", name)
+    slicer.util.updateVolumeFromArray(node, volume.values.transpose(2, 1, 0).copy())
+    matrix = vtk.vtkMatrix4x4()
+    matrix.DeepCopy(volume.ijk_to_ras.ravel().tolist())
+    node.SetIJKToRASMatrix(matrix)
+    return node
+
+
+def fiducials():
+    """Return fifteen places on the phantom's skin, (15, 3) float, RAS mm, ring by ring."""
+    directions = []
+    for count, polar_deg in ROWS:
+        around = np.radians(np.linspace(0.0, 360.0, count, endpoint=False) - 90.0)
+        polar = np.radians(polar_deg)
+        ring = [np.cos(around) * np.sin(polar), np.sin(around) * np.sin(polar)]
+        directions.append(np.stack([*ring, np.full(count, np.cos(polar))], axis=1))
+    directions = np.concatenate(directions)
+    return directions / np.linalg.norm(directions / SEMI_AXES, axis=1, keepdims=True)

@@ -1,0 +1,150 @@
+"""The sections Scenario and New scenario without a simulator: lists, files, set-up, sentences."""
+
+import zipfile
+
+import numpy as np
+import pytest
+
+from rastrainer.head_pose import Perturbation
+from rastrainer.scenario_library import user_library
+from rastrainer.scenario_package import pack
+from rastrainer.scenario_setup import SetUp
+from rastrainer.scenario_writer import new_folder, write_scenario
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.scene import Role, findNode
+from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
+from Testing.slicer.head.phantoms import phantom
+from Testing.slicer.head.placed import add_volume
+
+pytestmark = pytest.mark.usefixtures("module_widget")
+
+
+@pytest.fixture
+def package(tmp_path):
+    with new_folder(tmp_path / "ball") as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+        (made / "preview.png").write_bytes(png())
+    return pack(tmp_path / "ball", tmp_path / "ball.zip")
+
+
+def unfold(host, *names):
+    for name in names:
+        host.find(name).collapsed = False
+        host.process_events()
+
+
+def test_a_zip_file_is_added_listed_with_its_picture_and_chosen(host, package):
+    unfold(host, "shareGroupBox")
+    host.answer("Add a scenario", package)
+    host.press("importScenarioButton")
+    assert host.find("scenarioComboBox").currentText == "A ball"
+    assert host.find("scenarioPicture").visible
+    assert (user_library() / "ball" / "scenario.json").is_file()
+    assert host.find("taskComboBox").count == 2
+    host.answer("Add a scenario", package)
+    host.press("importScenarioButton")
+    assert "already" in host.messages[-1].text
+
+
+def test_a_hostile_zip_file_is_told_and_changes_nothing(host, tmp_path):
+    bad = tmp_path / "bad.zip"
+    with zipfile.ZipFile(bad, "w") as archive:
+        archive.writestr("../../evil.txt", "x")
+    unfold(host, "shareGroupBox")
+    host.answer("Add a scenario", bad)
+    host.press("importScenarioButton")
+    assert "holds a file with the path" in host.messages[-1].text
+    assert not user_library().exists()
+    assert host.find("scenarioComboBox").count == 1
+
+
+def test_a_scenario_is_not_written_without_the_simulator_and_that_is_told(host, tmp_path):
+    unfold(host, "shareGroupBox")
+    assert host.find("removeFaceCheckBox").checked
+    host.answer("Save the scenario", tmp_path / "out.zip")
+    host.press("exportScenarioButton")
+    assert "press Set up first" in host.messages[-1].text
+    assert not (tmp_path / "out.zip").exists()
+
+
+def test_a_broken_scenario_is_listed_with_its_problem_and_cannot_be_used(host, package):
+    broken = user_library() / "broken"
+    broken.mkdir(parents=True)
+    (broken / "scenario.json").write_text("{")
+    unfold(host, "shareGroupBox")
+    host.answer("Add a scenario", package)
+    host.press("importScenarioButton")
+    host.choose("scenarioComboBox", "broken")
+    assert "scenario.json" in host.text("scenarioText")
+    assert not host.find("showScenarioButton").enabled
+    host.choose("scenarioComboBox", "A ball")
+    assert host.find("showScenarioButton").enabled
+
+
+def test_a_volume_that_holds_no_head_is_told(host):
+    host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty")
+    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
+    host.choose("scanComboBox", host.scene.GetFirstNodeByName("Empty"))
+    host.press("previewHeadButton")
+    assert "holds no image" in host.messages[-1].text
+    host.press("makeScenarioButton")
+    assert len(host.messages) == 2
+    assert host.text("makeScenarioButton") == "Make scenario"
+    assert not user_library().exists()
+
+
+def test_a_found_head_is_a_segment_that_may_be_edited_and_is_made_into_the_scenario(host):
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
+    host.choose("scanComboBox", volume)
+    host.type("cutSpinBox", "-20")
+    host.press("previewHeadButton")
+    assert host.messages == []
+    node = findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
+    assert node.GetSegmentation().GetNumberOfSegments() == 1
+    model = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW)
+    bounds = np.array(model.GetPolyData().GetBounds())
+    assert bounds[4] == pytest.approx(-20.0, abs=0.01)
+    assert bounds[5] == pytest.approx(70.0, abs=1.5)
+    maker = host.widget.logic.session.scenarioMaker
+    segment = maker._segment(volume)
+    assert 0.0 < segment.values.mean() < 1.0
+    assert maker._segment(add_volume(host.scene, phantom(spacing=(9, 9, 9)), "other")) is None
+
+
+def test_the_setup_that_is_shown_is_the_usual_one_until_it_is_changed(host):
+    unfold(host, "newScenarioCollapsibleButton", "setUpGroupBox")
+    form = host.widget._panels._panels
+    (panel,) = [each for each in form if type(each).__name__ == "NewScenarioPanel"]
+    assert panel._setUp.setUp() == SetUp()
+    host.type("head0SpinBox", "500")
+    host.type("shift0SpinBox", "3")
+    host.type("base1SpinBox", "-40")
+    changed = panel._setUp.setUp()
+    assert changed.head_center == (500.0, 0.0, 220.0)
+    assert changed.perturbation == Perturbation(3.0, 8.0, 3.0)
+    assert changed.robot_base == (0.0, -40.0)
+
+
+def test_a_plan_in_the_scene_goes_into_the_scenario(host, tmp_path):
+    targets = host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Targets")
+    setPoints(targets, ("Tumor", "Cyst"), np.array([[1.0, 2, 3], [4, 5, 6]]))
+    line = host.scene.AddNewNodeByClass("vtkMRMLMarkupsLineNode", "Biopsy")
+    setPoints(line, ("a", "b"), np.array([[0.0, 0, 90], [1, 2, 3]]))
+    unfold(host, "newScenarioCollapsibleButton", "planForScenarioGroupBox")
+    host.choose("plannedTargetsComboBox", targets)
+    host.choose("plannedTrajectoryComboBox", line)
+    host.check("handPlacedCheckBox")
+    host.check("handPlacedCheckBox", False)
+    unfold(host, "adjustHeadGroupBox")
+    host.check("skullCheckBox", False)
+    (panel,) = [
+        each for each in host.widget._panels._panels if type(each).__name__ == "NewScenarioPanel"
+    ]
+    _volume, wishes = panel._wanted()
+    assert not wishes.hasSkull
+    words = host.widget.logic.session.scenarioMaker._words(wishes, tmp_path)
+    assert words[2:] == (
+        *("--target", "Tumor", "1.0", "2.0", "3.0", "--target", "Cyst", "4.0", "5.0", "6.0"),
+        *("--trajectory", "Biopsy", "0.0", "0.0", "90.0", "1.0", "2.0", "3.0"),
+    )
