@@ -8,9 +8,10 @@ import json
 import logging
 import os
 import time
+from collections.abc import Coroutine
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import pygame
 
@@ -21,14 +22,16 @@ from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox
 from rastrainer_simulator.desktop.operator_keys import OperatorKeys
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.desktop.picture_file import save_picture
 from rastrainer_simulator.desktop.quality import SLOWEST_FRAME_S, Quality, first_quality
 from rastrainer_simulator.desktop.sounds import Sounds
+from rastrainer_simulator.desktop.still import Still, keep_still, picture_path, write_picture
 from rastrainer_simulator.view_server.messages import FRAMES, ITEM
 
 LOOK_S = 0.004
 """How often the window looks for keys while nothing arrives."""
 LEAST_REFRESH_HZ = 60.0
+LEAST_REST_S = 0.002
+"""Between two pictures, however slowly they are drawn: what has arrived is taken in by then."""
 TRIED_FRAMES = 12
 POLITENESS = 3
 LEFT_BUTTON = 1
@@ -49,7 +52,7 @@ class WindowOptions:
         is_fullscreen: whether to begin without a frame.
         quality: None finds out what the machine can afford.
         pictures: folder of what F12 keeps.
-        picture_quality: of what F12 keeps, which may take its time.
+        picture_quality: of what F12 keeps; another process draws it where it is not what is shown.
         frame_log: file that gets a line for each picture, for measurements.
     """
 
@@ -88,7 +91,8 @@ class DesktopWindow:
         self._keys = OperatorKeys(self._connection)
         self._frames = FrameCount(self._report_frames, time.monotonic())
         self._own_held: set[int] = set()
-        self._wants_picture = False
+        self._stills: set[asyncio.Task[None]] = set()
+        self._one_still = asyncio.Lock()
         self._is_open = True
 
     async def run(self) -> None:
@@ -102,6 +106,7 @@ class DesktopWindow:
             connecting.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await connecting
+            await asyncio.gather(*self._stills)
             self._sounds.close()
             self._window.close()
 
@@ -115,9 +120,6 @@ class DesktopWindow:
             sound = self._inbox.sounds.popleft()
             self._sounds.play(sound.name, sound.volume)
         is_due = self._picture.is_due(begin)
-        if self._wants_picture:
-            self._wants_picture = False
-            self._keep_picture()
         if not is_due:
             self._frames.tell(begin)
             await self._inbox.wait(LOOK_S)
@@ -130,7 +132,7 @@ class DesktopWindow:
         self._frames.tell(begin)
         rest = begin + 1.0 / max(LEAST_REFRESH_HZ, self._window.refresh_hz) - time.monotonic()
         # Not drawn faster than it can be seen; what arrives meanwhile is taken in.
-        await asyncio.sleep(max(0.0, rest))
+        await asyncio.sleep(max(LEAST_REST_S, rest))
 
     def _take(self, event: pygame.event.Event) -> None:
         if event.type in (pygame.KEYDOWN, pygame.KEYUP) and event.key in OWN_KEYS:
@@ -157,7 +159,7 @@ class DesktopWindow:
             if event.key == pygame.K_F11:
                 self._window.toggle_fullscreen()
             else:
-                self._wants_picture = True
+                self._keep_picture()
 
     def _click(self, place: tuple[int, int]) -> None:
         now = time.monotonic()
@@ -167,9 +169,22 @@ class DesktopWindow:
             self._connection.send(ITEM, name=name)
 
     def _keep_picture(self) -> None:
-        pixels = self._picture.still(self._options.picture_quality)
+        """Have what is shown now kept, while the window goes on."""
+        path = picture_path(self._options.pictures)
+        best = self._options.picture_quality
+        if best is self._picture.stage.quality:
+            keep = asyncio.to_thread(write_picture, self._window.pixels(), path)
+        else:
+            keep = keep_still(Still.of(self._inbox, path, self._window.size, best))
+        keeping = asyncio.create_task(self._keep(keep, path))
+        self._stills.add(keeping)
+        keeping.add_done_callback(self._stills.discard)
+
+    async def _keep(self, keep: Coroutine[Any, Any, None], path: Path) -> None:
+        """Keep a picture when those before it are kept."""
         try:
-            path = save_picture(pixels, self._options.pictures)
+            async with self._one_still:
+                await keep
         except InputError as error:
             _log.warning("%s", error)
         else:

@@ -81,6 +81,13 @@ class Canvas:
         cover = np.clip(inside + 0.5, 0.0, 1.0)
         self._cover(int(left), int(top), cover.astype(np.float32), color)
 
+    def picture(self, left: int, top: int, pixels: np.ndarray) -> None:
+        """Lay a picture (height, width, 3) uint8 over what is there; it lies within the canvas."""
+        height, width = pixels.shape[:2]
+        region = self._painted[:, top : top + height, left : left + width]
+        region[:3] = pixels.transpose(2, 0, 1) / np.float32(255.0)
+        region[3] = 1.0
+
     def pixels(self) -> np.ndarray:
         """Return (height, width, 4) uint8: color, not multiplied by opacity, and opacity."""
         opacity = self._painted[3]

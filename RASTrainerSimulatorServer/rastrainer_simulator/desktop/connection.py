@@ -17,6 +17,8 @@ from rastrainer_simulator.desktop.flight import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, SceneNews, SoundEvent
 from rastrainer_simulator.desktop.screen_reader import screen_from_json
+from rastrainer_simulator.desktop.thumbnail import Thumbnail
+from rastrainer_simulator.flow.screen import focused_picture
 from rastrainer_simulator.view_server.messages import HELLO, SUBPROTOCOL
 
 RETRY_S = 1.0
@@ -25,6 +27,7 @@ SILENCE_S = 20.0
 STATE_BEGINS = '{"type":"state"'
 LARGEST_MESSAGE = 2**20
 LARGEST_SCENE = 2**28
+LARGEST_PICTURE = 2**22
 UNAUTHORIZED = 401
 
 _log = logging.getLogger(__name__)
@@ -105,6 +108,8 @@ class Connection:
             kind = message["type"]
             if kind == "scene":
                 await self._take_scene(session, message)
+            elif kind == "screen":
+                await self._take_screen(session, message)
             elif kind in _TAKE:
                 _TAKE[kind](self, message)
         except (InputError, KeyError, TypeError, ValueError) as error:
@@ -112,11 +117,15 @@ class Connection:
             return
         self._inbox.touch()
 
+    def _take_control(self, message: Mapping[str, Any]) -> None:
+        self._inbox.holder = str(message["holder"])
+
+    def _take_pairing(self, message: Mapping[str, Any]) -> None:
+        addresses = ", ".join(str(address) for address in message["addresses"])
+        self._inbox.pairing = str(message["code"]), addresses
+
     def _take_welcome(self, message: Mapping[str, Any]) -> None:
         self._inbox.bodies = tuple(message["bodies"])
-
-    def _take_screen(self, message: Mapping[str, Any]) -> None:
-        self._inbox.screen = screen_from_json(message["screen"])
 
     def _take_event(self, message: Mapping[str, Any]) -> None:
         number = int(message["number"])
@@ -126,19 +135,37 @@ class Connection:
                 sound = SoundEvent(str(message["sound"]), float(message.get("volume", 1.0)))
                 self._inbox.sounds.append(sound)
 
+    async def _take_screen(
+        self, session: aiohttp.ClientSession, message: Mapping[str, Any]
+    ) -> None:
+        """Show a screen, once the picture of the item that has the focus is there."""
+        screen = screen_from_json(message["screen"])
+        picture = focused_picture(screen.menu)
+        if picture and picture not in self._inbox.thumbnails:
+            try:
+                content = await self._content(session, picture, LARGEST_PICTURE)
+                self._inbox.thumbnails[picture] = Thumbnail.from_png(content)
+            except (aiohttp.ClientResponseError, InputError) as error:
+                _log.warning("A picture cannot be shown: %s", error)
+        self._inbox.screen = screen
+
     async def _take_scene(self, session: aiohttp.ClientSession, message: Mapping[str, Any]) -> None:
         """Load a scene; the one that is shown stays until the next is there."""
-        url = str(message["url"])
-        async with session.get(self._url + url) as answer:
-            answer.raise_for_status()
-            content = await answer.content.read(LARGEST_SCENE)
-            while not answer.content.at_eof() and len(content) < LARGEST_SCENE:
-                content += await answer.content.read(LARGEST_SCENE - len(content))
+        content = await self._content(session, str(message["url"]), LARGEST_SCENE)
         self._inbox.scene = SceneNews(
             read_parts(content, self._inbox.bodies),
             {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
             {str(label): tuple(place) for label, place in message["fiducials"].items()},
         )
+
+    async def _content(self, session: aiohttp.ClientSession, path: str, most: int) -> bytes:
+        """Return what the simulator has at a path, at most so many bytes of it."""
+        async with session.get(self._url + path) as answer:
+            answer.raise_for_status()
+            content = await answer.content.read(most)
+            while not answer.content.at_eof() and len(content) < most:
+                content += await answer.content.read(most - len(content))
+        return content
 
     def _tell(self, problem: str) -> None:
         self._inbox.problem = problem
@@ -147,8 +174,9 @@ class Connection:
 
 _TAKE: Mapping[str, Callable[[Connection, Mapping[str, Any]], None]] = {
     "welcome": Connection._take_welcome,
-    "screen": Connection._take_screen,
     "event": Connection._take_event,
+    "control": Connection._take_control,
+    "pairing": Connection._take_pairing,
 }
 
 

@@ -39,8 +39,10 @@ class GlWindow:
         refresh_hz: of the display, 0 where unknown.
     """
 
-    def __init__(self, size: tuple[int, int] | None, is_fullscreen: bool):
+    def __init__(self, size: tuple[int, int] | None, is_fullscreen: bool, is_hidden: bool = False):
         """Open the window, as large as the display allows where no size is given.
+
+        A hidden one is never seen: its pixels are for a file.
 
         Raises:
             RASTrainerError: there is no display, or no OpenGL.
@@ -53,7 +55,9 @@ class GlWindow:
             pygame.display.init()
             for attribute, value in _CORE_PROFILE.items():
                 pygame.display.gl_set_attribute(attribute, value)
-            self._window = pygame.Window(TITLE, size or _roomy_size(), opengl=True, resizable=True)
+            self._window = pygame.Window(
+                TITLE, size or _roomy_size(), opengl=True, resizable=True, hidden=is_hidden
+            )
         except pygame.error as error:
             raise RASTrainerError(NO_WINDOW.format(reason=error)) from None
         pygame.key.set_repeat(REPEAT_AFTER_MS, REPEAT_EVERY_MS)

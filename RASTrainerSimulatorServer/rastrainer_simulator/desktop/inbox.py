@@ -13,6 +13,7 @@ from typing import Any
 from rastrainer.finite_json import decode_finite_json
 from rastrainer_simulator.desktop.flight import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import Part
+from rastrainer_simulator.desktop.thumbnail import Thumbnail
 from rastrainer_simulator.flow.screen import Screen
 
 STATE_MEMBERS = ("tick", "phase", "proximity", "camera", "next", "touched")
@@ -42,7 +43,10 @@ class Inbox:
 
     Attributes:
         state: members of the latest `state` message, as of the last `read_state`; None before.
+        holder: what drives the arm; "" while nobody does.
+        pairing: code and addresses by which other views are paired; None while unknown.
         bodies: names in the order of a state's poses.
+        thumbnails: pictures of the menus' items by where they come from.
         screen: what the trainee reads; None before the first.
         scene: None until one has been loaded.
         sounds: those not played yet.
@@ -56,7 +60,10 @@ class Inbox:
         self.scene: SceneNews | None = None
         self.sounds: deque[SoundEvent] = deque(maxlen=16)
         self.problem = "window.connecting"
+        self.holder = ""
+        self.pairing: tuple[str, str] | None = None
         self.bodies: tuple[str, ...] = ()
+        self.thumbnails: dict[str, Thumbnail] = {}
         self._has_changed = asyncio.Event()
 
     def take_state(self, text: str) -> None:

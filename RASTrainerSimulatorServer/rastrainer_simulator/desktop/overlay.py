@@ -18,6 +18,7 @@ from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_pan
 from rastrainer_simulator.desktop.panels.target_arrow import REACH, STEP_DEG, target_arrow
 from rastrainer_simulator.desktop.sprite import Sprite
 from rastrainer_simulator.desktop.target_direction import Direction
+from rastrainer_simulator.desktop.thumbnail import Thumbnail
 from rastrainer_simulator.flow.screen import Screen
 
 MOST_WARNINGS = 3
@@ -35,6 +36,7 @@ class Content:
         inset: where the second view is; None without one.
         target: direction to a target out of sight, and its distance in mm.
         hovered: name of the item under the mouse.
+        thumbnail: picture of the menu's item that has the focus; None without one.
     """
 
     screen: Screen
@@ -42,6 +44,7 @@ class Content:
     inset: Box | None = None
     target: tuple[Direction, int] | None = None
     hovered: str = ""
+    thumbnail: Thumbnail | None = None
 
 
 class Overlay:
@@ -127,8 +130,9 @@ class Overlay:
             return
         room = (self._size[0] - 2 * self._brush.px(theme.MARGIN), bottom - top)
         slot = self._slots["menu"]
-        if slot.is_other((menu, room, content.hovered, self._scale)):
-            picture = menu_panel(menu, self._scale, room, content.hovered)
+        shown = (content.hovered, content.thumbnail)
+        if slot.is_other((menu, room, *shown, self._scale)):
+            picture = menu_panel(menu, self._scale, room, *shown)
             slot.sprite.paint(picture.pixels)
             self._menu = (picture, Box(0, 0, 0, 0))
         width, height = slot.sprite.size

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,14 +12,14 @@ import numpy as np
 from rastrainer.protocol import Phase
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
-from rastrainer_simulator.desktop.notices import notice
+from rastrainer_simulator.desktop.notices import notice, own_facts
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.pointer import Pointer
 from rastrainer_simulator.desktop.quality import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.desktop.stage import Stage
 from rastrainer_simulator.desktop.target_direction import Direction, direction_out_of_sight
-from rastrainer_simulator.flow.screen import Screen
+from rastrainer_simulator.flow.screen import Screen, focused_picture
 
 MM_IN_M = 1000.0
 PULSE_S = 1.4
@@ -67,18 +68,6 @@ class Picture:
         """Draw it."""
         self._must_draw = False
         self._window.render_window.Render()
-
-    def still(self, best: Quality) -> np.ndarray:
-        """Return the same picture in another quality, (height, width, 3) uint8."""
-        quality = self.stage.quality
-        self.stage.set_quality(best)
-        self._mark(0.0)
-        self._window.render_window.Render()
-        pixels = self._window.pixels()
-        self.stage.set_quality(quality)
-        self._mark(0.0)
-        self._must_draw = True
-        return pixels
 
     def set_quality(self, quality: Quality) -> None:
         """Draw better, or faster."""
@@ -133,12 +122,15 @@ class Picture:
             return Content(notice(self._inbox.problem, screen.language))
         state = self._inbox.state or {}
         is_free = screen.menu is None
+        pairing = None if is_free else self._inbox.pairing
+        facts = own_facts(screen.language, self._inbox.holder, pairing)
         return Content(
-            screen=screen,
+            screen=replace(screen, status=(*screen.status, *facts)),
             is_contact=is_free and state.get("proximity") == "contact",
             inset=self.stage.inset_box if self.stage.has_inset else None,
             target=self._target() if is_free else None,
             hovered=self.item_at_pointer(now),
+            thumbnail=self._inbox.thumbnails.get(focused_picture(screen.menu)),
         )
 
     def _target(self) -> tuple[Direction, int] | None:

@@ -59,6 +59,7 @@ def _item(value: Json) -> Item:
         value=str(value["value"]),
         is_enabled=bool(value["is_enabled"]),
         help=str(value["help"]),
+        picture=str(value["picture"]),
     )
 
 

@@ -109,10 +109,7 @@ class Desk:
 
     def view_left(self, view: int) -> None:
         """Forget a view; nobody sees the trial any more if it was the trainee's."""
-        if view == self._watched():
-            self._flow.pause()
-        for kind in SourceKind:
-            self.controls.forget(self._source(kind, view))
+        self._lose_sight(view)
         self._choose_mode(self._views.pop(view, None))
         self._settle()
 
@@ -177,9 +174,10 @@ class Desk:
         self._control_loop.note_display(report)
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Pause the trial when the one who operates no longer sees it."""
-        if not is_visible and view == self._watched():
-            self._flow.pause()
+        """Pause the trial when the one who operates no longer sees it, and free the control."""
+        if not is_visible:
+            self._lose_sight(view)
+            self._settle()
 
     def pressed(self, control: ControlName) -> None:
         """A control was pressed by the operator."""
@@ -240,6 +238,13 @@ class Desk:
         operated = None if holder is None else holder.view
         choices = (by_kind.get("headset"), operated, by_kind.get("desktop"), by_kind.get("page"))
         return next((view for view in choices if view is not None), None)
+
+    def _lose_sight(self, view: int) -> None:
+        """Let go of what is worked without being seen."""
+        if view == self._watched():
+            self._flow.pause()
+        for kind in SourceKind:
+            self.controls.forget(self._source(kind, view))
 
     def _choose_mode(self, changed: Hello | None) -> None:
         """Let the next trial be one in a headset while there is one; people may choose again."""

@@ -17,6 +17,7 @@ from rastrainer_simulator.state import EventKind, SimulationState, StepResult
 from rastrainer_simulator.texts.texts import Said
 
 NOT_RECORDED = "not recorded"
+INTERRUPTED = "interrupted"
 
 
 class Flow:
@@ -135,8 +136,10 @@ class Flow:
         return (Message(self._session.texts.say("warning.slicer"), Tone.WARNING),)
 
     def _record_warnings(self) -> tuple[Message, ...]:
-        """Tell why the trial was paused where the disk had refused what was to be recorded."""
+        """Tell why the trial was paused where it was not the trainee who did it."""
         said = self._session.training.instruction
+        if isinstance(said, Said) and said.key == INTERRUPTED:
+            return (Message(self._session.texts.again(said), Tone.WARNING),)
         if isinstance(said, Said) and said.key == NOT_RECORDED:
             return (Message(self._session.texts.again(said), Tone.ERROR),)
         return ()

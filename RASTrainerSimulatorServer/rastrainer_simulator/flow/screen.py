@@ -40,6 +40,8 @@ class Item:
         value: the chosen option, the typed text or the axis's position, ready to be shown.
         is_enabled: whether it can be chosen; a view draws others paler.
         help: a sentence shown while the item has the focus, such as why it cannot be chosen.
+        picture: where a picture is that is shown while the item has the focus, a path of the
+            simulator's HTTP server such as "/scenarios/colin27.png"; "" where there is none.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Item:
     value: str = ""
     is_enabled: bool = True
     help: str = ""
+    picture: str = ""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -117,6 +120,12 @@ class Screen:
     status: tuple[str, ...] = ()
     hints: tuple[Hint, ...] = ()
     language: str = "en"
+
+
+def focused_picture(menu: Menu | None) -> str:
+    """Return where the picture of the item with the focus is, "" where it has none."""
+    items = () if menu is None else menu.items
+    return next((item.picture for item in items if item.name == menu.focus), "")
 
 
 def screen_to_json(screen: Screen) -> dict[str, Any]:

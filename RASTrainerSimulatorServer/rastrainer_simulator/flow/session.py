@@ -11,6 +11,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Mode, Phase
 from rastrainer.scenario import Scenario
+from rastrainer.scenario_library import ListedScenario
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.bindings import Bindings
 from rastrainer_simulator.controls.bindings_file import FILE_NAME as BINDINGS_FILE
@@ -47,6 +48,8 @@ class Surroundings:
         config: folder of the settings files.
         records: folder of the trials' journals.
         use_settings: has the simulation go on with other settings, between two trials.
+        list_scenarios: lists the scenarios that `use_scenario` takes by their names.
+        use_scenario: has the simulation go on with another scenario, between two trials.
         is_slicer_there: tells whether a client is connected over OpenIGTLink.
         quit: ends the process.
     """
@@ -54,6 +57,8 @@ class Surroundings:
     config: Path
     records: Path
     use_settings: Callable[[SimulationSettings], Future[Answer]]
+    list_scenarios: Callable[[], Future[list[ListedScenario]]]
+    use_scenario: Callable[[str], Future[Answer]]
     is_slicer_there: Callable[[], bool]
     quit: Callable[[], None]
 
@@ -70,6 +75,7 @@ class Session:
         progress: which tasks each trainee has done.
         pages: which are open.
         happened: tells the senses.
+        list_scenarios: lists the heads to train on.
         is_slicer_there: tells whether Slicer is connected.
         quit: ends the simulator.
     """
@@ -90,6 +96,7 @@ class Session:
         self.progress = Progress(surroundings.records)
         self.happened = happened
         self.pages = OpenPages(happened)
+        self.list_scenarios = surroundings.list_scenarios
         self.is_slicer_there = surroundings.is_slicer_there
         self.quit = surroundings.quit
         self._surroundings = surroundings
@@ -142,7 +149,7 @@ class Session:
 
     @property
     def is_being_set_up(self) -> bool:
-        """Whether other settings of the simulation are on their way."""
+        """Whether other settings of the simulation, or another scenario, are on their way."""
         return self._setting_up is not None or self._wanted_settings is not None
 
     def is_typing_possible(self, kinds: tuple[SourceKind, ...]) -> bool:
@@ -186,6 +193,11 @@ class Session:
         self._set_up_in = SET_UP_AFTER_S
         path = self._surroundings.config / PREFERENCES_FILE
         self._save(lambda: write_preferences(path, preferences))
+
+    def use_scenario(self, name: str) -> None:
+        """Go on with another scenario, as soon as it is loaded."""
+        if not self.is_being_set_up:
+            self._setting_up = self._surroundings.use_scenario(name)
 
     def rebind(self, bindings: Bindings) -> None:
         """Take on other bindings and save them."""

@@ -43,6 +43,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # When the record cannot be written.
         "not recorded": "The trial cannot be recorded ({reason}). What was not recorded does not "
         "count; make room or choose another folder, then go on.",
+        # When the simulator had ended in the middle of a trial and is there again.
+        "interrupted": "{trainee}, this trial was interrupted; {kept} of {count} points are kept. "
+        "Go on with point {point} when you are ready, or abort it.",
+        "interrupted complete": "{trainee}, this trial was interrupted; all {count} points are "
+        "kept. Register them now.",
         # The simulator's menus.
         "start.title": "RASTrainer",
         "start.text": "Train robot-assisted patient registration on a virtual KUKA LBR iiwa 7. "
@@ -98,7 +103,15 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.no trainee": "Enter your ID first.",
         "experiment.being set up": "The simulator takes on its new settings.",
         "experiment.order": "{task} comes first.",
+        "experiment.scenario": "Head",
         "experiment.back": "Back",
+        "scenario.title": "Heads",
+        "scenario.text": "Which head do you want to train on?",
+        "scenario.looking": "The heads are being looked for.",
+        "scenario.help": "Train on this head from now on.",
+        "scenario.loading": "is being loaded",
+        "scenario.present": "in use",
+        "scenario.back": "Back",
         "task.trial-run": "Trial run",
         "task.task-1": "Task 1",
         "task.task-2": "Task 2",
@@ -238,6 +251,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "control.taken": "The {source} has taken the control.",
         "control.held": "The {source} holds the control. Wait until it rests, then press {menu} "
         "to take over.",
+        "control.holder": "Control: {source}",
+        "control.nobody": "Control: nobody",
         "source.gamepad": "gamepad",
         "source.keyboard": "keyboard",
         "source.mouse": "mouse",
@@ -321,6 +336,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "window.unknown": "The simulator does not know this window: close it and open one with the "
         "pairing code that the simulator shows now.",
         "window.refused": "The simulator serves as many views as it can: close another one.",
+        "window.pairing": "To pair a browser or a headset: code {code} at {addresses}",
         "status.points": "{kept} of {count} points",
         "status.left": "{time} left",
         "status.toward": "Point {point}: {distance} mm {direction}",
@@ -339,6 +355,14 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "hint.choose": "Choose",
         "hint.accept": "Accept",
         "hint.back": "Back",
+        "hint.play": "Play, pause",
+        "hint.seek": "5 s back, forth",
+        "hint.worst": "Worst touch",
+        "hint.end": "End",
+        "replay.title": "{task} of {trainee}, shown again",
+        "replay.worst": "Point {point}, the worst touch, at half speed",
+        "replay.paused": "Paused",
+        "replay.differs": "This computer simulates the trial otherwise than it was recorded.",
         "decimal sign": ".",
     }
 )

@@ -47,6 +47,11 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "not recorded": "Der Versuch kann nicht aufgezeichnet werden ({reason}). Was nicht "
         "aufgezeichnet wurde, zählt nicht; schaffe Platz oder wähle einen anderen Ordner und mach "
         "dann weiter.",
+        # Wenn der Simulator mitten in einem Versuch geendet hat und wieder da ist.
+        "interrupted": "{trainee}, dieser Versuch wurde unterbrochen; {kept} von {count} Punkten "
+        "sind gesichert. Mach mit Punkt {point} weiter, wenn du bereit bist, oder brich ihn ab.",
+        "interrupted complete": "{trainee}, dieser Versuch wurde unterbrochen; alle {count} Punkte "
+        "sind gesichert. Registriere sie jetzt.",
         # The simulator's menus.
         "start.title": "RASTrainer",
         "start.text": "Übe die robotergestützte Patientenregistrierung an einem virtuellen KUKA "
@@ -105,7 +110,15 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "experiment.no trainee": "Gib zuerst deine ID ein.",
         "experiment.being set up": "Der Simulator übernimmt seine neuen Einstellungen.",
         "experiment.order": "{task} kommt zuerst.",
+        "experiment.scenario": "Kopf",
         "experiment.back": "Zurück",
+        "scenario.title": "Köpfe",
+        "scenario.text": "An welchem Kopf möchtest du üben?",
+        "scenario.looking": "Die Köpfe werden gesucht.",
+        "scenario.help": "Von nun an an diesem Kopf üben.",
+        "scenario.loading": "wird geladen",
+        "scenario.present": "in Gebrauch",
+        "scenario.back": "Zurück",
         "task.trial-run": "Probelauf",
         "task.task-1": "Aufgabe 1",
         "task.task-2": "Aufgabe 2",
@@ -250,6 +263,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "control.taken": "Die Steuerung ist jetzt hier: {source}.",
         "control.held": "Die Steuerung liegt hier: {source}. Warte, bis sie ruht, und drücke dann "
         "{menu}, um sie zu übernehmen.",
+        "control.holder": "Steuerung: {source}",
+        "control.nobody": "Steuerung: niemand",
         "source.gamepad": "Gamepad",
         "source.keyboard": "Tastatur",
         "source.mouse": "Maus",
@@ -334,6 +349,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "mit dem Kopplungscode, den der Simulator jetzt zeigt.",
         "window.refused": "Der Simulator bedient so viele Ansichten, wie er kann: Schließ eine "
         "andere.",
+        "window.pairing": "Browser oder Headset koppeln: Code {code} auf {addresses}",
         "status.points": "{kept} von {count} Punkten",
         "status.left": "noch {time}",
         "status.toward": "Punkt {point}: {distance} mm {direction}",
@@ -352,6 +368,14 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "hint.choose": "Wählen",
         "hint.accept": "Bestätigen",
         "hint.back": "Zurück",
+        "hint.play": "Abspielen, anhalten",
+        "hint.seek": "5 s zurück, vor",
+        "hint.worst": "Schlechteste Berührung",
+        "hint.end": "Beenden",
+        "replay.title": "{task} von {trainee}, noch einmal gezeigt",
+        "replay.worst": "Punkt {point}, die schlechteste Berührung, in halber Geschwindigkeit",
+        "replay.paused": "Angehalten",
+        "replay.differs": "Dieser Rechner simuliert den Versuch anders als aufgezeichnet.",
         "decimal sign": ",",
     }
 )

@@ -3,12 +3,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rastrainer.errors import InputError
 from rastrainer_simulator.desktop import theme
 from rastrainer_simulator.desktop.panels import strips
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.panels.target_arrow import target_arrow
+from rastrainer_simulator.desktop.thumbnail import Thumbnail
 from rastrainer_simulator.flow.screen import Fact, Hint, Item, Menu, Message, Tone
+from Testing.domain.made_up_scenario import png
 from Testing.simulator.desktop.conftest import MENU
 
 SIZES = [(1280, 720), (1920, 1080), (2560, 1440), (3840, 2160), (1024, 768)]
@@ -117,3 +120,39 @@ def test_a_typed_text_shows_its_end_however_long_it_is():
     item = replace(MENU.items[0], value=name)
     picture = paint(replace(MENU, items=(item,), focus="trainee"), (1280, 720))
     assert picture.pixels.shape[1] <= 1280 - 64
+
+
+HEADS = Menu(
+    "scenario",
+    "Heads",
+    ("Which head?",),
+    items=(Item("head mine", "My head", picture="/scenarios/mine.png"), Item("back", "Back")),
+    focus="head mine",
+)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_picture_of_the_item_in_focus_is_shown_beside_the_list(size):
+    color = np.array([40, 90, 160])
+    room = (size[0] - 64, size[1] - 160)
+    thumbnail = Thumbnail.from_png(png(640, 480))
+    without, shown = (
+        menu_panel(HEADS, theme.scale_of(*size), room, thumbnail=each) for each in (None, thumbnail)
+    )
+    assert without.pixels.shape == shown.pixels.shape
+    assert shown.pixels.shape[0] <= room[1]
+    is_picture, was_picture = (
+        (np.abs(pixels[..., :3].astype(int) - color) <= 2).all(axis=2)
+        for pixels in (shown.pixels, without.pixels)
+    )
+    assert not was_picture.any()
+    rows, columns = np.nonzero(is_picture)
+    height, width = np.ptp(rows) + 1, np.ptp(columns) + 1
+    assert width / height == pytest.approx(4 / 3, rel=0.02)
+    assert width > 0.2 * shown.pixels.shape[1]
+    assert columns.max() < shown.rows["head mine"].left
+
+
+def test_what_is_no_picture_is_refused_with_a_sentence():
+    with pytest.raises(InputError, match="cannot be read"):
+        Thumbnail.from_png(b"no picture")

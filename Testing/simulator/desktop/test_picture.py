@@ -1,13 +1,18 @@
 """What the window shows of what the simulator says, rendered for real but for a display."""
 
+import asyncio
+
 import numpy as np
 import pytest
 
+from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.flight import FLIGHT_S, Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.quality import Quality, first_quality
+from rastrainer_simulator.desktop.still import Still, keep_still
+from Testing.read_png import read_png
 from Testing.simulator.desktop.conftest import (
     BODIES,
     CAMERAS,
@@ -163,12 +168,22 @@ def test_a_lost_connection_is_told(show, picture, gl_window, inbox):
     inbox.problem = ""
 
 
-def test_a_kept_picture_has_the_best_light_and_the_window_goes_on_as_before(show, picture):
+def test_a_kept_picture_shows_the_same_in_the_best_light(show, inbox, tmp_path):
     plain = show()
-    best = picture.still(Quality.HIGH).astype(int)
+    path = tmp_path / "pictures" / "kept.png"
+    asyncio.run(keep_still(Still.of(inbox, path, SIZE, Quality.HIGH)))
+    best = read_png(path).astype(int)
     assert np.abs(best - plain).mean() > 3
-    again = show()
-    assert np.abs(again - plain).mean() < 1
+    tips = [found(main_view(pixels), BLUE).mean(axis=0) for pixels in (plain, best)]
+    assert np.abs(tips[0] - tips[1]).max() < 2
+
+
+def test_a_picture_that_cannot_be_kept_is_told_in_one_sentence(show, inbox, tmp_path):
+    show()
+    (tmp_path / "file").touch()
+    still = Still.of(inbox, tmp_path / "file" / "kept.png", SIZE, Quality.LOW)
+    with pytest.raises(InputError, match=r"^The folder .*file cannot be made: .*\.$"):
+        asyncio.run(keep_still(still))
 
 
 @pytest.mark.parametrize(

@@ -26,13 +26,26 @@ class Outside:
         self.has_slicer = False
         self.has_quit = False
         self.settings = []
+        self.scenarios = []
+        self.loads = []
         self.surroundings = Surroundings(
             config=folder / "config",
             records=folder / "records",
             use_settings=self._use,
+            list_scenarios=self._list,
+            use_scenario=self._load,
             is_slicer_there=lambda: self.has_slicer,
             quit=lambda: setattr(self, "has_quit", True),
         )
+
+    def _list(self):
+        done = Future()
+        done.set_result(self.scenarios)
+        return done
+
+    def _load(self, name):
+        self.loads.append((name, Future()))
+        return self.loads[-1][1]
 
     def _use(self, settings):
         self.settings.append(settings)

@@ -104,6 +104,16 @@ def test_a_view_that_leaves_lets_the_arm_stand_still_and_gives_the_control_up(tr
     assert trainee.desk.control.holder == ""
 
 
+def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
+    trainee.start("task-1")
+    trainee.desk.on_visibility(1, False)
+    trainee.until_menu("trial")
+    assert trainee.desk.control.holder == ""
+    Keys(trainee, view=2, kind="page").tap("accept")
+    assert trainee.desk.control.view == 2
+    trainee.until_menu(None)
+
+
 def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(trainee):
     trainee.desk.view_left(1)
     desk = trainee.desk

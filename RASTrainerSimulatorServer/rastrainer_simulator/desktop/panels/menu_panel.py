@@ -11,12 +11,15 @@ from rastrainer_simulator.desktop.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad
 from rastrainer_simulator.desktop.panels.item_row import Look, draw_item
+from rastrainer_simulator.desktop.thumbnail import Thumbnail
 from rastrainer_simulator.flow.screen import Menu
 
 SHRINK = 0.94
 SMALLEST = 0.84
 _ROW_GAP = 1.25 * theme.STEP
 _FACT_HEIGHT = 5.5 * theme.STEP
+_PICTURE_HEIGHT = 0.75
+"""Of a thumbnail as large as its column is wide."""
 
 
 @dataclass(frozen=True)
@@ -36,30 +39,40 @@ class MenuPicture:
         return next((name for name, box in self.rows.items() if box.contains(x, y)), "")
 
 
-def menu_panel(menu: Menu, scale: float, room: tuple[int, int], hovered: str = "") -> MenuPicture:
+def menu_panel(
+    menu: Menu,
+    scale: float,
+    room: tuple[int, int],
+    hovered: str = "",
+    thumbnail: Thumbnail | None = None,
+) -> MenuPicture:
     """Paint a menu into at most `room` (width, height) pixels.
 
-    What is too high is set smaller, down to what is still readable; beyond that its rows scroll
-    with the focus.
+    The item `hovered` is under the mouse; `thumbnail` belongs to the one that has the focus.
+
+    What is too high is set smaller, down to what is still readable, and then wider; beyond that
+    its rows scroll with the focus.
     """
-    factor = 1.0
-    layout = _Layout(menu, Brush(scale), room)
-    while layout.height > room[1] and factor > SMALLEST:
-        factor *= SHRINK
-        layout = _Layout(menu, Brush(scale * factor), room)
-    return layout.paint(hovered)
+    width, factor = theme.PANEL_WIDTH, 1.0
+    layout = _Layout(menu, Brush(scale), room, width)
+    while layout.height > room[1] and (factor > SMALLEST or width < theme.BROAD_PANEL_WIDTH):
+        if factor > SMALLEST:
+            factor *= SHRINK
+        else:
+            width = theme.BROAD_PANEL_WIDTH
+        layout = _Layout(menu, Brush(scale * factor), room, width)
+    return layout.paint(hovered, thumbnail)
 
 
 class _Layout:
-    """Where everything of a menu comes, at one scale."""
+    """Where everything of a menu comes, at one scale; a picture needs a width of its own."""
 
-    def __init__(self, menu: Menu, brush: Brush, room: tuple[int, int]):
+    def __init__(self, menu: Menu, brush: Brush, room: tuple[int, int], width: int):
         self._menu = menu
         self._brush = brush
         self._pad = brush.px(theme.PANEL_PAD)
-        has_picture = menu.picture == "controls"
-        width = theme.WIDE_PANEL_WIDTH if has_picture else theme.PANEL_WIDTH
-        self._width = min(brush.px(width), room[0])
+        has_picture = menu.picture == "controls" or any(item.picture for item in menu.items)
+        self._width = min(brush.px(theme.WIDE_PANEL_WIDTH if has_picture else width), room[0])
         inside = self._width - 2 * self._pad
         self._picture_width = round(0.42 * inside) if has_picture else 0
         self._left = self._pad + self._picture_width + (self._pad if has_picture else 0)
@@ -75,10 +88,12 @@ class _Layout:
             default=0,
         )
         above, below = self._heights()
-        self.height = above + self._rows_height(len(menu.items)) + below
+        least = self._least_height() if any(item.picture for item in menu.items) else 0
+        self.height = max(above + self._rows_height(len(menu.items)) + below, least)
         fitting = max(1, (room[1] - above - below) // (self._row + self._gap))
         self._shown = self._rows_in_sight(min(len(menu.items), fitting))
-        self._height = min(self.height, above + self._rows_height(len(self._shown)) + below)
+        shown = above + self._rows_height(len(self._shown)) + below
+        self._height = min(self.height, max(shown, least))
 
     @property
     def _row(self) -> int:
@@ -104,14 +119,24 @@ class _Layout:
             below += self._help * brush.line_height(theme.SMALL) + brush.px(theme.GAP)
         return above, below
 
+    def _least_height(self) -> int:
+        """Return how high it is for the picture's sake alone."""
+        title = len(self._title) * self._brush.line_height(theme.TITLE)
+        return (
+            2 * self._pad
+            + title
+            + self._brush.px(theme.PAD)
+            + round(_PICTURE_HEIGHT * self._picture_width)
+        )
+
     def _rows_in_sight(self, count: int) -> range:
         names = [item.name for item in self._menu.items]
         focus = names.index(self._menu.focus) if self._menu.focus in names else 0
         first = min(max(0, focus - count // 2), len(names) - count)
         return range(first, first + count)
 
-    def paint(self, hovered: str) -> MenuPicture:
-        """Paint it; the item `hovered` is under the mouse."""
+    def paint(self, hovered: str, thumbnail: Thumbnail | None) -> MenuPicture:
+        """Paint it."""
         brush = self._brush
         canvas = Canvas(self._width, self._height)
         whole = Box(0, 0, self._width, self._height)
@@ -125,7 +150,11 @@ class _Layout:
         top += brush.px(theme.PAD)
         if self._picture_width:
             place = Box(self._pad, top, self._picture_width, self._height - top - self._pad)
-            draw_gamepad(canvas, place, brush)
+            if self._menu.picture == "controls":
+                draw_gamepad(canvas, place, brush)
+            elif thumbnail is not None:
+                pixels = thumbnail.fitted(place.width, place.height)
+                canvas.picture(place.left, place.top, pixels)
         top = self._paint_text(canvas, top)
         rows = self._paint_rows(canvas, top, hovered)
         self._paint_help(canvas)

@@ -1,4 +1,4 @@
-"""The experiment menu: who trains, in which mode, and which task."""
+"""The experiment menu: who trains, in which mode, on which head, and which task."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from rastrainer.protocol import CommandName, Mode
 from rastrainer_simulator.controls.source import SourceKind
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.keyboard import KeyboardPage
+from rastrainer_simulator.flow.pages.scenario import ScenarioPage
 from rastrainer_simulator.flow.screen import Item, ItemKind, Menu
 from rastrainer_simulator.flow.session import Session
 
@@ -34,17 +35,20 @@ class ExperimentPage(Page):
             help=self.say("experiment.trainee help"),
         )
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
+        scenario = self.button("scenario", value=session.scenario.title)
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
         return Menu(
             self.name,
             self.say("experiment.title"),
-            items=(trainee, mode, *tasks, self.button("back")),
+            items=(trainee, mode, scenario, *tasks, self.button("back")),
         )
 
     def accept(self, item: str) -> None:
         """Begin a task, or type."""
         if item == "back":
             self.back()
+        elif item == "scenario":
+            self.session.pages.open(ScenarioPage(self.session))
         elif item == "trainee":
             if self.session.is_typing_possible(_TYPES):
                 self.session.pages.move(1)

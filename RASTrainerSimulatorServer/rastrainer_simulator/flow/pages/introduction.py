@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rastrainer_simulator.controls.control_name import ControlName
+from rastrainer_simulator.controls.inputs import Device
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.bindings import BindingsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
@@ -13,7 +14,15 @@ from rastrainer_simulator.flow.session import Session
 SHEETS = 3
 
 _SHOWN = (
-    ("move_horizontally", (ControlName.MOVE_FORWARD, ControlName.MOVE_LEFT)),
+    (
+        "move_horizontally",
+        (
+            ControlName.MOVE_FORWARD,
+            ControlName.MOVE_LEFT,
+            ControlName.MOVE_BACK,
+            ControlName.MOVE_RIGHT,
+        ),
+    ),
     ("move_vertically", (ControlName.MOVE_UP, ControlName.MOVE_DOWN)),
     ("fine", (ControlName.FINE,)),
     ("touch", (ControlName.TOUCH,)),
@@ -75,8 +84,10 @@ class ControlsPage(Page):
     def menu(self) -> Menu:
         """Return the list of the controls."""
         session = self.session
+        # Two ways of a stick tell which one it is; a key has only one.
+        most = len(ControlName) if session.device is Device.KEYBOARD else 2
         facts = tuple(
-            Fact(self.say(f"controls.{key}"), " / ".join(map(session.label, controls)))
+            Fact(self.say(f"controls.{key}"), " / ".join(map(session.label, controls[:most])))
             for key, controls in _SHOWN
         )
         items = ("next",) if self._leads_on else ()

@@ -1,0 +1,76 @@
+"""After a crash the trainee is told what is kept, and decides how to go on."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.flow.desk import Desk
+from rastrainer_simulator.flow.preferences import Preferences
+from rastrainer_simulator.record.interrupted_trial import find_interrupted
+from Testing.simulator.flow.conftest import put_back
+from Testing.simulator.flow.trainee import Keys, Trainee
+
+SENTENCES = {
+    "en": "P07, this trial was interrupted; 0 of 15 points are kept. Go on with point 1 when you "
+    "are ready, or abort it.",
+    "de": "P07, dieser Versuch wurde unterbrochen; 0 von 15 Punkten sind gesichert. Mach mit Punkt "
+    "1 weiter, wenn du bereit bist, oder brich ihn ab.",
+}
+
+
+@pytest.fixture
+def records(shared, tmp_path):
+    """A folder with the trial of a simulator that has ended in the middle."""
+    put_back(shared)
+    folder = tmp_path / "records"
+    with ControlLoop(shared, folder, speed=None) as loop:
+        arguments = check_arguments("StartTask", {"task": "task-2", "trainee": "P07"})
+        assert loop.submit(CommandName.START_TASK, arguments).result(30.0).ok
+    return folder
+
+
+@pytest.fixture(params=sorted(SENTENCES))
+def language(request):
+    return request.param
+
+
+@pytest.fixture
+def back(shared, records, outside, language):
+    """A trainee at the restarted simulator."""
+    reading, interrupted = find_interrupted(records)
+    shared.take_up(interrupted)
+    with ControlLoop(shared, records, speed=None, interrupted=reading) as loop:
+        preferences = Preferences(language=language)
+        desk = Desk(loop, outside.surroundings, DEFAULT_BINDINGS, preferences)
+        trainee = Trainee(loop, desk, Keys)
+        yield trainee
+        trainee.close()
+        desk.close()
+
+
+def journal(records):
+    (path,) = records.glob("*.journal")
+    return read_journal(path)
+
+
+def test_the_menu_tells_what_is_kept_and_going_on_leads_to_the_next_point(back, records, language):
+    back.until_menu("trial")
+    assert SENTENCES[language] in [warning.text for warning in back.desk.screen.warnings]
+    back.choose("resume")
+    back.until_menu(None)
+    assert back.state.training.phase is Phase.RUNNING
+    assert "1" in back.desk.screen.instruction.text
+    assert journal(records).of_kind("continued")
+
+
+def test_the_interrupted_trial_can_be_aborted_from_the_menu(back, records):
+    back.until_menu("trial")
+    back.choose("abort")
+    back.until_menu("abort")
+    back.choose("abort")
+    back.until_menu("experiment")
+    assert journal(records).integrity is Integrity.INTACT

@@ -1,0 +1,74 @@
+"""The menu in which a trainee chooses a head, with its pictures."""
+
+from pathlib import Path
+
+import pytest
+
+from rastrainer.scenario_library import ListedScenario
+from rastrainer_simulator.state import Answer
+
+
+@pytest.fixture
+def heads(outside):
+    folder = Path("nowhere")
+    outside.scenarios = [
+        ListedScenario("colin27", "Colin27 head", folder, folder / "preview.png", ""),
+        ListedScenario("mine", "My head", folder, None, ""),
+        ListedScenario("broken", "broken", folder, None, "scenario.json is empty."),
+    ]
+    return outside
+
+
+@pytest.fixture
+def at_heads(heads, trainee):  # noqa: ARG001
+    for menu, item in (("start", "train"), ("introduction", "skip"), ("controls", "next")):
+        trainee.until_menu(menu)
+        trainee.choose(item)
+    trainee.until_menu("experiment")
+    trainee.desk.on_text(1, "trainee", "P07")
+    trainee.step()
+    assert trainee.item("scenario").value == "Colin27 head"
+    trainee.choose("scenario")
+    trainee.until_menu("scenario")
+    return trainee
+
+
+def test_heads_are_listed_with_pictures_and_those_that_cannot_be_used_say_why(at_heads):
+    items = {item.name: item for item in at_heads.menu.items}
+    assert list(items) == ["head colin27", "head mine", "head broken", "back"]
+    assert at_heads.menu.focus == "head colin27"
+    assert items["head colin27"].picture == "/scenarios/colin27.png"
+    assert items["head colin27"].value == "in use"
+    assert items["head mine"].picture == ""
+    assert not items["head broken"].is_enabled
+    assert items["head broken"].help == "scenario.json is empty."
+    at_heads.tap("back")
+    at_heads.until_menu("experiment")
+
+
+def test_a_chosen_head_is_loaded_and_no_task_begins_meanwhile(at_heads, heads):
+    at_heads.choose("head mine")
+    at_heads.until(lambda: at_heads.item("head mine").value == "is being loaded", "the loading")
+    assert [name for name, _ in heads.loads] == ["mine"]
+    assert not at_heads.item("head colin27").is_enabled
+    at_heads.tap("back")
+    at_heads.until_menu("experiment")
+    assert not at_heads.item("trial-run").is_enabled
+    heads.loads[0][1].set_result(Answer(0, True))
+    at_heads.until(lambda: at_heads.item("trial-run").is_enabled, "the task may begin")
+
+
+def test_a_head_that_is_refused_leaves_everything_and_says_why(at_heads, heads):
+    at_heads.choose("head mine")
+    at_heads.step()
+    heads.loads[0][1].set_result(Answer(0, False, "A trial is open."))
+    at_heads.until(lambda: at_heads.desk.screen.warnings, "the reason")
+    assert [warning.text for warning in at_heads.desk.screen.warnings] == ["A trial is open."]
+    assert at_heads.menu.name == "scenario"
+
+
+def test_the_menu_goes_back_by_itself_when_the_head_is_there(at_heads, heads):
+    at_heads.choose("head colin27")
+    at_heads.step()
+    heads.loads[0][1].set_result(Answer(0, True))
+    at_heads.until_menu("experiment")
