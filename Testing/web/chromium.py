@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import io
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import Browser, Page, Playwright
+from playwright.sync_api import Browser, Page, Playwright, Response
+
+from tools.build_page import install_packages
 
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
 IWER = WEB / "node_modules" / "iwer" / "build" / "iwer.min.js"
 # Mesa draws several times faster than Chromium's own software renderer.
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"]
 PATIENCE_MS = 60_000
+POLL_MS = 50
 SMALL = {"width": 400, "height": 220}
 EYES_M = (0.1, 1.62, 0.2)
 
@@ -50,6 +54,13 @@ def launch(playwright: Playwright) -> Browser:
     return playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
 
 
+def emulator() -> str:
+    """Return the script of the emulated headset, which npm installs beside what the page needs."""
+    if not IWER.exists():
+        install_packages()
+    return IWER.read_text(encoding="utf-8")
+
+
 def open_page(
     browser: Browser,
     url: str,
@@ -58,19 +69,28 @@ def open_page(
     has_pad: bool = False,
     size: dict[str, int] = SMALL,
 ) -> Page:
-    """Open the page, pair it by the code in its address, and wait until it shows the scene."""
+    """Open the page, pair it by the code in its address, and wait until it shows the scene.
+
+    Its `problems` are what went wrong in it, and `loaded` has the bytes of each address.
+    """
     page = browser.new_context(viewport=size, ignore_https_errors=True).new_page()
     page.set_default_timeout(PATIENCE_MS)
     page.add_init_script(_FRAMES)
     if headset:
-        page.add_init_script(IWER.read_text(encoding="utf-8") + _EMULATE % (headset, *EYES_M))
+        page.add_init_script(emulator() + _EMULATE % (headset, *EYES_M))
     if has_pad:
         page.add_init_script(_PADS)
     page.problems = []
     page.on("pageerror", lambda error: page.problems.append(str(error)))
+    page.loaded = {}
+    page.on("response", lambda answer: page.loaded.update({answer.url: _size(answer)}))
     page.goto(f"{url}/#code={code}")
     page.wait_for_selector("body[data-scene][data-menu]")
     return page
+
+
+def _size(answer: Response) -> int:
+    return int(answer.headers.get("content-length", 0))
 
 
 def enter_headset(page: Page) -> None:
@@ -78,6 +98,20 @@ def enter_headset(page: Page) -> None:
     page.click("#headset:enabled")
     page.wait_for_selector("body[data-headset]")
     page.evaluate("frames_(3)")
+
+
+def leave_headset(page: Page) -> None:
+    """Leave immersive VR, as the headset's own button does."""
+    page.evaluate("page.headset.leave()")
+    page.wait_for_selector("body:not([data-headset])")
+
+
+def wait_for(page: Page, expression: str) -> None:
+    """Wait until an expression is true; Playwright's own waiting is against the page's rules."""
+    give_up = time.monotonic() + PATIENCE_MS / 1000.0
+    while not page.evaluate(expression):
+        assert time.monotonic() < give_up, f"{expression} never came true"
+        page.wait_for_timeout(POLL_MS)
 
 
 def pixels(page: Page) -> np.ndarray:

@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from playwright.sync_api import Page
 
-KEYS = {
-    "accept": "Enter",
-    "back": "Escape",
-    "touch": "Space",
-    "undo": "Backspace",
-    "camera": "KeyC",
-    "menu": "KeyM",
-    "up": "ArrowUp",
-    "down": "ArrowDown",
-}
+from Testing.end_to_end.hands import KeyHands
+
 BUTTONS = {"accept": 0, "touch": 0, "back": 1, "undo": 1, "camera": 3, "menu": 9}
 BUTTONS |= {"up": 12, "down": 13, "left": 14, "right": 15}
+FINE_BUTTON = 7
 CONTROLLER_BUTTONS = {
     "accept": ("right", "a-button"),
     "touch": ("right", "a-button"),
@@ -26,15 +19,59 @@ CONTROLLER_BUTTONS = {
 }
 STEPS = {"up": (0, -1), "down": (0, 1), "left": (-1, 0), "right": (1, 0)}
 
+_POINT = """async (name) => {
+  const { boards, placement } = page.headset;
+  const has = (board) => board.regions.some((region) => region.name === name);
+  const board = [boards.menu, boards.actions].find(has);
+  const { x, y, width, height } = board.regions.find((region) => region.name === name);
+  const size = board.mesh.geometry.parameters;
+  const target = board.mesh.position.clone().set(
+    ((x + width / 2) / board.width - 0.5) * size.width,
+    (0.5 - (y + height / 2) / board.height) * size.height, 0);
+  placement.rig.worldToLocal(board.mesh.localToWorld(target));
+  const hand = board.mesh.position.clone().copy(device.position);
+  hand.x += 0.2;
+  hand.y -= 0.4;
+  const aim = new placement.rig.constructor();
+  aim.position.copy(target);
+  aim.lookAt(hand);
+  const right = device.controllers.right;
+  right.position.set(hand.x, hand.y, hand.z);
+  right.quaternion.set(...aim.quaternion.toArray());
+  await frames_(2);
+  right.updateButtonValue("trigger", 1);
+  await frames_(2);
+  right.updateButtonValue("trigger", 0);
+  await frames_(2);
+}"""
+_MOVE = """async (by) => {
+  const right = device.controllers.right;
+  const { x, y, z } = right.position;
+  const ray = page.headset.hands.hands.find((hand) => hand.source?.handedness === "right").ray;
+  const before = ray.getWorldPosition(ray.position.clone());
+  right.position.set(x + by[0], y + by[1], z + by[2]);
+  await frames_(2);
+  const moved = ray.getWorldPosition(ray.position.clone()).sub(before);
+  return [moved.x, -moved.z, moved.y];
+}"""
 
-class PageKeys:
-    """The keyboard."""
+
+class PageKeys(KeyHands):
+    """The keyboard, over the page."""
 
     def __init__(self, page: Page):
-        self._page = page
+        super().__init__(_Keyboard(page))
 
-    def tap(self, control: str) -> None:
-        self._page.keyboard.press(KEYS[control])
+
+class _Keyboard:
+    def __init__(self, page: Page):
+        self._keyboard = page.keyboard
+
+    def tap(self, code: str) -> None:
+        self._keyboard.press(code)
+
+    def hold(self, code: str, is_down: bool) -> None:
+        (self._keyboard.down if is_down else self._keyboard.up)(code)
 
 
 class BrowserPad:
@@ -49,8 +86,11 @@ class BrowserPad:
             "async (i) => { press(i, 1); await frames_(2); press(i, 0); await frames_(1); }", index
         )
 
-    def push(self, right: float, forward: float, up: float) -> None:
-        self._page.evaluate("(axes) => { pad.axes = axes; }", [right, -forward, 0, -up])
+    def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
+        self._page.evaluate(
+            "([axes, index, value]) => { pad.axes = axes; press(index, value); }",
+            [[right, -forward, 0, -up], FINE_BUTTON, 1 if fine else 0],
+        )
 
 
 class Controllers:
@@ -75,10 +115,27 @@ class Controllers:
             list(CONTROLLER_BUTTONS[control]),
         )
 
-    def push(self, right: float, forward: float, up: float) -> None:
+    def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
         self._page.evaluate(
-            """([x, y, z]) => {
+            """([x, y, z, fine]) => {
               device.controllers.left.updateAxes("thumbstick", x, y);
-              device.controllers.right.updateAxes("thumbstick", 0, z); }""",
-            [right, -forward, -up],
+              device.controllers.right.updateAxes("thumbstick", 0, z);
+              device.controllers.left.updateButtonValue("trigger", fine); }""",
+            [right, -forward, -up, 1 if fine else 0],
         )
+
+    def point_at(self, name: str) -> None:
+        """Point at a part of a board by that name with the right hand, and pull the trigger."""
+        self._page.evaluate(_POINT, name)
+
+    def grab(self, is_held: bool) -> None:
+        """Hold the right grip, or let it go."""
+        self._page.evaluate(
+            """async (value) => {
+              device.controllers.right.updateButtonValue("squeeze", value); await frames_(2); }""",
+            1 if is_held else 0,
+        )
+
+    def move(self, right: float, up: float, back: float) -> list[float]:
+        """Move the right hand by so much, m, in the headset's space; return it in World."""
+        return self._page.evaluate(_MOVE, [right, up, back])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import secrets
 import subprocess
 import sys
@@ -10,30 +12,36 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
+from playwright.sync_api import Page
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ViewClient
 
 SLICER = (sys.executable, "-m", "rastrainer.slicer.headless")
+SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
+TRAINEE = "P7"
 PATIENCE_S = 60
 MM = 1000.0
+LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}
+"""Which item of a menu leads toward the start."""
 
 
 class Place:
     """One simulator and who is around it; ended by the `with` statement.
 
     Attributes:
-        simulator: the process.
+        simulator: the process; its `url` is where the page is, its `code` pairs a browser.
         view: one that watches.
         records: folder of the journals.
     """
 
-    def __init__(self, folder: Path, *arguments: str):
+    def __init__(self, folder: Path, *arguments: str, has_gamepad: bool = False):
         self._stack = ExitStack()
         self._folder = folder
         self.records = folder / "records"
@@ -41,8 +49,17 @@ class Place:
         config.mkdir()
         (config / "preferences.json").write_text('{"order": "any"}', encoding="utf-8")
         key = secrets.token_urlsafe(32)
-        options = ("--view-port", "0", "--seed", "7", *arguments)
-        self.simulator = self._stack.enter_context(ViewedSimulator(self.records, *options, key=key))
+        options = ["--view-port", "0", "--seed", "7", *arguments]
+        if not has_gamepad:
+            options.append("--no-gamepad")
+        process = SimulatorWithGamepad if has_gamepad else SimulatorProcess
+        os.environ["RASTRAINER_VIEW_KEY"] = key
+        try:
+            self.simulator = self._stack.enter_context(process(self.records, *options))
+        finally:
+            del os.environ["RASTRAINER_VIEW_KEY"]
+        told = SERVES.search(self.simulator.next_line())
+        self.simulator.url, self.simulator.code = told.groups()
         thread = LoopThread()
         self._stack.callback(thread.stop)
         watcher = self._stack.enter_context(ViewClient(thread, self.simulator.url, key))
@@ -55,10 +72,15 @@ class Place:
         self._stack.close()
 
     def trainee(self, hands: object) -> Trainee:
+        """Return one who does everything by hand."""
+        return Trainee(self.view, hands)
+
+    def carried_trainee(self, hands: object) -> CarriedTrainee:
+        """Return one who does the menus by hand and has the tip carried, to be quick."""
         client = self._stack.enter_context(Client(port=self.simulator.port))
         hello = {"protocolVersion": PROTOCOL_VERSION, "client": "carrier"}
         assert client.send_command("Hello", hello, timeout=20).ok
-        return Trainee(self.view, hands, client)
+        return CarriedTrainee(self.view, hands, client)
 
     def start_slicer(self) -> subprocess.Popen:
         """Start Slicer's side, which scores one trial and ends."""
@@ -74,14 +96,72 @@ class Place:
         self._stack.callback(process.kill)
         return process
 
-    def entries(self) -> list[dict]:
-        """Return the lines of the latest trial's journal."""
+    def entries(self, kind: str) -> list[dict]:
+        """Return the entries of a kind in the latest trial's journal."""
         journal = max(self.records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
-        return [json.loads(line) for line in journal.read_text(encoding="utf-8").splitlines()]
+        lines = journal.read_text(encoding="utf-8").splitlines()
+        return [entry for entry in map(json.loads, lines) if entry["kind"] == kind]
 
 
 class Trainee(StreamTrainee):
-    """Goes through the menus by the hands, and has the tip carried by commands to be quick."""
+    """Goes through the menus, and touches the points in their order."""
+
+    def go_home(self) -> None:
+        """Go to the start menu from wherever the last one has stopped."""
+        while not self.menu or self.menu.name != "start":
+            if not self.menu:
+                self.press("menu", lambda: self.menu is not None, "the menu")
+            elif self.menu.name in LEAVES:
+                self.choose(LEAVES[self.menu.name])
+            else:
+                before = self.menu
+                self.press("back", lambda b=before: self.menu != b, f"before {before.name}")
+
+    def begin(self, task: str, page: Page | None = None) -> None:
+        """Go from the start menu into a task.
+
+        The ID is typed on the page, or without one on the keyboard that the simulator shows.
+        """
+        self.go_home()
+        self.choose("train")
+        while self.menu.name != "experiment":
+            self.choose("skip" if self.menu.name == "introduction" else "next")
+        if not self.value("trainee"):
+            self._type_id(page)
+        self.begin_task(task)
+        self.until(lambda: self.view.state["phase"] == "running", "the trial")
+
+    def _type_id(self, page: Page | None) -> None:
+        if page is not None:
+            self.focus("trainee")
+            page.keyboard.type(TRAINEE)
+            self.until(lambda: self.value("trainee") == TRAINEE, "the ID")
+            return
+        self.choose("trainee")
+        self.press("accept", lambda: self.menu.facts[0].value.startswith("A"), "the letter A")
+        self.choose("done")
+
+    def resume(self) -> None:
+        """Go on with a trial that was paused."""
+        self.until_menu("trial")
+        self.choose("resume")
+        self.until(lambda: self.view.state["phase"] == "running", "the trial again")
+
+    def touch_all(self, most: int = 15) -> None:
+        """Touch the points that are left, up to so many in all."""
+        while self.touched < most:
+            label = self.view.state["next"]
+            self.approach(label, 0.02)
+            self.press_on(label)
+
+    def register(self) -> None:
+        """Have the touched points registered."""
+        self.press("touch", lambda: self.menu is not None, "the choice")
+        self.choose("register")
+
+
+class CarriedTrainee(Trainee):
+    """Is quick: the tip goes by command where it shall."""
 
     def __init__(self, view: WatchingView, hands: object, client: Client):
         super().__init__(view, hands)
@@ -104,28 +184,8 @@ class Trainee(StreamTrainee):
         kept = self.touched
         self.press("touch", lambda: self.touched > kept, f"touch {label}")
 
-    def begin(self, task: str, page) -> None:
-        """Go from the start menu into a task; the ID is typed on the keyboard."""
-        if not self.menu or self.menu.name == "start":
-            self.choose("train")
-        while self.menu.name != "experiment":
-            self.choose("skip" if self.menu.name == "introduction" else "next")
-        self.focus("trainee")
-        if not self.value("trainee"):
-            page.keyboard.type("P7")
-        self.until(lambda: self.value("trainee") == "P7", "the ID")
-        self.choose(task)
-        self.until(lambda: self.view.state["phase"] == "running", "the trial")
-
-    def touch_all(self, most: int = 15) -> None:
-        """Touch the points that are left, up to so many in all."""
-        while self.touched < most:
-            label = self.view.state["next"]
-            self.approach(label, 0.004)
-            self.press_on(label)
-
     def have_touched(self, most: int) -> None:
-        """The same by commands, to be quick."""
+        """Have the points touched by commands, up to so many in all."""
         while (kept := self.touched) < most:
             label = self.view.state["next"]
             self.approach(label, 0.004)

@@ -35,7 +35,7 @@ def main() -> None:
         with Place(Path(folder), "--speed", "4") as place:
             url, code = place.simulator.url, place.simulator.code
             page = open_page(browser, url, code, size=DESKTOP)
-            trainee = place.trainee(PageKeys(page))
+            trainee = place.carried_trainee(PageKeys(page))
             trainee.begin("task-1", page)
             page.wait_for_selector("body[data-scene=task-1]")
             trainee.touch_all(4)

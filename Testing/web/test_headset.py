@@ -1,17 +1,25 @@
-"""The page in an emulated headset: both eyes, the whole flow by controllers, leaving and back."""
+"""The page in an emulated headset: both eyes, where one stands, hands, pulses, leaving and back.
+
+Whole trials by controllers and by gamepad are in test_whole_flow.py.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from Testing.web.chromium import enter_headset, open_page, pixels
+from Testing.web.chromium import EYES_M, enter_headset, leave_headset, open_page, pixels, wait_for
 from Testing.web.hands import Controllers
-from Testing.web.place import Place, scored_trial
+from Testing.web.place import Place
 
+# A headset is drawn twice, by a machine without a graphics processor: minutes.
 pytestmark = pytest.mark.soak
 
 IPD_M = 0.063
+STEP_M = 0.03
+STEPS = 5
+EYES_HOME = (0.48, 0.225 + 0.45, 0.62)
+"""Where the eyes belong: behind and above the middle of the head, three's frame, m."""
 EYES = """(() => {
   const eyes = page.stage.renderer.xr.getCamera().cameras;
   return eyes.map((eye) => eye.matrixWorld.toArray());
@@ -28,47 +36,61 @@ LISTEN_TO_PULSES = """(() => {
 
 
 @pytest.fixture(scope="module")
-def session(tmp_path_factory, browser) -> dict:
-    """Train one task in a Quest 2, and leave and come back in its middle."""
-    told: dict = {}
+def place(tmp_path_factory):
     with Place(tmp_path_factory.mktemp("headset"), "--speed", "4") as place:
-        page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest2")
-        trainee = place.trainee(Controllers(page))
+        yield place
+
+
+@pytest.fixture(scope="module")
+def page(place, browser):
+    page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest2")
+    yield page
+    assert page.problems == []
+
+
+@pytest.fixture
+def worn(page):
+    """The page in the headset, whose wearer looks straight ahead."""
+    if not page.query_selector("body[data-headset]"):
         enter_headset(page)
-        page.evaluate(LISTEN_TO_PULSES)
-        told["eyes"] = eyes(page)
-        told["picture"] = pixels(page)
-        page.evaluate("device.quaternion.set(0, Math.sin(0.2), 0, Math.cos(0.2)); frames_(3)")
-        told["eyes turned"] = eyes(page)
-        told["picture turned"] = pixels(page)
-        page.evaluate("device.quaternion.set(0, 0, 0, 1)")
-        trainee.begin("task-1", page)
-        trainee.touch_all(2)
-        told["pulses"] = page.evaluate("pulses")
-        told["touched before leaving"] = trainee.touched
-        page.evaluate("page.headset.leave()")
-        trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
-        page.wait_for_selector("body:not([data-headset])")
-        enter_headset(page)
-        trainee.choose("resume")
-        trainee.until(lambda: place.view.state["phase"] == "running", "the trial again")
-        told["touched after coming back"] = trainee.touched
-        trainee.touch_all(3)
-        trainee.have_touched(14)
-        trainee.touch_all()
-        slicer = place.start_slicer()
-        trainee.press("touch", lambda: trainee.menu is not None, "the choice")
-        trainee.choose("register")
-        told["trial"] = scored_trial(slicer)
-        trainee.until_menu("result")
-        told["menu"] = trainee.menu
-        told["entries"] = place.entries()
-        told["problems"] = page.problems
-    return told
+    stand(page)
+    return page
+
+
+@pytest.fixture
+def trainee(place, worn):
+    """Somebody in the headset at a trial that runs, the tip over the first point."""
+    trainee = place.carried_trainee(Controllers(worn))
+    if trainee.menu is not None and trainee.menu.name == "trial":
+        trainee.resume()
+    if place.view.state["phase"] != "running":
+        trainee.begin("task-1", worn)
+    trainee.approach("1", 0.004)
+    return trainee
+
+
+def stand(page, x=EYES_M[0], y=EYES_M[1], z=EYES_M[2], yaw=0.0):
+    """Have the wearer stand somewhere in their own room, and look there."""
+    page.evaluate(
+        """async ([x, y, z, half]) => {
+          device.position.set(x, y, z);
+          device.quaternion.set(0, Math.sin(half), 0, Math.cos(half));
+          await frames_(3); }""",
+        [x, y, z, yaw / 2],
+    )
 
 
 def eyes(page) -> list[np.ndarray]:
     return [np.array(values).reshape(4, 4).T for values in page.evaluate(EYES)]
+
+
+def eye_place(page) -> np.ndarray:
+    """Return the middle between both eyes, in three's frame, m."""
+    return np.mean([matrix[:3, 3] for matrix in eyes(page)], axis=0)
+
+
+def forward(page) -> np.ndarray:
+    return -eyes(page)[0][:3, 2]
 
 
 def halves(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -76,17 +98,17 @@ def halves(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return picture[:, :middle], picture[:, middle : 2 * middle]
 
 
-def test_two_eyes_stand_a_pupil_distance_apart_and_see_the_room(session):
-    left, right = session["eyes"]
+def test_two_eyes_stand_a_pupil_distance_apart_and_see_the_room(worn):
+    left, right = eyes(worn)
     between = right[:3, 3] - left[:3, 3]
     np.testing.assert_allclose(np.linalg.norm(between), IPD_M, atol=0.003)
     assert between @ left[:3, 0] > 0.99 * np.linalg.norm(between)
-    for half in halves(session["picture"]):
+    for half in halves(pixels(worn)):
         assert half.std() > 20.0
 
 
-def test_what_one_eye_sees_lies_farther_right_than_what_the_other_sees(session):
-    left, right = (half.mean(axis=2)[100:] for half in halves(session["picture"]))
+def test_what_one_eye_sees_lies_farther_right_than_what_the_other_sees(worn):
+    left, right = (half.mean(axis=2)[100:] for half in halves(pixels(worn)))
     width = left.shape[1]
     costs = {
         shift: np.abs(left[:, 24 + shift : width - 24 + shift] - right[:, 24 : width - 24]).mean()
@@ -95,47 +117,137 @@ def test_what_one_eye_sees_lies_farther_right_than_what_the_other_sees(session):
     assert min(costs, key=costs.get) > 0
 
 
-def test_the_view_turns_with_the_head(session):
-    forward, turned = (-session[name][0][:3, 2] for name in ("eyes", "eyes turned"))
-    np.testing.assert_allclose(np.degrees(np.arccos(forward @ turned)), np.degrees(0.4), atol=1.0)
-    assert np.abs(session["picture"] - session["picture turned"]).mean() > 5.0
+def test_the_view_turns_with_the_head(worn):
+    straight, seen = forward(worn), pixels(worn)
+    stand(worn, yaw=0.4)
+    np.testing.assert_allclose(np.arccos(straight @ forward(worn)), 0.4, atol=0.02)
+    assert np.abs(pixels(worn) - seen).mean() > 5.0
 
 
-def test_the_trainee_stands_at_the_table_whatever_their_height(session):
-    eye = np.mean([matrix[:3, 3] for matrix in session["eyes"]], axis=0)
-    np.testing.assert_allclose(eye, (0.48, 0.225 + 0.45, 0.62), atol=0.01)
+@pytest.mark.parametrize("height", [1.1, 1.9])
+def test_who_sits_and_who_stands_recenter_to_the_same_place_at_the_table(place, worn, height):
+    trainee = place.carried_trainee(Controllers(worn))
+    trainee.go_home()
+    stand(worn, 0.7, height, -0.4, yaw=0.6)
+    assert np.linalg.norm(eye_place(worn) - EYES_HOME) > 0.3
+    Controllers(worn).point_at("local recenter")
+    np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
+    np.testing.assert_allclose(forward(worn), (0.0, 0.0, -1.0), atol=0.02)
 
 
-def test_proximity_pulses_both_controllers(session):
-    assert {hand for hand, _value, _ms in session["pulses"]} == {"left", "right"}
-    assert all(0 < value <= 1 and ms > 0 for _hand, value, ms in session["pulses"])
+def test_the_headsets_own_button_recenters_too(worn):
+    stand(worn, 0.3, 1.4, 0.9, yaw=-1.0)
+    worn.evaluate("device.recenter(); frames_(3)")
+    np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
 
 
-def test_leaving_the_headset_pauses_the_trial_and_loses_nothing(session):
-    assert session["touched before leaving"] == session["touched after coming back"] == 2
+def test_the_table_is_raised_and_lowered_and_stays_so(place, worn):
+    place.carried_trainee(Controllers(worn)).go_home()
+    hands = Controllers(worn)
+    hands.point_at("local recenter")
+    hands.point_at("local higher")
+    hands.point_at("local higher")
+    # A table that is higher is nearer to the eyes.
+    raised = np.subtract(EYES_HOME, (0.0, 2 * STEP_M, 0.0))
+    np.testing.assert_allclose(eye_place(worn), raised, atol=0.01)
+    leave_headset(worn)
+    enter_headset(worn)
+    np.testing.assert_allclose(eye_place(worn), raised, atol=0.01)
+    hands.point_at("local lower")
+    hands.point_at("local lower")
+    np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
 
 
-def test_a_trial_by_controllers_is_registered_and_scored(session):
-    assert session["trial"]["mode"] == "hmd"
-    assert session["menu"].facts[0].label == "Score"
-    assert session["problems"] == []
+def test_the_tip_follows_the_hand_that_grabs_until_it_lets_go(place, trainee):
+    hands = trainee.hands
+    wanted = trainee.tip
+    hands.grab(True)
+    for _ in range(STEPS):
+        wanted = wanted + hands.move(0.006, 0.008, 0.004)
+        trainee.until(lambda w=wanted: np.linalg.norm(trainee.tip - w) < 0.006, "the tip there")
+    hands.grab(False)
+    hands.move(-0.03, -0.04, -0.02)
+    held = trainee.tip
+    for _ in range(30):
+        place.view.next_state()
+    assert np.linalg.norm(trainee.tip - held) < 0.002
 
 
-def test_the_record_tells_mode_headset_rate_and_frames(session):
-    kinds = [entry["kind"] for entry in session["entries"]]
-    record = session["entries"][kinds.index("registered")]["record"]
-    assert record["mode"] == "hmd"
-    display = record["display"]
-    assert (display["kind"], display["device"]) == ("headset", "Meta Quest 2")
-    assert display["refreshHz"] == 90
-    assert display["shownFrames"] > 0
-    assert display["droppedFrames"] >= 0
+def test_grabbing_can_be_switched_off(place, trainee):
+    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+    trainee.hands.point_at("local grab")
+    trainee.resume()
+    start = trainee.tip
+    trainee.hands.grab(True)
+    trainee.hands.move(0.0, 0.05, 0.0)
+    for _ in range(30):
+        place.view.next_state()
+    assert np.linalg.norm(trainee.tip - start) < 0.002
+    trainee.hands.grab(False)
+    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+    trainee.hands.point_at("local grab")
 
 
-def test_a_quest_3_is_told_by_its_name(tmp_path, browser):
-    with Place(tmp_path) as place:
-        page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest3")
-        enter_headset(page)
-        assert page.evaluate("page.headset.hello().device") == "Meta Quest 3"
-        assert page.evaluate("page.stage.renderer.xr.getFoveation()") in (1, None)
-        assert all(half.std() > 20.0 for half in halves(pixels(page)))
+def test_proximity_pulses_both_controllers(worn, trainee):
+    worn.evaluate(LISTEN_TO_PULSES)
+    trainee.steer_to(trainee.place_of("1"), 0.002)
+    wait_for(worn, "pulses.length >= 2")
+    pulses = worn.evaluate("pulses")
+    assert {hand for hand, _value, _ms in pulses} == {"left", "right"}
+    assert all(0 < value <= 1 and ms > 0 for _hand, value, ms in pulses)
+
+
+def test_who_holds_the_control_is_read_while_driving_and_in_menus(worn, trainee):
+    holder = "You drive: headset's controllers"
+    trainee.press("camera", lambda: trainee.view.state["camera"] == "far", "the far camera")
+    wait_for(worn, f"page.headset.boards.work.shown.includes(`{holder}`)")
+    trainee.press("camera", lambda: trainee.view.state["camera"] != "far", "the close camera")
+    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+    wait_for(worn, f"page.headset.boards.actions.shown.includes(`{holder}`)")
+
+
+def test_doffing_pauses_the_trial_and_loses_nothing(place, worn, trainee):
+    trainee.touch_all(1)
+    trainee.hands.push(0.0, 0.0, 0.8)
+    trainee.until(lambda: place.view.state["clearanceMm"] > 40, "the tip off the head")
+    worn.evaluate("device.updateVisibilityState('hidden')")
+    trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
+    held = trainee.tip
+    for _ in range(30):
+        place.view.next_state()
+    assert np.linalg.norm(trainee.tip - held) < 0.01
+    trainee.hands.push(0.0, 0.0, 0.0)
+    worn.evaluate("device.updateVisibilityState('visible')")
+    trainee.resume()
+    assert trainee.touched == 1
+    trainee.press("undo", lambda: trainee.touched == 0, "the undo")
+
+
+def test_leaving_the_headset_pauses_the_trial_and_loses_nothing(place, worn, trainee):
+    trainee.touch_all(1)
+    leave_headset(worn)
+    trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
+    enter_headset(worn)
+    trainee.resume()
+    assert trainee.touched == 1
+    trainee.press("undo", lambda: trainee.touched == 0, "the undo")
+
+
+def test_the_journal_tells_mode_headset_rate_and_frames(place, trainee):
+    (begun,) = place.entries("header")
+    assert begun["mode"] == "hmd"
+    trainee.until(lambda: place.entries("display"), "a report of the frames")
+    report = place.entries("display")[-1]
+    assert (report["view"], report["device"]) == ("headset", "Meta Quest 2")
+    assert report["refreshHz"] == 90
+    assert report["shown"] > 0
+    assert report["dropped"] >= 0
+
+
+def test_a_quest_3_is_told_by_its_name_and_drawn_with_most_foveation(place, browser):
+    page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest3")
+    enter_headset(page)
+    assert page.evaluate("page.headset.hello().device") == "Meta Quest 3"
+    assert page.evaluate("page.stage.renderer.xr.getFoveation()") in (1, None)
+    assert all(half.std() > 20.0 for half in halves(pixels(page)))
+    page.context.close()

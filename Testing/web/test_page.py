@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from urllib.parse import unquote
+
 import pytest
 
-from Testing.web.chromium import PATIENCE_MS, SMALL, open_page, pixels
+from Testing.web.chromium import open_page, pixels
 from Testing.web.hands import BrowserPad, PageKeys
 from Testing.web.place import Place, scored_trial
 
 LARGEST_PAGE = 1_000_000
 LARGEST_SCENE = 5_000_000
+ACCENT = "#1f74e8"
 
 
 @pytest.fixture(scope="module")
@@ -26,65 +29,60 @@ def page(place, browser):
 
 
 def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
-    trainee = place.trainee(PageKeys(page))
+    trainee = place.carried_trainee(PageKeys(page))
     trainee.begin("task-1", page)
     page.wait_for_selector("body[data-scene=task-1]")
     assert pixels(page).std() > 20.0
-    assert "keyboard" in page.inner_text("#control")
+    assert "You drive: keyboard" in page.inner_text("#control")
     trainee.touch_all(1)
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
-    trainee.touch_all(1)
     trainee.have_touched(15)
     slicer = place.start_slicer()
-    trainee.press("touch", lambda: trainee.menu is not None, "the choice")
-    trainee.choose("register")
+    trainee.register()
     assert scored_trial(slicer)["mode"] == "desktop"
     trainee.until_menu("result")
     assert trainee.menu.facts[0].label == "Score"
     page.wait_for_selector("#menu dl dd[data-tone]")
 
 
-def test_the_same_flow_goes_by_a_gamepad_of_the_browser(place, page):
+def test_a_gamepad_of_the_browser_begins_a_task_and_steers(place, page):
     trainee = place.trainee(BrowserPad(page))
-    trainee.until_menu("result")
-    trainee.choose("menu")
     trainee.begin("task-2", page)
     before = trainee.tip
     trainee.hands.push(1.0, 0.0, 0.0)
     trainee.until(lambda: trainee.tip[0] > before[0] + 0.01, "a step to the right")
     trainee.hands.push(0.0, 0.0, 0.0)
-    assert "gamepad" in page.inner_text("#control")
-    trainee.touch_all(1)
-    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
-    trainee.choose("abort")
-    trainee.until_menu("abort")
-    trainee.choose("abort")
-    trainee.until_menu("experiment")
+    assert "You drive: browser's gamepad" in page.inner_text("#control")
 
 
 def test_a_click_chooses_and_the_text_is_what_the_simulator_says(place, page):
     trainee = place.trainee(PageKeys(page))
-    trainee.until_menu("experiment")
-    page.click("#menu li[data-name=back]")
-    trainee.until_menu("start")
+    trainee.go_home()
     page.wait_for_selector("body[data-menu=start]")
+    page.click("#menu li[data-name=introduction]")
+    trainee.until_menu("introduction")
+    page.wait_for_selector("body[data-menu=introduction]")
     assert page.inner_text("#menu h1") == trainee.menu.title
 
 
-def test_the_page_weighs_less_than_a_megabyte_and_loads_nothing_from_elsewhere(place, browser):
-    sizes: dict[str, int] = {}
-    context = browser.new_context(viewport=SMALL)
-    page = context.new_page()
-    page.set_default_timeout(PATIENCE_MS)
+def test_the_introduction_shows_a_picture_of_what_is_held_with_its_inputs_colored(place, page):
+    colored = {}
+    for hands in (PageKeys, BrowserPad):
+        trainee = place.trainee(hands(page))
+        trainee.go_home()
+        trainee.choose("controls")
+        page.wait_for_selector("body[data-menu=controls]")
+        picture = page.wait_for_selector("#menu img")
+        assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") == 1000
+        drawing = unquote(picture.get_attribute("src"))
+        colored[hands] = drawing.count(f'fill="{ACCENT}"')
+    # W, A, S, D, R, F, Shift, Space, Backspace, C, P and M; two sticks, RT, Back and Start.
+    assert colored == {PageKeys: 12, BrowserPad: 5}
 
-    def keep(response):
-        sizes[response.url] = int(response.headers.get("content-length", 0))
 
-    page.on("response", keep)
-    page.goto(f"{place.simulator.url}/#code={place.simulator.code}")
-    page.wait_for_selector("body[data-scene]")
-    assert all(url.startswith(place.simulator.url) for url in sizes)
-    scenes = [size for url, size in sizes.items() if url.endswith(".glb")]
-    assert sum(sizes.values()) - sum(scenes) < LARGEST_PAGE
-    assert max(scenes) < LARGEST_SCENE
-    context.close()
+def test_the_page_weighs_less_than_a_megabyte_and_loads_nothing_from_elsewhere(place, page):
+    own = (place.simulator.url, "data:")
+    assert [url for url in page.loaded if not url.startswith(own)] == []
+    scenes = [size for url, size in page.loaded.items() if url.endswith(".glb")]
+    assert 0 < sum(page.loaded.values()) - sum(scenes) < LARGEST_PAGE
+    assert 0 < max(scenes) < LARGEST_SCENE

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import stat
 import threading
@@ -9,11 +10,18 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 
 import pytest
 
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.command import Command
+from rastrainer.igtl.message import Message, pack
 from Testing.web.chromium import PATIENCE_MS, SMALL, open_page
 from Testing.web.hands import PageKeys
 from Testing.web.place import Place
 
 NETWORK = re.compile(r"serves the local network on (https://\S+?:\d+)")
+TRY_TO_COMMAND = """([url, bytes]) =>
+  fetch(url, { method: "POST", mode: "no-cors", body: new Uint8Array(bytes) })
+    .then(() => "answered", () => "refused")
+"""
 TRY_TO_JOIN = """(url) => new Promise((done) => {
   const socket = new WebSocket(url + "/stream", "rastrainer.views.1");
   socket.onopen = () => done("joined");
@@ -52,10 +60,14 @@ def test_who_has_not_paired_sees_the_form_and_nothing_else(place, stranger, way)
     stranger.press("#code", "Enter")
     stranger.wait_for_selector("body[data-scene]")
     assert stranger.evaluate("window.isSecureContext")
+    # Only the views of this computer are told how others are paired.
+    told = stranger.inner_text("#status")
+    assert (place.simulator.code in told, place.network in told) == (way == "loopback",) * 2
 
 
-def test_a_page_of_another_origin_cannot_connect(place, browser):
-    own = open_page(browser, place.simulator.url, place.simulator.code)
+@pytest.fixture(scope="module")
+def foreign_url():
+    """Where a page of somebody else is served, on this computer, too."""
 
     class Foreign(BaseHTTPRequestHandler):
         def do_GET(self):
@@ -67,11 +79,36 @@ def test_a_page_of_another_origin_cannot_connect(place, browser):
 
     server = HTTPServer(("127.0.0.1", 0), Foreign)
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    foreign = own.context.new_page()
-    foreign.goto(f"http://127.0.0.1:{server.server_port}")
-    assert foreign.evaluate(TRY_TO_JOIN, place.simulator.url.replace("http", "ws", 1)) == "refused"
+    yield f"http://127.0.0.1:{server.server_port}"
     server.shutdown()
+
+
+def test_a_page_of_another_origin_cannot_connect(place, browser, foreign_url):
+    own = open_page(browser, place.simulator.url, place.simulator.code)
+    foreign = own.context.new_page()
+    foreign.goto(foreign_url)
+    assert foreign.evaluate(TRY_TO_JOIN, place.simulator.url.replace("http", "ws", 1)) == "refused"
     own.context.close()
+
+
+def test_a_page_cannot_send_commands_to_the_openigtlink_port(place, stranger, foreign_url):
+    arguments = {"task": "task-1", "trainee": "somebody-else"}
+    command = pack(Message("command", Command(1, "StartTask", json.dumps(arguments))))
+    stranger.goto(foreign_url)
+    port = place.simulator.port
+    answer = stranger.evaluate(TRY_TO_COMMAND, [f"http://127.0.0.1:{port}", list(command)])
+    assert answer == "refused"
+    with Client(port=port) as client:
+        state = client.wait_for("SimState", timeout=20)
+    assert "somebody-else" not in state.content.text
+
+
+def test_a_code_in_the_address_does_not_stay_there(place, stranger):
+    code = "000000" if place.simulator.code != "000000" else "111111"
+    stranger.goto(f"{place.simulator.url}/#code={code}")
+    stranger.wait_for_selector("#pairing:not([hidden])")
+    assert stranger.url == f"{place.simulator.url}/"
+    assert stranger.evaluate("[location.hash, history.length]") == ["", 2]
 
 
 def test_a_second_operator_cannot_take_the_control_unasked(place, browser):

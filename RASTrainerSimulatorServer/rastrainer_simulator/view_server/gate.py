@@ -11,6 +11,7 @@ from aiohttp.typedefs import Handler
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import decode_json_object, text
+from rastrainer_simulator.turnstile import Turnstile
 from rastrainer_simulator.view_server.origin import check_origin
 from rastrainer_simulator.view_server.pairing import DIGITS, TOO_MANY, WRONG, PairingCode
 from rastrainer_simulator.view_server.sessions import Sessions
@@ -27,9 +28,21 @@ class Gate:
     """Lets paired views pass, and everyone else to the page and to the pairing only."""
 
     def __init__(
-        self, sessions: Sessions, code: PairingCode, note: Callable[[web.Request], None]
+        self,
+        sessions: Sessions,
+        code: PairingCode,
+        note: Callable[[web.Request], None],
+        turnstile: Turnstile,
     ) -> None:
-        """Make a gate; `note` is told of every request that arrives."""
+        """Make a gate.
+
+        Args:
+            sessions: whose keys open it.
+            code: that a new session is given for.
+            note: is told of every request that arrives.
+            turnstile: every request waits for its turn at it.
+        """
+        self._turnstile = turnstile
         self._sessions = sessions
         self._code = code
         self._note = note
@@ -38,6 +51,7 @@ class Gate:
     async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         """Refuse what comes from elsewhere or without a session's key."""
         self._note(request)
+        await self._turnstile.passed()
         check_origin(request)
         if not _is_public(request) and not self._sessions.knows(_key(request)):
             raise web.HTTPUnauthorized(text=PAIR_FIRST)

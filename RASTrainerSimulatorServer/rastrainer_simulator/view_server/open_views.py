@@ -26,6 +26,7 @@ async def open_views(
     port: int | None,
     robot_meshes: Path | None,
     certificates: Path | None = None,
+    scenario_picture: Callable[[str], Path | None] = lambda _name: None,
 ) -> ViewServer:
     """Return a server that listens on this computer; `tell` is given what people must know.
 
@@ -36,6 +37,8 @@ async def open_views(
     the environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
     the same one to a window.
 
+    `scenario_picture` returns the picture of a scenario by its name.
+
     Raises:
         InputError: the port cannot be listened on, or the key is no key.
     """
@@ -43,7 +46,9 @@ async def open_views(
     def tell_new_code(code: str) -> None:
         tell(f"has a new pairing code for views: {code}")
 
-    server = ViewServer(control_loop, desk, tell_new_code, robot_meshes)
+    server = ViewServer(
+        control_loop, desk, tell_new_code, robot_meshes, scenario_picture=scenario_picture
+    )
     agreed = os.environ.get(KEY_VARIABLE)
     if agreed is not None:
         if not SHORTEST_KEY <= len(agreed) <= LONGEST_KEY:
@@ -68,7 +73,9 @@ async def _listen_in_network(
     except InputError:
         found = await server.listen_in_network(0, tls)
     addresses = [address for address in own_addresses() if ":" not in address]
-    where = " or ".join(f"https://{name}:{found}" for name in addresses or [socket.gethostname()])
+    pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
+    server.announce(*pages)
+    where = " or ".join(pages)
     tell(f"serves the local network on {where}; the browser warns of a certificate made here")
     tell(
         f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "

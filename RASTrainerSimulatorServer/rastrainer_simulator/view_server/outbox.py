@@ -5,9 +5,16 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 
-from rastrainer_simulator.view_server.outgoing import CONTROL, SCENE, SCREEN, STATE, WELCOME
+from rastrainer_simulator.view_server.outgoing import (
+    CONTROL,
+    PAIRING,
+    SCENE,
+    SCREEN,
+    STATE,
+    WELCOME,
+)
 
-_BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN)
+_BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING)
 
 
 class Outbox:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ STATE = "state"
 SCREEN = "screen"
 EVENT = "event"
 CONTROL = "control"
+PAIRING = "pairing"
 
 BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand")
 MM_IN_M = 1000.0
@@ -101,6 +102,11 @@ def event(feedback: Feedback) -> str:
 def control(now: Control, view: int) -> str:
     """Return who drives the arm, as one view is told."""
     return _text(CONTROL, holder=now.holder, isYou=now.view == view)
+
+
+def pairing(code: str, addresses: Sequence[str]) -> str:
+    """Return how another view is paired; for this computer's own views only."""
+    return _text(PAIRING, code=code, addresses=addresses)
 
 
 def _pose(matrix: np.ndarray) -> list[float]:

@@ -13,7 +13,7 @@ NOT_BUILT = """<!doctype html>
 <title>RASTrainer</title>
 <h1>RASTrainer</h1>
 <p>The simulator is running, but its browser page has not been built.</p>
-<p>Build it with <code>make web</code>, or use the desktop window:
+<p>Build it with <code>make page</code>, or use the desktop window:
 <code>rastrainer simulator --desktop</code>.</p>
 </html>
 """

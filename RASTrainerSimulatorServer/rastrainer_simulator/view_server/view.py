@@ -31,14 +31,21 @@ class View:
 
     Attributes:
         number: of the view; none is used twice.
+        is_local: whether it is on this computer, as far as the network can tell.
         outbox: what it is going to be told.
         held: what it holds down.
     """
 
     def __init__(
-        self, number: int, socket: web.WebSocketResponse, desk: OperatorDesk, limits: ViewLimits
+        self,
+        number: int,
+        socket: web.WebSocketResponse,
+        desk: OperatorDesk,
+        limits: ViewLimits,
+        is_local: bool = False,
     ) -> None:
         self.number = number
+        self.is_local = is_local
         self.outbox = Outbox(limits.waiting_events)
         self.held = HeldInput(number, desk)
         self._socket = socket
@@ -86,12 +93,16 @@ class View:
 
     async def _receive(self) -> None:
         async for message in self._socket:
-            self._last_message = self._clock()
-            if message.type is not WSMsgType.TEXT:
-                raise InputError(NOT_TEXT)
-            if not self._rate.allows(self._last_message):
+            now = self._clock()
+            if not self._rate.allows(now):
                 raise InputError(TOO_MANY_MESSAGES)
-            self._handle(check_message(message.data))
+            if message.type is WSMsgType.PING:
+                await self._socket.pong(message.data)
+            elif message.type is WSMsgType.TEXT:
+                self._last_message = now
+                self._handle(check_message(message.data))
+            elif message.type is not WSMsgType.PONG:
+                raise InputError(NOT_TEXT)
 
     def _handle(self, received: Received) -> None:
         if received.type not in self._take:

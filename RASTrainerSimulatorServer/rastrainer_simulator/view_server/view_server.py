@@ -7,6 +7,7 @@ import contextlib
 import socket
 import ssl
 from collections.abc import Callable
+from ipaddress import ip_address
 from pathlib import Path
 
 from aiohttp import WSCloseCode, WSMsgType, web
@@ -15,8 +16,10 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.igtl.state_feed import StateFeed
+from rastrainer_simulator.listener import Listener
 from rastrainer_simulator.scene.cache_folder import cache_folder
 from rastrainer_simulator.scene.scene_files import SceneFiles, read_scene
+from rastrainer_simulator.turnstile import Turnstile
 from rastrainer_simulator.view_server.connections import KEEP_ALIVE_S, Connections, http_log
 from rastrainer_simulator.view_server.gate import Gate
 from rastrainer_simulator.view_server.limits import ViewLimits
@@ -37,10 +40,11 @@ SHUTDOWN_S = 1.0
 
 
 class ViewServer:
-    """Serves the page, the scene, the sounds and the stream.
+    """Serves the page, the scene, the sounds, pictures of scenarios and the stream.
 
     Attributes:
-        code: pairs a view; to be shown to people.
+        code: pairs a view; to be shown to people, and told to this computer's own views.
+        addresses: where browsers find the page, such as "http://127.0.0.1:18945".
         sessions: keys of the views that may look.
         port: where it listens; 0 before it does.
     """
@@ -52,6 +56,7 @@ class ViewServer:
         on_new_code: Callable[[str], None],
         robot_meshes: Path | None = None,
         limits: ViewLimits | None = None,
+        scenario_picture: Callable[[str], Path | None] = lambda _name: None,
     ) -> None:
         """Make a server, in the event loop's thread; nothing listens yet.
 
@@ -61,11 +66,15 @@ class ViewServer:
             on_new_code: is given a pairing code that replaces `code`, to be shown.
             robot_meshes: those that the setups are loaded with.
             limits: what views may cost.
+            scenario_picture: returns the picture of a scenario by its name.
         """
+        self._scenario_picture = scenario_picture
         self._control_loop = control_loop
         self._desk = desk
         self._limits = limits or ViewLimits()
-        self.code = PairingCode(asyncio.get_running_loop().time, on_new_code)
+        self.code = PairingCode(asyncio.get_running_loop().time, self._renewed)
+        self.addresses: list[str] = []
+        self._on_new_code = on_new_code
         self.sessions = Sessions(self._limits.sessions)
         self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
@@ -80,7 +89,7 @@ class ViewServer:
             keepalive_timeout=KEEP_ALIVE_S,
             shutdown_timeout=SHUTDOWN_S,
         )
-        self._servers: list[asyncio.Server] = []
+        self._listeners: list[Listener] = []
         self._unsubscribe: Callable[[], None] = lambda: None
 
     async def listen(self, host: str, port: int) -> int:
@@ -90,6 +99,7 @@ class ViewServer:
             InputError: the address cannot be listened on.
         """
         self.port = await self._open(host, port, None)
+        self.announce(f"http://{host}:{self.port}")
         await self._runner.setup()
         self._connections.server = self._runner.server
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
@@ -104,25 +114,40 @@ class ViewServer:
         """
         return await self._open("0.0.0.0", port, tls)
 
+    def announce(self, *addresses: str) -> None:
+        """Tell this computer's views where else browsers find the page."""
+        self.addresses += addresses
+        self._views.tell_pairing(self.code.code, self.addresses)
+
     async def close(self) -> None:
         """Send the views away and stop listening."""
         self._unsubscribe()
-        for server in self._servers:
-            server.close()
+        for listener in self._listeners:
+            listener.close()
         await self._views.close()
         await self._runner.cleanup()
 
+    def _renewed(self, code: str) -> None:
+        self._on_new_code(code)
+        self._views.tell_pairing(code, self.addresses)
+
     async def _open(self, host: str, port: int, tls: ssl.SSLContext | None) -> int:
-        loop = asyncio.get_running_loop()
+        listener = Listener(
+            self._connections,
+            self._limits.new_connections_per_s,
+            tls,
+            self._limits.first_message_s,
+        )
         try:
-            server = await loop.create_server(self._connections, host, port, ssl=tls)
+            found = await listener.listen(host, port)
         except (OSError, OverflowError) as error:
             raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
-        self._servers.append(server)
-        return server.sockets[0].getsockname()[1]
+        self._listeners.append(listener)
+        return found
 
     def _application(self) -> web.Application:
-        gate = Gate(self.sessions, self.code, self._connections.note)
+        turnstile = Turnstile(self._limits.requests_per_s)
+        gate = Gate(self.sessions, self.code, self._connections.note, turnstile)
         app = web.Application(middlewares=[gate.check], client_max_size=LARGEST_BODY)
         app.on_response_prepare.append(add_security_headers)
         app.add_routes(
@@ -131,6 +156,7 @@ class ViewServer:
                 web.post("/pair", gate.pair),
                 web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
                 web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
+                web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
                 web.get("/stream", self._stream),
             ]
         )
@@ -160,12 +186,20 @@ class ViewServer:
             raise web.HTTPNotFound
         return web.FileResponse(path)
 
+    async def _send_picture(self, request: web.Request) -> web.StreamResponse:
+        path = self._scenario_picture(request.match_info["name"])
+        if path is None or not path.is_file():
+            raise web.HTTPNotFound
+        return web.FileResponse(path, headers={"Content-Type": "image/png"})
+
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         stream = web.WebSocketResponse(
             protocols=(SUBPROTOCOL,),
             max_msg_size=self._limits.message_bytes,
             heartbeat=self._limits.gone_s / 2.0,
             compress=False,
+            # Pings are answered by the view, where they count as any message does.
+            autoping=False,
             # Every message waits until the one before it has left: only so the latest is sent.
             writer_limit=0,
         )
@@ -177,18 +211,18 @@ class ViewServer:
         try:
             await stream.prepare(request)
             self._keep_little_waiting(request)
-            await self._serve(stream)
+            await self._serve(stream, _is_local(request))
         finally:
             self._streams -= 1
         return stream
 
-    async def _serve(self, stream: web.WebSocketResponse) -> None:
+    async def _serve(self, stream: web.WebSocketResponse, is_local: bool) -> None:
         try:
             hello = await self._first_message(stream)
         except InputError as error:
             await stream.close(code=WSCloseCode.POLICY_VIOLATION, message=str(error).encode()[:120])
             return
-        view = View(self._views.next_number(), stream, self._desk, self._limits)
+        view = View(self._views.next_number(), stream, self._desk, self._limits, is_local)
         await self._views.serve(view, hello)
 
     async def _first_message(self, stream: web.WebSocketResponse) -> Hello:
@@ -211,3 +245,11 @@ class ViewServer:
         with contextlib.suppress(OSError):
             peer = transport.get_extra_info("socket")
             peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._limits.buffer_bytes)
+
+
+def _is_local(request: web.Request) -> bool:
+    """Tell whether a request comes from this computer; a headset on its cable does, too."""
+    try:
+        return ip_address(request.remote or "").is_loopback
+    except ValueError:
+        return False

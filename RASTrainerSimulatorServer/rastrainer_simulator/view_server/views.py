@@ -6,6 +6,7 @@ import asyncio
 import itertools
 import logging
 import time
+from collections.abc import Sequence
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.control_loop import ControlLoop
@@ -48,6 +49,7 @@ class Views:
         self._setup: SimulationSetup | None = None
         self._task = ""
         self._scene = ""
+        self._pairing = ""
         self._loading: asyncio.Task[None] | None = None
         self._watching: asyncio.Task[None] | None = None
         self._unsubscribe = desk.subscribe(self._hear)
@@ -68,6 +70,12 @@ class Views:
             view.held.release()
             del self._views[view.number]
             self._desk.view_left(view.number)
+
+    def tell_pairing(self, code: str, addresses: Sequence[str]) -> None:
+        """Tell the views of this computer how others are paired, now and whenever one joins."""
+        self._pairing = outgoing.pairing(code, addresses)
+        for view in self._views.values():
+            self._put_pairing(view)
 
     async def close(self) -> None:
         """Send everyone away and stop."""
@@ -100,6 +108,11 @@ class Views:
         put(outgoing.CONTROL, outgoing.control(self._desk.control, view.number))
         put(outgoing.SCREEN, outgoing.screen(self._desk.screen))
         put(outgoing.STATE, self._state_text(now))
+        self._put_pairing(view)
+
+    def _put_pairing(self, view: View) -> None:
+        if view.is_local and self._pairing:
+            view.outbox.put_latest(outgoing.PAIRING, self._pairing)
 
     def _state_text(self, now: SimulationState) -> str:
         statistics = self._control_loop.statistics

@@ -5,6 +5,9 @@ import { SUBPROTOCOL, type Hello, type News } from "./messages";
 const RETRY_MS = 1000;
 /** A view that holds something says so at least this often; the simulator lets go after 0.5 s. */
 const ALIVE_MS = 150;
+const LOOK_MS = 50;
+/** The simulator says something 60 times a second: after so long it cannot be heard any more. */
+const SILENCE_MS = 3000;
 
 export interface ConnectionListener {
   /** A message has come. */
@@ -19,12 +22,14 @@ export class Connection {
   private socket: WebSocket | null = null;
   private isWanted = false;
   private lastSent = 0;
+  private lastLook = 0;
+  private silence = 0;
 
   constructor(
     private hello: Hello,
     private readonly listener: ConnectionListener,
   ) {
-    window.setInterval(() => this.keepAlive(), ALIVE_MS / 3);
+    window.setInterval(() => this.look(), LOOK_MS);
   }
 
   /** Tells whether something is held that the simulator must not let go. */
@@ -58,6 +63,7 @@ export class Connection {
     const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/stream`;
     const socket = new WebSocket(url, SUBPROTOCOL);
     this.socket = socket;
+    this.silence = 0;
     let wasOpen = false;
     socket.onopen = () => {
       wasOpen = true;
@@ -65,14 +71,19 @@ export class Connection {
       this.listener.onConnected(true);
     };
     socket.onmessage = (event) => {
-      if (socket === this.socket) this.listener.onNews(JSON.parse(event.data) as News);
+      if (socket !== this.socket) return;
+      this.silence = 0;
+      this.listener.onNews(JSON.parse(event.data) as News);
     };
     socket.onclose = () => {
-      if (socket !== this.socket) return;
-      this.socket = null;
-      this.listener.onConnected(false);
-      void this.comeBack(wasOpen);
+      if (socket === this.socket) this.lose(wasOpen);
     };
+  }
+
+  private lose(wasOpen: boolean): void {
+    this.socket = null;
+    this.listener.onConnected(false);
+    void this.comeBack(wasOpen);
   }
 
   private async comeBack(wasOpen: boolean): Promise<void> {
@@ -86,8 +97,18 @@ export class Connection {
     }, RETRY_MS);
   }
 
-  private keepAlive(): void {
-    if (this.isHolding() && performance.now() - this.lastSent >= ALIVE_MS) this.send("alive");
+  private look(): void {
+    const now = performance.now();
+    // What passes while the page itself stands still is no silence of the simulator.
+    this.silence += Math.min(2 * LOOK_MS, now - this.lastLook);
+    this.lastLook = now;
+    const { socket } = this;
+    if (socket !== null && this.isConnected && this.silence > SILENCE_MS) {
+      // A network that is gone says no farewell, and waits long for the other side's.
+      this.lose(true);
+      socket.close();
+    }
+    if (this.isHolding() && now - this.lastSent >= ALIVE_MS) this.send("alive");
   }
 }
 

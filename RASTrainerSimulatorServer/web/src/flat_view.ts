@@ -67,14 +67,15 @@ export class FlatView {
     return this.flight.advance(now);
   }
 
-  draw(): void {
+  /** Draw, with the other camera in the corner if it is wanted. */
+  draw(hasInset: boolean): void {
     const { renderer, scene } = this.stage;
     const { x: width, y: height } = this.size;
     this.flight.now.look(this.camera, width / height);
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, width, height);
     renderer.render(scene, this.camera);
-    if (this.insetName === "") return;
+    if (!hasInset) return;
     const box = this.frame.getBoundingClientRect();
     this.inset.look(this.other, box.width / box.height);
     renderer.setScissorTest(true);

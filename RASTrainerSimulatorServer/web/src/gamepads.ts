@@ -35,6 +35,11 @@ export class Gamepads {
     this.connection.send("pad", { axes: this.axes, buttons: this.buttons });
   }
 
+  /** Let go: nobody sees what the pad does. */
+  release(): void {
+    if (this.isHolding) this.tellRest();
+  }
+
   /** Vibrate, if this pad is what drives the arm. */
   feel(event: EventNews): void {
     const drives = this.control?.isYou && this.control.holder === "browser's gamepad";

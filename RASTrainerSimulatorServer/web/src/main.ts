@@ -39,7 +39,7 @@ export class Page {
   private poses = new PoseStream(0);
   private state: StateNews | null = null;
   private lastEvent = 0;
-  private isLoading = "";
+  private scene: SceneNews | null = null;
   private isDue = true;
 
   constructor() {
@@ -47,6 +47,7 @@ export class Page {
       this.keyboard.isHolding || this.pads.isHolding || (this.headset?.isHolding ?? false);
     document.addEventListener("visibilitychange", () => {
       const isSeen = this.headset !== null || !document.hidden;
+      if (!isSeen) this.pads.release();
       this.connection.send("visibility", { isVisible: isSeen });
     });
     this.stage.setQuality(this.stage.affordable);
@@ -81,6 +82,7 @@ export class Page {
         break;
       case "screen":
         this.screen = news.screen;
+        this.isDue = true;
         useLanguage(news.screen.language);
         this.enter.label();
         this.overlay.show(news.screen);
@@ -92,25 +94,40 @@ export class Page {
         this.overlay.showControl(news);
         this.headset?.showControl(news);
         break;
+      case "pairing":
+        this.overlay.showPairing(news);
+        break;
       case "event":
         this.happen(news);
     }
   }
 
   private async load(news: SceneNews): Promise<void> {
-    if (news.url === this.isLoading) return;
-    this.isLoading = news.url;
+    const isKnown = news.url === this.scene?.url;
+    this.scene = news;
+    if (isKnown) {
+      this.useScene();
+      return;
+    }
     try {
       const model = await loadScene(news, this.bodies);
-      if (news.url !== this.isLoading) return;
+      if (news.url !== this.scene?.url) return;
       this.stage.show(model);
-      this.flat.take(news);
-      this.isDue = true;
+      this.useScene();
       document.body.dataset.scene = news.task || "none";
     } catch {
-      this.isLoading = "";
+      if (this.scene === news) this.scene = null;
       this.overlay.setNotice(say("noScene"));
     }
+  }
+
+  /** Take what goes with the file, such as the cameras: it may change while the file stays. */
+  private useScene(): void {
+    const { model } = this.stage;
+    if (model === null || this.scene === null || model.news.url !== this.scene.url) return;
+    model.news = this.scene;
+    this.flat.take(this.scene);
+    this.isDue = true;
   }
 
   private takeState(state: StateNews): void {
@@ -180,10 +197,12 @@ export class Page {
     this.isDue = false;
     this.poses.place(model.bodies, performance.now() / 1000);
     model.mark(state);
-    this.overlay.showInset(this.flat.insetName);
+    const isWorking = this.screen?.menu == null;
+    const inset = isWorking ? this.flat.insetName : "";
+    this.overlay.showInset(inset);
     this.overlay.showContact(state.proximity === "contact");
-    this.arrow.show(model, this.flat.camera, this.screen?.menu == null ? state.next : null);
-    this.flat.draw();
+    this.arrow.show(model, this.flat.camera, isWorking ? state.next : null);
+    this.flat.draw(inset !== "");
     this.frames.drawn();
   }
 }

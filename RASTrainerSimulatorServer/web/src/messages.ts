@@ -11,6 +11,8 @@ export interface Item {
   readonly value: string;
   readonly is_enabled: boolean;
   readonly help: string;
+  /** Path of a picture that is shown while the item has the focus; "" for none. */
+  readonly picture: string;
 }
 
 export interface Fact {
@@ -109,7 +111,14 @@ export interface ControlNews {
   readonly isYou: boolean;
 }
 
-export type News = Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews;
+/** How another view is paired; only views at the simulator's own computer are told. */
+export interface PairingNews {
+  readonly type: "pairing";
+  readonly code: string;
+  readonly addresses: readonly string[];
+}
+
+export type News = Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews | PairingNews;
 
 /** What a view says of itself when it joins. */
 export interface Hello {

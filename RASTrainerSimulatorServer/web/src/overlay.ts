@@ -1,7 +1,8 @@
 /** The simulator's screen over a flat picture: each part is made anew when it has changed. */
 
 import type { Connection } from "./connection";
-import type { ControlNews, Item, Menu, Message, Screen } from "./messages";
+import type { ControlNews, Item, Menu, Message, PairingNews, Screen } from "./messages";
+import { controlsPicture, inputsOf } from "./panels/controls_picture";
 import { say, sayHolder } from "./texts";
 
 export class Overlay {
@@ -9,19 +10,23 @@ export class Overlay {
   /** What the page says itself in place of the simulator's warnings; "" for nothing. */
   private notice = "";
   private warnings: readonly Message[] = [];
+  private menu: Menu | null = null;
+  private holder = "";
+  private facts: readonly string[] = [];
+  private pairing: PairingNews | null = null;
 
   constructor(private readonly connection: Connection) {}
 
   show(screen: Screen): void {
     document.body.dataset.menu = screen.menu?.name ?? "";
-    this.part("menu", screen.menu, (parent) => this.fillMenu(parent, screen.menu));
+    this.menu = screen.menu;
+    this.showMenu();
     this.part("instruction", screen.instruction, (parent) => {
       parent.textContent = screen.instruction.text;
       parent.dataset.tone = screen.instruction.tone;
     });
-    this.part("status", screen.status, (parent) => {
-      parent.append(...screen.status.map((fact) => element("li", fact)));
-    });
+    this.facts = screen.status;
+    this.showFacts();
     this.part("hints", screen.hints, (parent) => {
       for (const hint of screen.hints) {
         const line = element("li", "");
@@ -37,6 +42,14 @@ export class Overlay {
     const place = byId("control");
     place.textContent = sayHolder(control.holder, control.isYou);
     place.dataset.holder = control.holder;
+    this.holder = control.holder;
+    this.showMenu();
+  }
+
+  /** Tell beside each menu how another view is paired. */
+  showPairing(pairing: PairingNews): void {
+    this.pairing = pairing;
+    this.showFacts();
   }
 
   /** Say something of the page's own until it is called off by "". */
@@ -77,18 +90,35 @@ export class Overlay {
     fill(parent);
   }
 
-  private fillMenu(parent: HTMLElement, menu: Menu | null): void {
+  private showFacts(): void {
+    const { pairing } = this;
+    const isTold = pairing !== null && this.menu !== null;
+    const how = isTold ? [say("pairing", { code: pairing.code, address: pairing.addresses[1] ?? pairing.addresses[0]! })] : [];
+    const facts = [...this.facts, ...how];
+    this.part("status", facts, (parent) => parent.append(...facts.map((fact) => element("li", fact))));
+  }
+
+  private showMenu(): void {
+    const { menu } = this;
+    const controls = menu?.picture === "controls" ? controlsPicture(this.holder, inputsOf(menu)) : "";
+    this.part("menu", [menu, controls], (parent) => this.fillMenu(parent, menu, controls));
+  }
+
+  private fillMenu(parent: HTMLElement, menu: Menu | null, controls: string): void {
     parent.hidden = menu === null;
     if (menu === null) return;
-    parent.className = menu.facts.length > 0 ? "wide" : "";
+    parent.className = controls !== "" ? "pictured" : menu.facts.length > 0 ? "wide" : "";
+    if (controls !== "") parent.append(drawing(controls));
     parent.append(element("h1", menu.title));
     parent.append(...menu.paragraphs.map((text) => element("p", text)));
     if (menu.facts.length > 0) parent.append(factsOf(menu));
+    const focused = menu.items.find((item) => item.name === menu.focus);
+    if (focused?.picture) parent.append(picture(focused));
     const list = element("ul", "");
     list.setAttribute("role", "listbox");
     list.append(...menu.items.map((item) => this.line(item, item.name === menu.focus)));
     parent.append(list);
-    const help = element("p", menu.items.find((item) => item.name === menu.focus)?.help ?? "");
+    const help = element("p", focused?.help ?? "");
     help.className = "help";
     parent.append(help);
     list.querySelector('[aria-selected="true"]')?.scrollIntoView({ block: "nearest" });
@@ -120,6 +150,13 @@ function element(tag: string, text: string): HTMLElement {
   return made;
 }
 
+function drawing(source: string): HTMLImageElement {
+  const image = new Image();
+  image.src = source;
+  image.alt = say("picture");
+  return image;
+}
+
 function factsOf(menu: Menu): HTMLElement {
   const table = element("dl", "");
   for (const fact of menu.facts) {
@@ -128,6 +165,14 @@ function factsOf(menu: Menu): HTMLElement {
     table.append(element("dt", fact.label), value);
   }
   return table;
+}
+
+function picture(item: Item): HTMLImageElement {
+  const image = document.createElement("img");
+  image.className = "head";
+  image.src = item.picture;
+  image.alt = item.label;
+  return image;
 }
 
 function axis(position: number): HTMLMeterElement {

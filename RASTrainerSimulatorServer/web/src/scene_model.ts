@@ -39,12 +39,13 @@ export class SceneModel {
   private readonly next = glow(COLORS.next);
   private readonly touched = glow(COLORS.touched);
   private readonly tip = glow(COLORS.free);
-  private marked = "";
+  private markedNext: string | null = "";
+  private markedTouches = -1;
   private pulses = false;
 
   constructor(
     file: Object3D,
-    readonly news: SceneNews,
+    public news: SceneNews,
     bodies: readonly string[],
   ) {
     file.traverse((node) => this.named.set((node.userData.name as string) ?? node.name, node));
@@ -68,9 +69,9 @@ export class SceneModel {
   /** Color the tool's tip and the fiducials. */
   mark(state: StateNews): void {
     this.tip.color.copy(state.proximity === "free" ? COLORS.free : COLORS.near);
-    const marked = `${state.next} ${state.touched.length}`;
-    if (marked === this.marked) return;
-    this.marked = marked;
+    if (state.next === this.markedNext && state.touched.length === this.markedTouches) return;
+    this.markedNext = state.next;
+    this.markedTouches = state.touched.length;
     this.pulses = state.next !== null;
     for (const [label, mesh] of this.fiducials) {
       const isTouched = state.touched.includes(label);

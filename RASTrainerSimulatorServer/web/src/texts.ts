@@ -23,6 +23,20 @@ const ENGLISH = {
   other: "The robot is driven by: {source}",
   closeUp: "Close-up",
   far: "Overview",
+  pairing: "To pair another view: code {code} at {address}",
+  picture: "Which input is where",
+  "part.cross": "D-pad",
+  "part.leftStick": "Left stick",
+  "part.rightStick": "Right stick",
+  "part.back": "Back button",
+  "part.start": "Start button",
+  "part.trigger": "Trigger",
+  "part.grip": "Grip",
+  "part.space": "Space",
+  "part.enter": "Enter",
+  "part.backspace": "Backspace",
+  "part.leftShift": "Left Shift",
+  "part.rightShift": "Right Shift",
   "source.gamepad": "gamepad",
   "source.keyboard": "keyboard",
   "source.mouse": "mouse",
@@ -53,6 +67,20 @@ const GERMAN: typeof ENGLISH = {
   other: "Den Roboter steuert: {source}",
   closeUp: "Nahansicht",
   far: "Übersicht",
+  pairing: "Weitere Ansicht koppeln: Code {code} auf {address}",
+  picture: "Wo welche Eingabe liegt",
+  "part.cross": "Steuerkreuz",
+  "part.leftStick": "Linker Stick",
+  "part.rightStick": "Rechter Stick",
+  "part.back": "Back-Taste",
+  "part.start": "Start-Taste",
+  "part.trigger": "Trigger",
+  "part.grip": "Griff",
+  "part.space": "Leertaste",
+  "part.enter": "Eingabe",
+  "part.backspace": "Rücktaste",
+  "part.leftShift": "Linke Umschalttaste",
+  "part.rightShift": "Rechte Umschalttaste",
   "source.gamepad": "Gamepad",
   "source.keyboard": "Tastatur",
   "source.mouse": "Maus",
@@ -71,8 +99,8 @@ export function useLanguage(tag: string): void {
   document.documentElement.lang = tag;
 }
 
-export function say(name: TextName, source = ""): string {
-  return table[name].replace("{source}", source);
+export function say(name: TextName, values: Readonly<Record<string, string>> = {}): string {
+  return table[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole);
 }
 
 /** Who drives the arm, as people read it. */
@@ -80,5 +108,5 @@ export function sayHolder(holder: string, isYou: boolean): string {
   if (holder === "") return say("nobody");
   const name = `source.${holder}`;
   const source = name in table ? table[name as TextName] : holder;
-  return say(isYou ? "you" : "other", source);
+  return say(isYou ? "you" : "other", { source });
 }

@@ -51,12 +51,14 @@ class ServedViews:
         desk: where the views' input ends.
         url: of the server.
         new_codes: the pairing codes that were to be shown after the first.
+        pictures: files of the scenarios' pictures by the scenarios' names.
     """
 
     def __init__(self, thread: LoopThread, control_loop: ControlLoop, port: int = 0, **limits):
         self.thread = thread
         self.desk = RecordingDesk()
         self.new_codes = []
+        self.pictures = {}
         self._is_closed = False
         self.server = thread.call(
             ViewServer,
@@ -64,6 +66,7 @@ class ServedViews:
             self.desk,
             self.new_codes.append,
             limits=ViewLimits(**limits),
+            scenario_picture=self.pictures.get,
         )
         self.port = thread.run(self.server.listen(HOST, port))
         self.url = f"http://{HOST}:{self.port}"
@@ -130,6 +133,10 @@ class ViewClient:
         else:
             text = message if isinstance(message, str) else json.dumps(message)
             self._run(self._socket.send_str(text))
+
+    def ping(self):
+        """Send a ping; its answer is not told."""
+        self._run(self._socket.ping())
 
     def next(self, kind: str | None = None) -> dict:
         """Return the next message, or the next of a kind."""

@@ -1,3 +1,4 @@
+import asyncio
 import json
 import socket
 
@@ -67,18 +68,45 @@ def test_an_oversized_message_closes_only_that_view(served, connect):
     assert good.next("state")["type"] == "state"
 
 
+def flood(send):
+    """Send a hundred times, or until the connection has ended."""
+    for _ in range(100):
+        try:
+            send()
+        except ConnectionError:
+            break
+
+
 def test_a_flood_closes_only_that_view(serve, connect):
     served = serve(messages_per_s=10.0)
     good, bad = connect(served), connect(served)
     good.join()
     bad.join()
-    for _ in range(100):
-        try:
-            bad.send({"type": "alive"})
-        except ConnectionError:
-            break
+    flood(lambda: bad.send({"type": "alive"}))
     assert bad.closing()[0] == 1008
     assert good.next("state")["type"] == "state"
+
+
+def test_a_flood_of_pings_closes_only_that_view(serve, connect):
+    served = serve(messages_per_s=10.0)
+    good, bad = connect(served), connect(served)
+    good.join()
+    bad.join()
+    flood(bad.ping)
+    assert bad.closing()[0] == 1008
+    assert good.next("state")["type"] == "state"
+
+
+def test_a_ping_is_answered_and_is_no_sign_that_somebody_holds_on(serve, connect):
+    served = serve(silent_s=0.2)
+    view = connect(served)
+    number = view.join()["view"]
+    view.send(KEY)
+    served.wait_for_call("on_key", number, "KeyW", True, "w")
+    while ("on_key", number, "KeyW", False, "") not in served.desk.calls:
+        view.ping()
+        served.thread.run(asyncio.sleep(0.02))
+    assert view.next("state")["type"] == "state"
 
 
 @pytest.mark.parametrize(

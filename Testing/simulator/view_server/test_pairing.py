@@ -66,6 +66,16 @@ def test_five_wrong_codes_make_a_new_one_and_a_pause(served):
     assert (status, int(headers["Retry-After"])) == (429, 1)
 
 
+def test_a_view_of_this_computer_is_told_how_others_are_paired(served, connect):
+    view = connect(served)
+    view.join()
+    told = {"type": "pairing", "code": served.code, "addresses": [served.url]}
+    assert view.next("pairing") == told
+    for _ in range(5):
+        pair(served, wrong(served.code))
+    assert view.next("pairing") == {**told, "code": served.new_codes[0]}
+
+
 def test_the_pause_ends_and_grows_until_the_right_code_comes():
     now, shown = [0.0], []
     code = PairingCode(lambda: now[0], shown.append)
@@ -150,7 +160,7 @@ def test_every_answer_tells_the_browser_what_to_refuse(served):
 def test_without_a_built_page_it_says_how_to_build_it(served):
     status, headers, body = request(served.url, "/")
     assert (status, headers["Content-Type"].split(";")[0]) == (200, "text/html")
-    assert b"make web" in body
+    assert b"make page" in body
 
 
 @pytest.fixture

@@ -65,8 +65,7 @@ def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):
 def _opened(tmp_path, *arguments):
     """Start a simulator that should say on stderr why it cannot serve views."""
     process = SimulatorProcess(tmp_path / "records", "--no-gamepad", *arguments)
-    status, errors = process._process.wait(20), process._process.stderr.read()
-    process.kill()
+    status, errors = process.wait()
     assert status == 2
     raise AssertionError(errors)
 

@@ -8,6 +8,7 @@ from trimesh.transformations import quaternion_matrix
 from rastrainer_simulator.flow.screen import Hint, Item, Menu, Message, Screen, Tone
 from rastrainer_simulator.view_server.operator_desk import Control, Feedback, Hello
 from rastrainer_simulator.view_server.quaternion import quaternion
+from Testing.domain.made_up_scenario import png
 from Testing.simulator.view_server.served import request
 
 BODIES = [*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand"]
@@ -184,3 +185,17 @@ def test_views_are_told_when_the_simulator_ends(serve, connect):
     view.join()
     served.close()
     assert view.closing() == (1001, "The simulator has been stopped.")
+
+
+def test_a_scenarios_picture_is_served_to_views_by_its_name_and_nothing_else(served, tmp_path):
+    picture = tmp_path / "preview.png"
+    picture.write_bytes(png())
+    served.pictures["ball"] = picture
+    key = {"Authorization": f"Bearer {served.new_key()}"}
+    status, headers, body = request(served.url, "/scenarios/ball.png", headers=key)
+    assert (status, headers["Content-Type"], body) == (200, "image/png", png())
+    assert request(served.url, "/scenarios/ball.png")[0] == 401
+    for path in ("/scenarios/none.png", "/scenarios/..%2Fball.png", "/scenarios/Ball.png"):
+        assert request(served.url, path, headers=key)[0] == 404
+    picture.unlink()
+    assert request(served.url, "/scenarios/ball.png", headers=key)[0] == 404

@@ -8,6 +8,7 @@ const PAD = 48;
 const ROW = 68;
 const GAP = 8;
 const FACT = 46;
+const PICTURE = 300;
 const TITLE = { size: 52, color: COLORS.text, isBold: true };
 const BODY = { size: 33, color: COLORS.soft };
 const VALUE = { size: 34, color: COLORS.text, isBold: true };
@@ -15,7 +16,15 @@ const LABEL = { size: 34, color: COLORS.text };
 const PALE = { size: 34, color: COLORS.pale };
 const HELP = { size: 29, color: COLORS.soft };
 
-export function paintMenu(pen: Pen, menu: Menu, width: number, height: number, hovered: string): Region[] {
+/** `image` is the picture of the item that has the focus; null where it has none. */
+export function paintMenu(
+  pen: Pen,
+  menu: Menu,
+  width: number,
+  height: number,
+  hovered: string,
+  image: HTMLImageElement | null,
+): Region[] {
   const room = width - 2 * PAD;
   let y = PAD - 6;
   y += pen.paragraph(menu.title, PAD, y, TITLE, room) + 14;
@@ -28,6 +37,10 @@ export function paintMenu(pen: Pen, menu: Menu, width: number, height: number, h
     y += FACT;
   }
   y += 10;
+  if (menu.items.some((item) => item.picture !== "")) {
+    if (image !== null) pen.picture(image, PAD, y, room, PICTURE);
+    y += PICTURE + GAP;
+  }
   const help = menu.items.find((item) => item.name === menu.focus)?.help ?? "";
   const helpHeight = help === "" ? 0 : pen.wrapped(help, HELP, room).length * 38;
   const fitting = Math.floor((height - y - helpHeight - PAD + GAP) / (ROW + GAP));

@@ -64,6 +64,14 @@ export class Pen {
     this.context.stroke();
   }
 
+  /** Paint a picture in the middle of a box, as large as fits. */
+  picture(image: HTMLImageElement, x: number, y: number, width: number, height: number): void {
+    const factor = Math.min(width / image.naturalWidth, height / image.naturalHeight);
+    const across = factor * image.naturalWidth;
+    const down = factor * image.naturalHeight;
+    this.context.drawImage(image, x + (width - across) / 2, y + (height - down) / 2, across, down);
+  }
+
   width(text: string, style: TextStyle): number {
     this.use(style);
     return this.context.measureText(text).width;
@@ -103,6 +111,10 @@ export class Pen {
     const step = LINE * style.size;
     lines.forEach((line, index) => this.line(line, x, y + (index + 0.5) * step, style));
     return lines.length * step;
+  }
+
+  image(image: HTMLImageElement, x: number, y: number): void {
+    this.context.drawImage(image, x, y);
   }
 
   private use(style: TextStyle): void {

@@ -2,19 +2,32 @@
 
 import { Group, Vector3, type Object3D } from "three";
 
-import type { ControlNews, Message, Screen } from "../messages";
+import type { ControlNews, Menu, Message, Screen } from "../messages";
 import { Board, type Region } from "../panels/board";
 import { paintMenu } from "../panels/menu_painter";
+import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../panels/controls_picture";
 import { BANNERS, COLORS, type Pen } from "../panels/pen";
 import { paintWork } from "../panels/work_painter";
 import { say, sayHolder, type TextName } from "../texts";
+import { thumbnail } from "../thumbnails";
 import { CloseUp } from "./close_up";
 import type { Placement } from "./placement";
 
-/** Beside the direction of the head, in rad, and away from the eyes, in m. */
-const ASIDE = 0.62;
-const AWAY = 1.1;
+/** Where a board stands: right of the head's direction and above the eyes (rad), and away (m). */
+interface Seat {
+  readonly aside: number;
+  readonly above: number;
+  readonly away: number;
+}
+const MENU: Seat = { aside: 0.6, above: -0.06, away: 1.1 };
+const ACTIONS: Seat = { aside: 0.6, above: 0.43, away: 1.1 };
+const PICTURE: Seat = { aside: -0.22, above: 0.2, away: 1.1 };
+const WORK: Seat = { aside: 0.6, above: 0.16, away: 1.1 };
+/** Like a picture that lies on the table beside the head: the arm is seldom before it. */
+const CLOSE_UP: Seat = { aside: 0.72, above: -0.5, away: 0.85 };
 const WIDE = 0.86;
+const PICTURE_WIDE = 0.8;
+const CLOSE_UP_WIDE = 0.56;
 const WARNING_AWAY = 1.0;
 const WARNING_BELOW = 0.2;
 const BUTTON = { size: 32, color: COLORS.text, isBold: true };
@@ -24,14 +37,18 @@ const WARNING = { size: 40, color: COLORS.text, isBold: true };
 export const LOCAL = ["recenter", "higher", "lower", "grab", "leave"] as const;
 export type Local = (typeof LOCAL)[number];
 const PREFIX = "local ";
+const PAD = 40;
 
 export class Boards {
   /** In the room. */
   readonly room = new Group();
-  readonly closeUp = new CloseUp(WIDE);
+  readonly closeUp = new CloseUp(CLOSE_UP_WIDE);
   private readonly menu = new Board(1024, 1024, WIDE);
   private readonly work = new Board(1024, 560, WIDE);
-  private readonly actions = new Board(1024, 190, WIDE);
+  private readonly actions = new Board(1024, 236, WIDE);
+  private readonly picture = new Board(PICTURE_WIDTH + 2 * PAD, PICTURE_HEIGHT + 2 * PAD, PICTURE_WIDE);
+  /** What is drawn on `picture`; it is there a moment later than its address. */
+  private readonly drawing = new Image();
   private readonly warning = new Board(1024, 256, 0.6);
   private screen: Screen | null = null;
   private control: ControlNews | null = null;
@@ -40,7 +57,9 @@ export class Boards {
   private mayGrab = true;
 
   constructor(eyes: Object3D) {
-    this.room.add(this.menu.mesh, this.work.mesh, this.actions.mesh, this.closeUp.mesh);
+    const boards = [this.menu, this.work, this.actions, this.picture];
+    this.room.add(...boards.map((board) => board.mesh), this.closeUp.mesh);
+    this.drawing.onload = () => this.paint();
     this.warning.mesh.position.set(0, -WARNING_BELOW, -WARNING_AWAY);
     this.warning.mesh.renderOrder = 10;
     this.warning.mesh.material.depthTest = false;
@@ -58,17 +77,14 @@ export class Boards {
 
   /** Stand where somebody at the place of the eyes reads them well. */
   arrange(placement: Placement): void {
-    const { forward, eyes } = placement;
-    const toBoard = new Vector3().copy(forward).applyAxisAngle(UP, -ASIDE);
-    this.room.position.copy(eyes).addScaledVector(toBoard, AWAY);
-    this.room.lookAt(eyes);
-    this.menu.mesh.position.y = -0.06;
-    this.actions.mesh.position.set(0, 0.48, 0.02);
-    this.work.mesh.position.y = 0.16;
-    this.closeUp.mesh.position.set(0, -0.37, 0.02);
-    this.work.mesh.rotation.x = 0;
-    this.closeUp.mesh.rotation.x = -0.3;
-    this.actions.mesh.rotation.x = 0.2;
+    const { menu, actions, picture, work, closeUp } = this;
+    const seats = [[menu, MENU], [actions, ACTIONS], [picture, PICTURE], [work, WORK], [closeUp, CLOSE_UP]] as const;
+    for (const [{ mesh }, seat] of seats) {
+      const toBoard = mesh.position.copy(placement.forward).applyAxisAngle(UP, -seat.aside);
+      toBoard.multiplyScalar(seat.away * Math.cos(seat.above)).setY(seat.away * Math.sin(seat.above));
+      toBoard.add(placement.eyes);
+      mesh.lookAt(placement.eyes);
+    }
   }
 
   show(screen: Screen): void {
@@ -102,7 +118,7 @@ export class Boards {
   }
 
   dispose(): void {
-    for (const board of [this.menu, this.work, this.actions, this.warning]) board.dispose();
+    for (const board of [this.menu, this.work, this.actions, this.picture, this.warning]) board.dispose();
     this.closeUp.dispose();
     this.room.removeFromParent();
   }
@@ -114,9 +130,12 @@ export class Boards {
     const holder = sayHolder(this.control?.holder ?? "", this.control?.isYou ?? false);
     this.menu.mesh.visible = this.actions.mesh.visible = menu !== null;
     this.work.mesh.visible = this.closeUp.mesh.visible = menu === null;
+    this.paintPicture(menu);
     if (menu !== null) {
-      this.menu.show(JSON.stringify([menu, this.hovered]), (pen) =>
-        paintMenu(pen, menu, this.menu.width, this.menu.height, this.hovered),
+      const focused = menu.items.find((item) => item.name === menu.focus);
+      const image = thumbnail(focused?.picture ?? "", () => this.paint());
+      this.menu.show(JSON.stringify([menu, this.hovered, image !== null]), (pen) =>
+        paintMenu(pen, menu, this.menu.width, this.menu.height, this.hovered, image),
       );
       const content = JSON.stringify([this.hovered, this.mayGrab, holder, screen.language]);
       this.actions.show(content, (pen) => this.paintActions(pen, holder));
@@ -128,6 +147,21 @@ export class Boards {
       );
     }
     this.paintWarning(screen);
+  }
+
+  private paintPicture(menu: Menu | null): void {
+    const { drawing, picture } = this;
+    const isWanted = menu?.picture === "controls";
+    if (isWanted) {
+      const source = controlsPicture(this.control?.holder ?? "", inputsOf(menu));
+      if (drawing.src !== source) drawing.src = source;
+    }
+    picture.mesh.visible = isWanted && drawing.complete;
+    if (!picture.mesh.visible) return;
+    picture.show(drawing.src, (pen) => {
+      pen.box(0, 0, picture.width, picture.height, COLORS.night, PAD);
+      pen.image(drawing, PAD, PAD);
+    });
   }
 
   private paintWarning(screen: Screen): void {
@@ -163,7 +197,7 @@ export class Boards {
       regions.push({ name, x, y, width: wide, height: 62 });
       x += wide + 14;
     });
-    pen.line(holder, x + 12, y + 33, { size: 27, color: COLORS.soft }, width - x - 40);
+    pen.line(holder, 32, height - 38, { size: 32, color: COLORS.soft }, width - 64);
     return regions;
   }
 }

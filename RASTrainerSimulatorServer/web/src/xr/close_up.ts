@@ -12,17 +12,21 @@ import {
   type Object3D,
 } from "three";
 
+import { COLORS } from "../panels/pen";
 import type { Stage } from "../stage";
 import { Viewpoint } from "../viewpoint";
 
 const WIDTH = 768;
 const HEIGHT = 480;
-const ANGLE_DEG = 17;
+const ANGLE_DEG = 10;
+/** Of the dark frame around it, m: so it is seen to be a picture. */
+const FRAME = 0.012;
 /** A picture of its own in every so many pictures: its price is spread over them. */
 const EVERY = 3;
 
 export class CloseUp {
   readonly mesh: Mesh<PlaneGeometry, MeshBasicMaterial>;
+  private readonly frame: Mesh<PlaneGeometry, MeshBasicMaterial>;
   private readonly target = new WebGLRenderTarget(WIDTH, HEIGHT, { samples: 4 });
   private readonly camera = new PerspectiveCamera(ANGLE_DEG, WIDTH / HEIGHT, 0.05, 6);
   private readonly place = new Viewpoint();
@@ -33,11 +37,16 @@ export class CloseUp {
     this.target.texture.colorSpace = SRGBColorSpace;
     this.target.texture.minFilter = LinearFilter;
     const material = new MeshBasicMaterial({ map: this.target.texture, toneMapped: false });
-    this.mesh = new Mesh(new PlaneGeometry(wide, (wide * HEIGHT) / WIDTH), material);
+    const high = (wide * HEIGHT) / WIDTH;
+    this.mesh = new Mesh(new PlaneGeometry(wide, high), material);
+    const dark = new MeshBasicMaterial({ color: COLORS.night, toneMapped: false });
+    this.frame = new Mesh(new PlaneGeometry(wide + 2 * FRAME, high + 2 * FRAME), dark);
+    this.frame.position.z = -0.003;
+    this.mesh.add(this.frame);
   }
 
   /** Draw the picture if it is its turn; `hidden` is not to be seen in it. */
-  draw(stage: Stage, hidden: readonly Object3D[]): void {
+  draw(stage: Stage, hidden: Object3D): void {
     const { model, renderer } = stage;
     const camera = model?.news.cameras["close-up"];
     const tool = model?.node("tool");
@@ -48,18 +57,22 @@ export class CloseUp {
     this.place.focus.copy(tool.getWorldPosition(this.tip));
     this.place.angle = ANGLE_DEG;
     this.place.look(this.camera, WIDTH / HEIGHT);
-    for (const object of hidden) object.visible = false;
+    hidden.visible = false;
     renderer.xr.enabled = false;
     const before = renderer.getRenderTarget();
     renderer.setRenderTarget(this.target);
     renderer.render(stage.scene, this.camera);
     renderer.setRenderTarget(before);
     renderer.xr.enabled = true;
-    for (const object of hidden) object.visible = true;
+    hidden.visible = true;
   }
 
   dispose(): void {
     this.mesh.removeFromParent();
+    for (const mesh of [this.mesh, this.frame]) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
     this.target.dispose();
   }
 }

@@ -6,8 +6,11 @@ import type { SceneNews } from "../messages";
 import { yUp } from "../viewpoint";
 
 /** How far the tip may lag behind the hand before the stick is fully pushed. */
-const FULL_M = 0.03;
-const REST_M = 0.0015;
+const FULL_M = 0.04;
+const REST_M = 0.001;
+/** Of the simulator's sticks: what is not felt yet, and the power by which they grow. */
+const DEAD_ZONE = 0.12;
+const EXPONENT = 2;
 
 export class Grab {
   isAllowed = true;
@@ -50,7 +53,9 @@ export class Grab {
     this.hand.getWorldPosition(this.lag).sub(this.handBegan).add(this.tipBegan);
     this.lag.sub(this.tool.getWorldPosition(this.now));
     const size = this.lag.length();
-    const push = size < REST_M ? 0 : Math.min(1, size / FULL_M) / size;
+    // So that the tip's speed is proportional to its lag, down to where it rests.
+    const speed = Math.min(1, size / FULL_M);
+    const push = size < REST_M ? 0 : (DEAD_ZONE + (1 - DEAD_ZONE) * speed ** (1 / EXPONENT)) / size;
     for (let index = 0; index < 3; index++) {
       translation[index] = push * this.lag.dot(this.axes[index]!);
     }

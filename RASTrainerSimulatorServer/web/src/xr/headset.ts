@@ -4,7 +4,7 @@ import { PerspectiveCamera, Vector3 } from "three";
 
 import type { Connection } from "../connection";
 import type { FrameCount } from "../frame_count";
-import type { ControlNews, EventNews, Hello, Screen, StateNews } from "../messages";
+import type { ControlNews, EventNews, Hello, SceneNews, Screen, StateNews } from "../messages";
 import type { SceneModel } from "../scene_model";
 import type { Sounds } from "../sounds";
 import type { Stage } from "../stage";
@@ -26,7 +26,8 @@ export class Headset {
   private base: XRReferenceSpace | null = null;
   private mustRecenter = false;
   private looked = 0;
-  private told = "";
+  private shownNews: SceneNews | null = null;
+  private shownCamera = "";
   private readonly ears = { place: new Vector3(), forward: new Vector3(), up: new Vector3() };
   private readonly tip = new Vector3();
 
@@ -60,7 +61,9 @@ export class Headset {
     this.mustRecenter = true;
     await this.setFrameRate();
     this.session.addEventListener("visibilitychange", () => {
-      this.connection.send("visibility", { isVisible: this.session.visibilityState === "visible" });
+      const isVisible = this.session.visibilityState === "visible";
+      if (!isVisible) this.hands.release();
+      this.connection.send("visibility", { isVisible });
     });
     this.sounds.setSpatial(true);
     this.connection.rejoin(this.hello());
@@ -107,16 +110,16 @@ export class Headset {
 
   /** Draw for both eyes, `now` in s. */
   draw(now: number, frame: XRFrame, model: SceneModel, state: StateNews): void {
-    const key = `${model.news.url} ${model.news.sticks} ${state.camera}`;
-    if (key !== this.told) {
-      this.told = key;
+    if (model.news !== this.shownNews || state.camera !== this.shownCamera) {
+      this.shownNews = model.news;
+      this.shownCamera = state.camera;
       this.takeScene(model, state);
     }
     this.lookAround(frame);
     this.hands.poll(Math.min(0.1, now - this.looked));
     this.looked = now;
     this.hear(model);
-    this.boards.closeUp.draw(this.stage, [this.boards.room]);
+    this.boards.closeUp.draw(this.stage, this.boards.room);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
 
@@ -147,7 +150,7 @@ export class Headset {
       case "lower":
         this.placement.raise(name.endsWith("higher") ? 1 : -1);
         this.boards.arrange(this.placement);
-            break;
+        break;
       case "grab":
         this.grab.isAllowed = !this.grab.isAllowed;
         this.boards.setGrab(this.grab.isAllowed);

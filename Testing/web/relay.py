@@ -1,0 +1,68 @@
+"""A piece of network between a browser and the simulator, which can stand still or break."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+
+from Testing.simulator.igtl.servers import LoopThread
+
+HOST = "127.0.0.1"
+CHUNK = 65536
+
+
+class Relay:
+    """Passes bytes on in both directions; ended by the `with` statement.
+
+    Attributes:
+        url: of this end.
+    """
+
+    def __init__(self, port: int):
+        """Lead to a port of this computer."""
+        self._target = port
+        self._thread = LoopThread()
+        self._writers: list[asyncio.StreamWriter] = []
+        self._goes = asyncio.Event()
+        self._goes.set()
+        self._server = self._thread.run(asyncio.start_server(self._relay, HOST, 0))
+        self.url = f"http://{HOST}:{self._server.sockets[0].getsockname()[1]}"
+
+    def __enter__(self) -> Relay:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self._thread.call(self._server.close)
+        self.cut()
+        self._thread.stop()
+
+    def stall(self) -> None:
+        """Pass nothing on, as a wireless network out of reach; nobody is told."""
+        self._thread.call(self._goes.clear)
+
+    def go_on(self) -> None:
+        """Pass on what waits, and everything after it."""
+        self._thread.call(self._goes.set)
+
+    def cut(self) -> None:
+        """Break all connections; new ones can be made."""
+        self._thread.call(self._close_all)
+
+    def _close_all(self) -> None:
+        for writer in self._writers:
+            writer.transport.abort()
+        self._writers.clear()
+
+    async def _relay(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        far_reader, far_writer = await asyncio.open_connection(HOST, self._target)
+        self._writers += [writer, far_writer]
+        ways = (self._pass(reader, far_writer), self._pass(far_reader, writer))
+        await asyncio.gather(*ways)
+
+    async def _pass(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        with contextlib.suppress(ConnectionError):
+            while content := await reader.read(CHUNK):
+                await self._goes.wait()
+                writer.write(content)
+                await writer.drain()
+        writer.close()
