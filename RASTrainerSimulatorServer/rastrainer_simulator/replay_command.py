@@ -7,6 +7,8 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
+from rastrainer.errors import InputError
+
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Add the subcommand to the parser of `rastrainer`."""
@@ -20,14 +22,35 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--scenario", type=Path, metavar="DIR", help="the scenario it was recorded with"
     )
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
+    parser.add_argument(
+        "--view",
+        action="store_true",
+        help="show the trial in the window and to every view; Escape ends it",
+    )
+    parser.add_argument(
+        "--view-port", type=int, metavar="PORT", help="where views are served with --view"
+    )
+    parser.add_argument(
+        "--window",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="open the window with --view",
+    )
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print what the replay has found and return the exit status."""
+    """Print what the replay has found, or show the trial, and return the exit status.
+
+    Raises:
+        InputError: the journal cannot be replayed, or an argument not be used.
+    """
+    if arguments.view:
+        return _show(arguments)
     # Only here: the robot and the scenario take time to import.
     from rastrainer.journal.journal_reader import read_journal
-    from rastrainer_simulator.record.replay import replay, setup_of
+    from rastrainer_simulator.record.recorded_setup import setup_of
+    from rastrainer_simulator.record.replay import replay
 
     reading = read_journal(arguments.journal)
     report = replay(reading, setup_of(reading.header, arguments.scenario))
@@ -37,6 +60,19 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         print(_summary(reading.sentence, report))
     return 0 if report.is_identical else 1
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    port = arguments.view_port
+    if port is not None and not 0 <= port < 65536:
+        raise InputError("--view-port must be a number from 0 to 65535.")
+    from rastrainer_simulator.replaying.show import show
+
+    def tell(where: str) -> None:
+        print(f"RASTrainer replay {where}", flush=True)
+
+    show(arguments.journal, arguments.scenario, port, arguments.window, tell)
+    return 0
 
 
 def _summary(sentence: str, report) -> str:

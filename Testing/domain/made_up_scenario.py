@@ -1,5 +1,7 @@
 """A scenario on a ball of a head, for tests of files and packages."""
 
+import struct
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,20 @@ from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp
 from rastrainer.tasks import LABELS, Task
 from Testing.domain.spheres import RADIUS_MM, sphere_mesh
+
+
+def png(width=4, height=3):
+    """Return a PNG file of one color."""
+
+    def chunk(name, content):
+        check = struct.pack(">I", zlib.crc32(name + content))
+        return struct.pack(">I", len(content)) + name + content + check
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    rows = zlib.compress((b"\0" + bytes((40, 90, 160)) * width) * height)
+    return (
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+    )
 
 
 def ball_head(radius=90.0):

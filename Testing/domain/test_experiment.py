@@ -97,7 +97,12 @@ def test_a_trainee_is_led_step_by_step_and_resumes_after_an_interruption(tmp_pat
         assert progress.enroll("T001") == progress.enroll("T001") == 0
         assert progress.progress("T001").sentence == ("Step 1 of 19: Answer the questionnaire SSQ.")
         progress.finish("T001", "hmd/before/ssq", {"answers": [0] * 16})
-        progress.finish("T001", "hmd/trial-run")
+        progress.practice("T001", "hmd/trial-run", 200.0)
+    with Study.open(path) as study:
+        progress = StudyProgress(study)
+        progress.practice("T001", "hmd/trial-run", 100.5)
+        assert progress.progress("T001").practiced_s == 300.5
+        progress.finish("T001", "hmd/trial-run", {"minutes": 300.5 / 60})
     with Study.open(path) as study:
         progress = StudyProgress(study)
         progress.begin(read_study_protocol(SHIPPED))
@@ -125,6 +130,8 @@ def test_the_whole_way_ends_with_thanks_and_all_answers_scored(study):
         elif step.kind is StepKind.QUESTIONNAIRE:
             count = {"ssq": 16, "nasa-tlx": 6, "sus": 10}[step.questionnaire]
             details = {"answers": [3] * count}
+        else:
+            details = {"minutes": step.minutes}
         progress.finish("T001", step.name, details)
     assert "Thank you" in progress.progress("T001").sentence
     answers = progress.answers()
@@ -181,6 +188,44 @@ def test_a_questionnaire_is_not_done_without_all_its_answers(study):
     for details, words in [({}, "only with its answers"), ({"answers": [1] * 15}, "16 answers")]:
         with pytest.raises(InputError, match=words):
             progress.finish("T001", "hmd/before/ssq", details)
+
+
+def test_a_trial_run_or_a_break_ends_too_early_only_with_a_reason(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol(questionnaires=[]))
+    progress.enroll("T001")
+    for minutes in (None, 4.9, float("nan"), float("inf"), True, "5"):
+        with pytest.raises(InputError, match="The trial run takes 5 minutes, of which"):
+            progress.finish("T001", "hmd/trial-run", {"minutes": minutes})
+    assert progress.skip("T001", "hmd/trial-run", "has practiced in a pilot").skipped
+    with pytest.raises(InputError, match="not a trial run that comes next"):
+        progress.practice("T001", "hmd/trial-run", 1.0)
+
+
+def test_trials_count_by_themselves_in_the_order_of_the_protocol_and_none_from_before(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
+    first = steps_for(progress.protocol(), 0)[0]
+    study.add_trial(trial_of(first, 1))
+    progress.enroll("T001")
+    assert progress.count_played("T001").entries == ()
+
+    def play(number, task, minute):
+        utc = f"2999-01-01T10:{minute:02d}:00Z"
+        trial = trial_of(first, number) | {"task": task, "startedUtc": utc, "completedUtc": utc}
+        study.add_trial(trial)
+
+    # Delivered in another order than played; one task twice, which is not its second round.
+    play(3, "task-2", 20)
+    play(4, "task-1", 15)
+    play(2, "task-1", 10)
+    counted = progress.count_played("T001")
+    assert [trial[-1] for trial in counted.counted_trials] == ["2", "3"]
+    assert counted.next_step.name == "hmd/1/task-3"
+    assert progress.count_played("T001") == counted
+    for name in ("hmd/1/task-3", "hmd/1/task-4", "hmd/1/task-5"):
+        progress.skip("T001", name, "the power had failed for the day")
+    assert progress.count_played("T001").next_step.name == "hmd/2/task-1"
 
 
 def test_a_study_keeps_its_protocol(study):

@@ -2,6 +2,7 @@
 
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -9,8 +10,10 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.experiment.steps import StepKind
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import read_study_protocol
+from rastrainer.questionnaires.catalog import find_questionnaire
 from rastrainer.report.comparisons import compare_modes, paired_means
 from rastrainer.report.outcomes import MAIN_OUTCOMES
 from rastrainer.report.published_scores import with_ctps
@@ -170,7 +173,8 @@ def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
     assert "40 trials" in capsys.readouterr().out
     assert (folder / "report.html").read_text().startswith("<!DOCTYPE html>")
     lines = (folder / "trials.csv").read_text().splitlines()
-    assert lines[0] == "trainee,mode,task,number,trial_id,started_utc,completion_time_s,rmse_mm"
+    assert lines[0].startswith("trainee,mode,task,number,trial_id,started_utc,")
+    assert lines[0].endswith(",completion_time_s,rmse_mm")
     assert len(lines) == 41
 
 
@@ -229,23 +233,41 @@ def test_hostile_pseudonyms_and_titles_stay_text():
 
 
 def study_with_trials(path, consent=True):
+    """A has done all, B the first trial only; A has also played the last task once more."""
     with Study.open(path) as study:
         progress = StudyProgress(study)
-        progress.begin(read_study_protocol(STUDIES / "published-protocol.json"))
+        published = read_study_protocol(STUDIES / "published-protocol.json")
+        progress.begin(replace(published, tasks=("task-1",)))
         for name in ("A", "B"):
             study.create_trainee(name, consent=consent if name == "A" else True)
             progress.enroll(name)
-        progress.finish("A", "hmd/before/ssq", {"answers": [1] * 16})
         progress.skip("B", "desktop/trial-run", "knows the tasks from a pilot")
-        for i, (name, mode) in enumerate([("A", "hmd"), ("A", "desktop"), ("B", "hmd")]):
-            record = make_record(
-                trialId=f"00000000-0000-0000-0000-00000000000{i}",
-                mode=mode,
-                trainee=name,
-                motion={"sparc": -2.5},
-            )
-            score = score_trial(110.0, 0.5, task_reference("task-1"))
-            study.add_trial(record, score=score)
+        for step in progress.progress("A").steps:
+            if step.kind is StepKind.TRIAL:
+                play(study, "A", step.mode)
+                progress.count_played("A")
+            elif step.kind is StepKind.QUESTIONNAIRE:
+                count = len(find_questionnaire(step.questionnaire).items)
+                progress.finish("A", step.name, {"answers": [1] * count})
+            else:
+                progress.finish("A", step.name, {"minutes": step.minutes})
+        play(study, "A", "desktop")
+        play(study, "B", "desktop")
+        progress.count_played("B")
+
+
+def play(study, trainee, mode):
+    number = sum(len(study.history(name)) for name in ("A", "B"))
+    utc = f"2999-01-01T10:0{number}:00Z"
+    record = make_record(
+        trialId=f"00000000-0000-0000-0000-00000000000{number}",
+        mode=mode,
+        trainee=trainee,
+        startedUtc=utc,
+        completedUtc=utc,
+        motion={"sparc": -2.5},
+    )
+    study.add_trial(record, score=score_trial(110.0, 0.5, task_reference("task-1")))
 
 
 def test_a_study_database_gives_scores_motion_questionnaires_and_what_was_skipped(tmp_path):
@@ -257,6 +279,12 @@ def test_a_study_database_gives_scores_motion_questionnaires_and_what_was_skippe
     assert "B, desktop/trial-run: knows the tasks from a pilot" in words
     assert "The order of modes was balanced" in words
     assert "simulator 0.1.0" in words
+    assert [(trial.trainee, trial.mode) for trial in data.trials] == [
+        ("A", "hmd"),
+        ("A", "desktop"),
+        ("B", "desktop"),
+    ]
+    assert "1 trials were played that the protocol had not asked for" in words
 
 
 def test_trainees_without_consent_are_left_out_and_counted(tmp_path):

@@ -8,12 +8,13 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_pose import Perturbation
 from rastrainer.scenario import load_scenario
 from rastrainer.scenario_draft import HeadDraft, read_draft, write_draft
 from rastrainer.scenario_library import list_scenarios
-from rastrainer.scenario_setup import SetUp, read_setup
-from rastrainer.scenario_writer import new_folder, write_scenario
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario
+from rastrainer.scenario_setup import SetUp, read_setup, write_setup
+from rastrainer.scenario_writer import new_folder, scenario_name, write_scenario
+from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
 
 
 def written(folder, skull=None):
@@ -82,7 +83,7 @@ def test_a_plan_or_skull_that_is_wrong_is_named(tmp_path, field, value, sentence
 
 def test_scenarios_are_listed_by_title_with_picture_or_problem(tmp_path):
     written(tmp_path / "ball")
-    (tmp_path / "ball" / "preview.png").write_bytes(b"picture")
+    (tmp_path / "ball" / "preview.png").write_bytes(png())
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken" / "scenario.json").write_text("{")
     ball, broken = list_scenarios([tmp_path, tmp_path / "none"])
@@ -90,6 +91,16 @@ def test_scenarios_are_listed_by_title_with_picture_or_problem(tmp_path):
     assert ball.preview == tmp_path / "ball" / "preview.png"
     assert "scenario.json" in broken.problem
     assert broken.preview is None
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"picture", png(5000, 1), png(1, 5000), png() + bytes(4_000_000)]
+)
+def test_a_picture_that_no_view_could_show_is_left_out_of_lists(tmp_path, content):
+    written(tmp_path / "ball")
+    (tmp_path / "ball" / "preview.png").write_bytes(content)
+    (ball,) = list_scenarios([tmp_path])
+    assert (ball.preview, ball.problem) == (None, "")
 
 
 def test_a_draft_is_read_back(tmp_path):
@@ -106,6 +117,20 @@ def test_the_usual_setup_is_the_default_scenarios(tmp_path):
     pose = SetUp().head_to_world(np.array([1.0, 2.0, 3.0]))
     assert np.allclose(transforms.apply(pose, np.array([1.0, 2.0, 3.0])), [480, 0, 220])
     assert np.allclose(pose[:3, :3], np.diag([-1, -1, 1]))
+
+
+def test_a_setup_is_written_and_read_back(tmp_path):
+    limits = Perturbation(1.0, 2.0, 3.0)
+    setup = SetUp((1.0, 2, 3), 4.5, limits, (5.0, 6), (700.0, 800, 9), 90.0, (10.0, -11))
+    write_setup(tmp_path / "setup.json", setup)
+    assert read_setup(tmp_path / "setup.json") == setup
+
+
+def test_a_title_becomes_a_name_or_is_refused():
+    assert scenario_name("  Ms. X, 2nd MRI ") == "ms-x-2nd-mri"
+    assert len(scenario_name("a" * 100)) == 40
+    with pytest.raises(InputError, match="needs a Latin letter"):
+        scenario_name("頭")
 
 
 def test_a_moved_robot_base_moves_everything_else_the_other_way():

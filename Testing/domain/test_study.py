@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.export.tidy_csv import write_history
+from rastrainer.export.trainee_json import export_trainee
 from rastrainer.registration import KINDS, register
 from rastrainer.scoring import score_trial, task_reference
 from rastrainer.study import DeletedTrialError, StoredRegistration, Study
-from rastrainer.study_export import export_history, export_trainee
 from rastrainer.target_error import target_error
 from rastrainer.trial_record import TrialRecord
 from Testing.domain.trial_records import make_record
@@ -268,9 +269,9 @@ def test_the_history_is_a_table_with_empty_cells_for_what_is_unknown(study, resu
     study.add_trial(record(1, trainee="=SUM(A1)"), *results)
     study.set_motion(record(1)["trialId"], {"path_mm": 2500.5})
     study.add_trial(record(2, trainee="b"))
-    assert export_history(study, ["=SUM(A1)", "b"], tmp_path / "history.csv") == 2
+    assert write_history(study, ["=SUM(A1)", "b"], tmp_path / "history.csv") == 2
     with (tmp_path / "history.csv").open(newline="") as file:
         first, second = csv.DictReader(file)
     assert first["trainee"] == "'=SUM(A1)"
-    assert float(first["fre_mm"]) == results[0][0].fre_mm
+    assert float(first["rmse_mm"]) == results[0][0].fre_mm
     assert (first["path_mm"], second["path_mm"], second["score"]) == ("2500.5", "", "")

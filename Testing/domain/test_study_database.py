@@ -19,6 +19,7 @@ from rastrainer.errors import InputError
 from rastrainer.study import Study
 from rastrainer.study_schema import APPLICATION_ID, MIGRATIONS
 from Testing.domain.trial_records import make_record
+from Testing.forked_child import in_child
 
 WRITER = """
 import json, sys
@@ -210,18 +211,6 @@ def test_every_schema_so_far_migrates_to_the_present_one(version, tmp_path):
 def test_a_place_that_cannot_hold_a_study_is_told(name, words, tmp_path):
     with pytest.raises(InputError, match=words):
         Study.open(f"{tmp_path}/{name}")
-
-
-def in_child(function, *arguments):
-    """Run in a forked process, which may give up its rights, and return what it returns."""
-    context = multiprocessing.get_context("fork")
-    receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=lambda: sender.send(function(*arguments)))
-    process.start()
-    assert receiver.poll(30)
-    result = receiver.recv()
-    process.join()
-    return result
 
 
 def use_without_rights(path):

@@ -84,12 +84,13 @@ def test_a_trajectory_is_placed_by_two_clicks(host):
 
 
 def test_sample_data_come_into_the_scene_and_the_slices(host):
-    host.find("otherHeadGroupBox").collapsed = False
+    host.find("newScenarioCollapsibleButton").collapsed = False
     host.process_events()
     red = slicer.app.layoutManager().sliceWidget("Red").mrmlSliceCompositeNode()
     host.press("sampleDataButton")
     volume = host.scene.GetFirstNodeByName("MRBrainTumor1")
     assert red.GetBackgroundVolumeID() == volume.GetID()
+    assert host.find("scanComboBox").currentNode() is volume
 
 
 def test_every_choice_that_can_be_made_without_a_simulator_is_taken(host):

@@ -2,13 +2,17 @@
 
 import csv
 import json
+import sys
 import uuid
+from pathlib import Path
 
 import numpy as np
 import pytest
 import slicer
 
 from rastrainer import transforms
+from rastrainer.experiment.study_progress import StudyProgress
+from rastrainer.experiment.study_protocol import read_study_protocol
 from rastrainer.scenario import load_scenario
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.link_nodes import capturedPointsNode
@@ -18,7 +22,19 @@ from rastrainer.tasks import LABELS
 from rastrainer.trial_analysis import analyze_trial
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli import main
+from Testing.slicer.recorded_trial import write_recorded_trial
 
+PROTOCOL = asset_path("studies", "published-protocol.json")
+PAIRED = """
+import sys, threading
+said = "RASTrainer simulator serves"
+print(f"{said} views on http://127.0.0.1:18945, pairing code 012345")
+if "--lan" in sys.argv:
+    print(f"{said} the local network on https://192.0.2.7:18946; the browser warns", flush=True)
+threading.Event().wait()
+"""
+"""A simulator that only says how a headset is paired."""
 SECTIONS = ("simulator", "trainees", "scenario", "training", "registration", "plan", "score")
 
 
@@ -202,15 +218,6 @@ def test_a_model_of_the_scene_can_be_the_head(panels):
     assert not former.GetDisplayVisibility()
 
 
-def test_an_mri_comes_through_slicers_sample_data_by_one_click(panels):
-    panels.press("sampleDataButton")
-    assert panels.text("otherHeadText") == "MRBrainTumor1 is in the scene."
-    node = panels.scene.GetFirstNodeByName("MRBrainTumor1")
-    panels.choose("headModelComboBox", node)
-    panels.press("useHeadButton")
-    assert panels.text("otherHeadText").startswith("Head of MRBrainTumor1 is the head now")
-
-
 # Registration
 
 
@@ -328,6 +335,77 @@ def test_a_study_without_consenting_trainees_has_no_report(panels, add_trial, tm
     assert "agreed to research" in panels.messages[-1].text
 
 
+def test_the_report_of_the_study_is_written_and_opened(panels, add_trial, study_path, tmp_path):
+    for number in (1, 2, 3):
+        add_trial(number, "T-001", mode="hmd" if number == 3 else "desktop")
+    with Study.open(study_path) as study:
+        study.set_consent("T-001", True)
+    panels.answer("Folder for the report", str(tmp_path / "report"))
+    panels.press("reportButton")
+    page = tmp_path / "report" / "report.html"
+    assert "T-001" in page.read_text(encoding="utf-8")
+    assert panels.text("scoreMessageText") == f"The report is {page}."
+    assert panels.messages[-1].text == page.as_uri()
+    assert len((tmp_path / "report" / "trials.csv").read_text().splitlines()) == 4
+
+
+def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
+    add_trial(1, "T-001")
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    assert panels.text("feedbackText").startswith("Score ")
+    assert "This is your first trial of this task" in panels.text("feedbackText")
+    panels.press("replayButton")
+    assert "only on the computer whose simulator has recorded it" in panels.messages[-1].text
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
+    panels.press("replayButton")
+    assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1").GetNumberOfItems() > 150
+    panels.wait_until(lambda: "clearance" in panels.text("replayText"), "the replay is told")
+    panels.press("worstTouchButton")
+    tool = panels.scene.GetFirstNodeByName("T-001, task-1: tool")
+    assert tool.GetTransformNodeID() is not None
+
+
+def test_who_is_deleted_leaves_no_trace_in_database_journals_and_later_exports(
+    panels, add_trial, study_path, tmp_path
+):
+    trial_id, trials = str(uuid.UUID(int=1)), Path.home() / "RASTrainer" / "trials"
+    add_trial(1, "T-001", motion={"sparc": -1.9})
+    add_trial(2, "other")
+    write_recorded_trial(trials, trial_id, 16.0)
+    write_recorded_trial(trials, str(uuid.UUID(int=2)), 16.0, "other")
+    (tmp_path / "later").mkdir()
+    with Study.open(study_path) as study:
+        for name in ("T-001", "other"):
+            study.set_consent(name, True)
+        progress = StudyProgress(study)
+        progress.begin(read_study_protocol(PROTOCOL))
+        progress.enroll("T-001")
+        progress.skip("T-001", "hmd/before/ssq", "a reason nobody else has")
+        progress.practice("T-001", "hmd/trial-run", 9.0)
+    words = (b"T-001", trial_id.encode(), b"a reason nobody else has")
+    assert all(word in bytes_below(Path(study_path).parent, trials) for word in words)
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    panels.answer("Delete", "Yes")
+    panels.press("deleteTraineeButton")
+    assert "1 trials and 1 journals" in panels.text("traineeText")
+    panels.answer("Export all trials", str(tmp_path / "later" / "all.csv"))
+    panels.press("exportScoresButton")
+    panels.answer("Folder for the report", str(tmp_path / "later" / "report"))
+    panels.press("reportButton")
+    command = ["export", study_path, "-o", str(tmp_path / "later" / "exports")]
+    assert main([*command, "--records", str(trials)]) == 0
+    left = bytes_below(Path(study_path).parent, trials, tmp_path / "later")
+    assert not [word for word in words if word in left]
+    assert str(uuid.UUID(int=2)).encode() in left
+
+
+def bytes_below(*folders):
+    files = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
+    return b"".join(path.read_bytes() for path in files)
+
+
 # Simulator
 
 
@@ -339,6 +417,20 @@ def test_the_simulator_must_be_set_up_before_it_is_started(panels):
     panels.process_events()
     panels.press("startSimulatorButton")
     assert "There is no program" in panels.messages[-1].text
+
+
+def test_how_a_headset_is_paired_is_shown_while_the_simulator_runs(panels, tmp_path):
+    program = tmp_path / "rastrainer"
+    program.write_text(f"#!{sys.executable}\n{PAIRED}", encoding="utf-8")
+    program.chmod(0o755)
+    panels.find("programPathLineEdit").currentPath = str(program)
+    panels.process_events()
+    panels.check("networkCheckBox")
+    panels.press("startSimulatorButton")
+    wanted = "open http://127.0.0.1:18945 or https://192.0.2.7:18946 and enter the code 012345."
+    panels.wait_until(lambda: wanted in panels.text("pairingText"), "it is told")
+    panels.press("stopSimulatorButton")
+    assert panels.text("pairingText") == ""
 
 
 def test_a_set_up_that_cannot_begin_is_told(panels, tmp_path):

@@ -89,7 +89,7 @@ def test_the_robot_can_be_hidden(scene, robot):
 
 
 def test_a_folder_without_a_robot_is_told(scene, tmp_path):
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="There is no file"):
         showRobot(scene, tmp_path)
     shutil.copy(ROBOT / "iiwa7.urdf", tmp_path)
     with pytest.raises(InputError, match=r"mesh .*stl is missing"):

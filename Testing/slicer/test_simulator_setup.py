@@ -18,6 +18,11 @@ CLI = """
 import sys
 def main():
     print("RASTrainer simulator ready on 127.0.0.1:" + sys.argv[sys.argv.index("--port") + 1])
+    if "--lan" in sys.argv:
+        print("RASTrainer simulator serves views on http://127.0.0.1:18945, pairing code 012345")
+        print("RASTrainer simulator serves the local network on https://192.0.2.7:18946 or "
+              "https://192.0.2.8:18946; the browser warns of a certificate made here")
+        print("RASTrainer simulator has a new pairing code for views: 678901")
     sys.stdout.flush()
     if "--close" in sys.argv:
         return 0
@@ -83,6 +88,24 @@ def test_what_was_set_up_starts_tells_its_port_and_stops(setup, wheels):
     assert program.port == 18999
     program.stop()
     assert (program.state, program.isRunning) == (ProgramState.STOPPED, False)
+
+
+def test_how_a_headset_is_paired_is_told_until_the_simulator_ends(setup, wheels):
+    run_setup(setup, SetupSource("rastrainer-simulator", wheels))
+    program, told = SimulatorProgram(), []
+    program.pairingChanged.connect(lambda: told.append(program.pairingSentence))
+    program.start(setup.command(["simulator", "--port", "1", "--lan"]))
+    wait_until(lambda: program.pairingCode == "678901", program.process, 20.0)
+    program.stop()
+    here = "In a browser or a headset open http://127.0.0.1:18945"
+    everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
+    assert told == [
+        "",
+        f"{here} and enter the code 012345.",
+        f"{everywhere} and enter the code 012345.",
+        f"{everywhere} and enter the code 678901.",
+        "",
+    ]
 
 
 def test_a_simulator_that_ends_by_itself_says_why(setup, wheels):

@@ -1,75 +1,24 @@
 """Trials are started and steered from Slicer, and shown while they are played."""
 
-import json
-import uuid
-
 import numpy as np
 import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.igtl.content import Status, String
 from rastrainer.igtl.points import Point, Points
-from rastrainer.protocol import PROTOCOL_VERSION, Device
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.link import Link
+from rastrainer.protocol import Device
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.registration_nodes import isApplied, matrixOf
-from rastrainer.slicer.scene import Role, findNode
-from rastrainer.slicer.training_desk import TrainingDesk
+from rastrainer.slicer.scene import Role
 from rastrainer.slicer.world_placement import isPlanned
-from Testing.slicer.simulator_double import SimulatorDouble, wait_until
-
-TRIAL = str(uuid.UUID(int=5))
-
-
-class Room:
-    """A desk on a link to a simulator double that has the ball scenario."""
-
-    def __init__(self, scene, scenario):
-        self.scene, self.now, self.refusal = scene, 100.0, None
-        self.simulator = SimulatorDouble(self.answer)
-        self.link = Link(scene, headlessKit)
-        self.desk = TrainingDesk(scene, self.link, lambda _name: scenario, lambda: self.now)
-        self.answers = []
-        self.desk.answered.connect(self.answers.append)
-        opened = []
-        self.link.opened.connect(lambda: opened.append(True))
-        self.link.connectTo(port=self.simulator.port)
-        self.run_until(lambda: opened)
-        self.simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
-
-    def answer(self, name, _arguments):
-        if name == "ListTasks":
-            return {"scenario": "ball", "title": "Ball", "tasks": []}
-        return {} if self.refusal is None or name == "Hello" else self.refusal
-
-    def tell(self, **state):
-        told = {"trialId": TRIAL, "phase": "running", "task": "task-1", "trainee": "T001"}
-        self.simulator.send(Device.SIM_STATE, String(json.dumps({**told, **state})))
-
-    def sent(self, name):
-        return [arguments for sent, arguments in self.simulator.commands if sent == name]
-
-    def node(self, role, class_name="vtkMRMLMarkupsFiducialNode"):
-        return findNode(self.scene, class_name, role)
-
-    def run_until(self, condition):
-        def process():
-            if self.link.connector is not None:
-                self.link.connector.PeriodicProcess()
-            self.link.process()
-
-        wait_until(condition, process)
+from Testing.slicer.training_room import Room
 
 
 @pytest.fixture
 def room(scene, scenario):
     room = Room(scene, scenario)
     yield room
-    room.desk.close()
-    room.link.disconnect()
-    room.simulator.close()
+    room.close()
 
 
 def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):

@@ -14,12 +14,12 @@ from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
 
 
-def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
-    """Return the UTF-8 text of a file, without its byte order mark.
+def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
+    """Return what a file holds.
 
     Raises:
-        InputError: no such file, no regular file, not readable, larger than the limit (told before
-            it is read), or not UTF-8 text.
+        InputError: no such file, no regular file, not readable, empty, or larger than the limit
+            (told before it is read).
     """
     try:
         # Opening a pipe would wait for its writer.
@@ -37,12 +37,30 @@ def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
         raise InputError(f"The file {_printable(path)} cannot be read: {_reason(error)}.") from None
     if len(content) > limit_bytes:
         raise _too_large(path, limit_bytes)
+    return content
+
+
+def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
+    """Return the UTF-8 text of a file, without its byte order mark.
+
+    Raises:
+        InputError: as `read_bytes`, or not UTF-8 text.
+    """
+    return decode_text(read_bytes(path, limit_bytes), f"The file {path}")
+
+
+def decode_text(content: bytes, what: str) -> str:
+    """Return UTF-8 text without its byte order mark; `what` begins the sentence of an error.
+
+    Raises:
+        InputError: not UTF-8 text.
+    """
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"The file {path} is not UTF-8 text.") from None
+        raise InputError(f"{what} is not UTF-8 text.") from None
     if "\0" in text:
-        raise InputError(f"The file {path} is not a text file.")
+        raise InputError(f"{what} is not a text file.")
     return text
 
 

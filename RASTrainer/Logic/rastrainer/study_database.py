@@ -17,6 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.study_schema import APPLICATION_ID, MIGRATIONS
 
 BUSY_TIMEOUT_S = 30.0
+_COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
 
 
 class StudyDatabase:
@@ -107,6 +108,9 @@ class StudyDatabase:
 
     def _check_origin(self) -> None:
         tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        # Ours has none: in a file from elsewhere they would act in our name.
+        if self._connection.execute(_COMMANDS).fetchone()[0]:
+            raise InputError(f"The study {self.path} holds triggers or views; ours has none.")
         if self._number("application_id") != (APPLICATION_ID if tables else 0):
             raise InputError(f"{self.path} is the database of another program.")
         if self._number("user_version") > len(MIGRATIONS):

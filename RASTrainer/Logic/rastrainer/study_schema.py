@@ -105,4 +105,15 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         )
         """,
     ),
+    (
+        # How long a trial run has been practiced, so that an interruption does not begin it anew.
+        """
+        CREATE TABLE practice (
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            step TEXT NOT NULL,
+            seconds REAL NOT NULL CHECK (seconds >= 0),
+            PRIMARY KEY (trainee_id, step)
+        )
+        """,
+    ),
 )

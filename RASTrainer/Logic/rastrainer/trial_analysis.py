@@ -11,6 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.feedback.trial_feedback import TrialFeedback, trial_feedback
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.localization_error import error_along_surface
+from rastrainer.motion.trajectory import Trajectory
 from rastrainer.point_list import PointList, pair
 from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration, register
 from rastrainer.scenario import Scenario
@@ -73,6 +74,7 @@ def analyze_trial(
     scenario: Scenario,
     cohort: Sequence[ctps.Trial] = (),
     references: Mapping[str, ScoreReference] | None = None,
+    trajectory: Trajectory | None = None,
 ) -> TrialAnalysis:
     """Register a trial's touches to its task's fiducials, paired by label, and score it.
 
@@ -82,6 +84,7 @@ def analyze_trial(
         cohort: trials that CTPS compares with; those of the trial's own mode count.
         references: of the score, by task, as a study's protocol sets them; the shipped ones for
             tasks that it leaves out.
+        trajectory: of the trial, from its journal; it tells why a touch was off.
 
     Raises:
         InputError: the scenario has no such task or labels, or the points cannot be registered.
@@ -109,7 +112,7 @@ def analyze_trial(
         target_errors=errors,
         score=score,
         published_score=_published_score(record, fits[RIGID].fre_mm, cohort),
-        feedback=trial_feedback(score, fits[RIGID], normals, record.motion),
+        feedback=trial_feedback(score, fits[RIGID], normals, record.motion, trajectory),
     )
 
 

@@ -120,7 +120,7 @@ class _Watch:
         result: StepResult,
     ) -> None:
         if self.entries is None:
-            self.entries = TrialEntries(simulation, before, result, self._step_s)
+            self.entries = TrialEntries.begun(simulation, before, result, self._step_s)
         self.entries.add(simulation, operator_input, result)
 
     def record_entry(self, entries: list[dict[str, Any]]) -> dict[str, Any]:

@@ -71,7 +71,7 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         return f"{count} of {len(data.trials)} trials"
     make_empty_folder(folder)
     if name == "csv":
-        write_text(folder / "trials.csv", trials_csv(data))
+        write_text(folder / "trials.csv", trials_csv(data.trials))
         write_text(folder / "answers.csv", answers_csv(data))
     elif name == "xapi":
         write_text(folder / "statements.json", statements_text(data, arguments.home_page))

@@ -21,7 +21,8 @@ class StepEntry:
     Attributes:
         step: Its name.
         outcome: `done` or `skipped`.
-        details: `trialId` of a trial, `answers` of a questionnaire, `reason` of a skipped step.
+        details: `trialId` of a trial, `answers` of a questionnaire, `minutes` of a trial run or a
+            break, `reason` of a skipped step.
         stored_utc: ISO 8601.
     """
 
@@ -38,13 +39,22 @@ class Progress:
     Attributes:
         steps: The whole way.
         entries: Of the first steps, in their order.
+        enrolled_utc: When the trainee was given their place, ISO 8601.
+        practiced_s: How long the next step, if it is a trial run, has been practiced so far, in s.
     """
 
     steps: tuple[Step, ...]
     entries: tuple[StepEntry, ...]
+    enrolled_utc: str = ""
+    practiced_s: float = 0.0
 
     @classmethod
-    def of(cls, steps: Sequence[Step], entries: Sequence[StepEntry]) -> Progress:
+    def of(
+        cls,
+        steps: Sequence[Step],
+        entries: Sequence[StepEntry],
+        enrolled_utc: str = "",
+    ) -> Progress:
         """Return the progress that a log tells of.
 
         Raises:
@@ -55,12 +65,22 @@ class Progress:
                 "What was done so far is not what this protocol asks for; use the protocol that "
                 "the study was begun with."
             )
-        return cls(tuple(steps), tuple(entries))
+        return cls(tuple(steps), tuple(entries), enrolled_utc)
 
     @property
     def next_step(self) -> Step | None:
         """What comes next; None when all is done."""
         return self.steps[len(self.entries)] if len(self.entries) < len(self.steps) else None
+
+    @property
+    def since_utc(self) -> str:
+        """When the step before the next one was done, or the trainee enrolled; ISO 8601."""
+        return self.entries[-1].stored_utc if self.entries else self.enrolled_utc
+
+    @property
+    def counted_trials(self) -> tuple[str, ...]:
+        """UUIDs of the trials that count, in their order."""
+        return tuple(e.details["trialId"] for e in self.entries if "trialId" in e.details)
 
     @property
     def skipped(self) -> tuple[StepEntry, ...]:
@@ -105,7 +125,7 @@ class Progress:
             if not isinstance(details.get("trialId"), str):
                 raise InputError("A trial is done only with the trial that was stored.")
             return {"trialId": details["trialId"]}
-        return {}
+        return {"minutes": _checked_minutes(step, details.get("minutes"))}
 
     def check_skipped(self, step_name: str, reason: str) -> dict[str, Any]:
         """Return what is to be stored when a step is skipped.
@@ -135,3 +155,15 @@ class Progress:
                 "order; one that must be left out is skipped with a reason."
             )
         return step
+
+
+def _checked_minutes(step: Step, minutes: Any) -> float:
+    is_number = isinstance(minutes, (int, float)) and not isinstance(minutes, bool)
+    if not is_number or not step.minutes <= minutes < float("inf"):
+        what = "The trial run" if step.kind is StepKind.TRIAL_RUN else "The break"
+        took = f"{minutes:.1f}" if is_number else "none"
+        raise InputError(
+            f"{what} takes {step.minutes:g} minutes, of which {took} are over; to go on earlier, "
+            "skip it with a reason."
+        )
+    return float(minutes)

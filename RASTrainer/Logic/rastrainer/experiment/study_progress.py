@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import Any
 
 from rastrainer import study_trainees, study_trials
@@ -102,7 +103,8 @@ class StudyProgress:
         Args:
             pseudonym: Of an enrolled trainee.
             step: Name of the step, which must be the next one.
-            details: `trialId` of a stored trial, or `answers` of a questionnaire.
+            details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` that a
+                trial run or a break took.
 
         Raises:
             InputError: it is not the next step, or what belongs to it is missing or wrong.
@@ -125,6 +127,40 @@ class StudyProgress:
             checked = _progress(connection, pseudonym).check_skipped(step, reason)
             _store(connection, pseudonym, step, SKIPPED, checked)
             return _progress(connection, pseudonym)
+
+    def practice(self, pseudonym: str, step: str, seconds: float) -> None:
+        """Add to the time for which the next step, a trial run, was practiced.
+
+        Raises:
+            InputError: it is not the next step, or no trial run.
+        """
+        with self._database.writing() as connection:
+            next_step = _progress(connection, pseudonym).next_step
+            if next_step is None or next_step.name != step or not _is_practice(next_step):
+                raise InputError(f"{step[:80]} is not a trial run that comes next.")
+            connection.execute(
+                f"INSERT INTO practice VALUES (({TRAINEE_ID}), ?, ?) "
+                "ON CONFLICT DO UPDATE SET seconds = seconds + excluded.seconds",
+                (pseudonym, step, float(seconds)),
+            )
+
+    def count_played(self, pseudonym: str) -> Progress:
+        """Count the stored trials that the next steps ask for, and return the new progress.
+
+        A trial counts that was started after the trainee was enrolled and after the last trial that
+        counts. So a trial that arrives late, or whose step an interruption left open, is found.
+        """
+        with self._database.reading() as connection:
+            progress = _progress(connection, pseudonym)
+            if _played_for(connection, pseudonym, progress) is None:
+                return progress
+        with self._database.writing() as connection:
+            progress = _progress(connection, pseudonym)
+            while (found := _played_for(connection, pseudonym, progress)) is not None:
+                checked = {"trialId": found}
+                _store(connection, pseudonym, progress.next_step.name, DONE, checked)
+                progress = _progress(connection, pseudonym)
+            return progress
 
     def enrolled(self) -> dict[str, int]:
         """Return the place of each enrolled trainee, in the order of places."""
@@ -160,6 +196,9 @@ def _progress(connection: sqlite3.Connection, pseudonym: str) -> Progress:
     place = _place(connection, pseudonym)
     if place is None:
         raise InputError(f"{json.dumps(str(pseudonym)[:64])} is not enrolled in the study yet.")
+    (enrolled_utc,) = connection.execute(
+        f"SELECT stored_utc FROM enrollments WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+    ).fetchone()
     rows = connection.execute(
         "SELECT step, outcome, details_json, stored_utc FROM steps "
         f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
@@ -169,7 +208,49 @@ def _progress(connection: sqlite3.Connection, pseudonym: str) -> Progress:
         StepEntry(step, outcome, decoded(details, dict), utc)
         for step, outcome, details, utc in rows
     ]
-    return Progress.of(steps_for(protocol, place), entries)
+    progress = Progress.of(steps_for(protocol, place), entries, enrolled_utc)
+    return replace(progress, practiced_s=_practiced(connection, pseudonym, progress.next_step))
+
+
+def _practiced(connection: sqlite3.Connection, pseudonym: str, step: Step | None) -> float:
+    row = connection.execute(
+        f"SELECT seconds FROM practice WHERE trainee_id = ({TRAINEE_ID}) AND step = ?",
+        (pseudonym, "" if step is None else step.name),
+    ).fetchone()
+    return 0.0 if row is None else row[0]
+
+
+def _is_practice(step: Step) -> bool:
+    return step.kind is StepKind.TRIAL_RUN
+
+
+def _played_for(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -> str | None:
+    """Return the UUID of the trial that the next step asks for; None where none was played."""
+    step, counted = progress.next_step, set(progress.counted_trials)
+    if step is None or step.kind is not StepKind.TRIAL:
+        return None
+    rows = connection.execute(
+        f"SELECT trial_id, mode, task, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})",
+        (pseudonym,),
+    ).fetchall()
+    played = sorted((_moment(started), trial, mode, task) for trial, mode, task, started in rows)
+    after = [moment for moment, trial, _mode, _task in played if trial in counted]
+    after.append(_moment(progress.enrolled_utc))
+    return next(
+        (
+            trial
+            for moment, trial, mode, task in played
+            if (mode, task) == (step.mode, step.task)
+            and trial not in counted
+            and moment >= max(after)
+        ),
+        None,
+    )
+
+
+def _moment(utc: str) -> datetime:
+    """Return the moment that an ISO 8601 text tells; also before Python 3.11, which knows no Z."""
+    return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
 def _protocol(connection: sqlite3.Connection) -> StudyProtocol | None:

@@ -16,6 +16,8 @@ from rastrainer.study_values import StoredTrial
 ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4
 """A competent trainee fails in 5 of 100 trials, an incompetent one in 40."""
 TRAINING_TRIALS = 30
+PASS_MARK = 70.0
+"""Score to reach where a lab has no mark of its own from contrasting groups."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,9 @@ class Progress:
     sentences: tuple[str, ...]
 
 
-def progress_of(history: Sequence[StoredTrial], trial: StoredTrial, pass_mark: float) -> Progress:
+def progress_of(
+    history: Sequence[StoredTrial], trial: StoredTrial, pass_mark: float = PASS_MARK
+) -> Progress:
     """Return how a trial stands.
 
     Args:

@@ -67,6 +67,13 @@ class TrialFeedback:
         improve = tuple(f"{i}. {a.sentence}" for i, a in enumerate(self.advice, start=1))
         return (*self.score_sentences, *self.touch_sentences, *improve, *progress)
 
+    @property
+    def short_sentences(self) -> list[str]:
+        """What a page beside the score has room for: touches, advice, and the last trials."""
+        touches, advice = self.touch_sentences[:2], (a.sentence for a in self.advice)
+        progress = () if self.progress is None else self.progress.sentences[:1]
+        return [*touches, *advice, *progress]
+
     def to_json(self) -> dict[str, Any]:
         """Return the feedback as a JSON object, such as for `details` of TrialScored."""
         return {

@@ -7,11 +7,13 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.plan_panel import PlanPanel
 from rastrainer.panels.registration_panel import RegistrationPanel
 from rastrainer.panels.scenario_panel import ScenarioPanel
 from rastrainer.panels.score_panel import ScorePanel
 from rastrainer.panels.simulator_panel import SimulatorPanel
+from rastrainer.panels.study_panel import StudyPanel
 from rastrainer.panels.trainees_panel import TraineesPanel
 from rastrainer.panels.training_panel import TrainingPanel
 from rastrainer.slicer.session import Session
@@ -20,6 +22,8 @@ PANELS = (
     SimulatorPanel,
     TraineesPanel,
     ScenarioPanel,
+    NewScenarioPanel,
+    StudyPanel,
     TrainingPanel,
     RegistrationPanel,
     PlanPanel,

@@ -8,6 +8,7 @@ import qt
 import slicer
 
 from rastrainer.panels.trainees_panel import STUDY_SETTING
+from rastrainer.scenario_library import user_library
 from rastrainer.slicer.session import Places
 from rastrainer.slicer.simulator_place import defaultPackage, pythonSlicer
 
@@ -24,6 +25,7 @@ def findPlaces(moduleFile: Path) -> Places:
         simulator=data / "RASTrainer" / "simulator",
         study=Path(study) if study else documents / "RASTrainer" / "study.db",
         records=Path.home() / "RASTrainer" / "trials",
+        library=user_library(),
         package=defaultPackage(moduleFile.parent),
     )
 

@@ -39,6 +39,8 @@ class ScorePanel:
         ui.showTablesButton.connect("clicked()", self.showTables)
         ui.exportScoresButton.connect("clicked()", self.exportScores)
         ui.reportButton.connect("clicked()", self.writeReport)
+        ui.replayButton.connect("clicked()", self.replay)
+        ui.worstTouchButton.connect("clicked()", self.replayWorstTouch)
         self._trainees.changed.connect(self._show)
         session.trials.trialScored.connect(self._showNewTrial)
         self._show()
@@ -84,6 +86,20 @@ class ScorePanel:
                 page = write_report(data, Path(folder)).page
                 self._ui.scoreMessageText.text = _("The report is {path}.").format(path=page)
                 qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
+
+    def replay(self) -> None:
+        """Show the trial again in the 3D view."""
+        with slicer.util.tryWithErrorDisplay(_("The trial is not shown."), waitCursor=True):
+            self._session.replay.show(self._trial())
+
+    def replayWorstTouch(self) -> None:
+        """Show again how the worst touch came about."""
+        with slicer.util.tryWithErrorDisplay(_("The touch is not shown."), waitCursor=True):
+            self._session.replay.showWorstTouch(self._trial())
+
+    def showState(self) -> None:
+        """Show where the replay stands, which plays by itself."""
+        setSentence(self._ui.replayText, self._session.replay.sentence)
 
     def _showNewTrial(self, trial: ScoredTrial) -> None:
         """Show a trial that has just been scored, if its trainee is the chosen one."""
@@ -143,6 +159,31 @@ class ScorePanel:
             trial is not None,
             _("Put score, comparison and motion metrics into table nodes of the scene."),
             _("Choose a trial first."),
+        )
+        self._showFeedback(trial)
+
+    def _showFeedback(self, trial: StoredTrial | None) -> None:
+        ui, sentences, worst = self._ui, [], ""
+        if trial is not None:
+            try:
+                feedback = self._session.replay.feedback(trial)
+            except InputError as error:
+                sentences = [str(error)]
+            else:
+                sentences, worst = feedback.sentences, feedback.worst.label
+        setSentence(ui.feedbackText, "\n".join(sentences))
+        hasTrial, reason = trial is not None, _("Choose a trial first.")
+        setUsable(
+            ui.replayButton,
+            hasTrial,
+            _("Show the tool, the touches and the clearance over time, as a Sequence."),
+            reason,
+        )
+        setUsable(
+            ui.worstTouchButton,
+            bool(worst),
+            _("Show how point {label} was touched.").format(label=worst),
+            reason if not hasTrial else _("The trial cannot be judged."),
         )
 
     def _trial(self) -> StoredTrial | None:

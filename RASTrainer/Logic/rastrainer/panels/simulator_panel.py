@@ -52,11 +52,13 @@ class SimulatorPanel:
             (self._simulator.setup.finished, self._finishSetup),
             (self._simulator.program.wroteLine, self._log),
             (self._simulator.program.changed, self._showProgram),
+            (self._simulator.program.pairingChanged, self._showPairing),
         )
         for signal, slot in self._listening:
             signal.connect(slot)
         self._showStatus(self._link.status)
         self._showProgram()
+        self._showPairing()
 
     def close(self) -> None:
         """Listen to the session no more."""
@@ -80,8 +82,12 @@ class SimulatorPanel:
         """Start the simulator on this computer."""
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be started.")):
             program = self._ui.programPathLineEdit.currentPath
-            hasWindow = self._ui.windowCheckBox.checked
-            self._simulator.start(self._ui.portSpinBox.value, program, hasWindow)
+            self._simulator.start(
+                self._ui.portSpinBox.value,
+                program,
+                hasWindow=self._ui.windowCheckBox.checked,
+                hasNetwork=self._ui.networkCheckBox.checked,
+            )
 
     def stopSimulator(self) -> None:
         """End the simulator that was started here."""
@@ -147,6 +153,9 @@ class SimulatorPanel:
         )
         if program.state is ProgramState.READY:
             ui.portSpinBox.value = program.port
+
+    def _showPairing(self) -> None:
+        setSentence(self._ui.pairingText, self._simulator.program.pairingSentence)
 
     def _finishSetup(self, error: str) -> None:
         self._log(error or _("The simulator is set up."))

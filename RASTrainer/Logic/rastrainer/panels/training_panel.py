@@ -121,7 +121,7 @@ class TrainingPanel:
     def _start(self, task: str) -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
             mode = chosenData(self._ui.modeComboBox)
-            self._desk.start(self._session.trainees.chosen, task, mode)
+            self._session.study.startTrial(task, mode)
 
     def _showButtons(self, progress: Progress, isConnected: bool) -> None:
         ui = self._ui

@@ -39,7 +39,12 @@ class TrialBench:
         self._folder = tempfile.TemporaryDirectory(prefix="RASTrainer-")
         folder = Path(self._folder.name)
         self.study = folder / "study.db"
-        places = replace(findPlaces(moduleFile), study=self.study, records=folder / "trials")
+        places = replace(
+            findPlaces(moduleFile),
+            study=self.study,
+            records=folder / "trials",
+            library=folder / "scenarios",
+        )
         self.session = Session(slicer.mrmlScene, places, desktopKit)
         self._container = slicer.util.loadUI(resourcePath("UI/RASTrainer.ui"))
         self._container.setMRMLScene(slicer.mrmlScene)

@@ -36,4 +36,5 @@ NASA_TLX = Questionnaire(
     ),
     source="Hart and Staveland 1988; raw: Hart 2006",
     formula=_score,
+    marks_apart=5,
 )

@@ -45,6 +45,7 @@ class Questionnaire:
         scales: What the answers are scored on.
         source: Who published items and scoring.
         formula: From the checked answers to a score for each scale.
+        marks_apart: Distance of the marks that a form offers; the answers between them count, too.
     """
 
     name: str
@@ -56,6 +57,12 @@ class Questionnaire:
     scales: tuple[Scale, ...]
     source: str
     formula: Callable[[Sequence[int]], tuple[float, ...]]
+    marks_apart: int = 1
+
+    @property
+    def marks(self) -> range:
+        """The answers that a form offers."""
+        return range(self.lowest, self.highest + 1, self.marks_apart)
 
     def score(self, answers: Sequence[int] | Mapping[str, int]) -> dict[str, float]:
         """Return the score on each scale.

@@ -58,7 +58,7 @@ def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> 
         raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
     written = WrittenReport(folder / PAGE, folder / NUMBERS)
     write_text(written.page, report_html(data, made_utc))
-    write_text(written.numbers, trials_csv(data))
+    write_text(written.numbers, trials_csv(data.trials))
     return written
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -27,10 +27,12 @@ class TrialRow:
         trainee: Pseudonym.
         mode: Such as `desktop`.
         task: Its name.
-        number: Which of the trainee's trials in this mode it was, from 1.
+        number: Which of the trainee's trials in this mode it was, from 1; 0 for a trial run.
         values: What was measured, by name; see `rastrainer.report.outcomes`.
         trial_id: UUID; "" in files that know none.
         started_utc: ISO 8601; "" where unknown.
+        scenario: In which it was played; "" where unknown.
+        score_version: Of our score; "" without one.
     """
 
     trainee: str
@@ -40,6 +42,8 @@ class TrialRow:
     values: Mapping[str, float]
     trial_id: str = ""
     started_utc: str = ""
+    scenario: str = ""
+    score_version: str = ""
 
 
 @dataclass(frozen=True)
@@ -48,12 +52,13 @@ class StudyData:
 
     Attributes:
         title: For people.
-        trials: But the trial runs.
+        trials: But the trial runs; of a trainee who follows the protocol, those that it asks for.
         mean_ct_s: Mean completion times that CTPS shall use instead of the trials' own, by mode.
         notes: What is known about the study beside its numbers; None where nothing is.
         protocol: None where trainees practiced freely.
         answers: Answered questionnaires.
         skipped: Trainee, step and reason of each step that was left out.
+        beside_protocol: How many trials the protocol has not asked for; they are left out.
         without_consent: How many trainees are left out because they did not agree to research.
         versions: Of the programs that made the records, name → different versions.
         has_order: Whether the order of the trials is known.
@@ -66,6 +71,7 @@ class StudyData:
     protocol: StudyProtocol | None = None
     answers: tuple[QuestionnaireAnswers, ...] = ()
     skipped: tuple[tuple[str, str, str], ...] = ()
+    beside_protocol: int = 0
     without_consent: int = 0
     versions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     has_order: bool = False
@@ -144,17 +150,19 @@ def _from_database(path: Path) -> StudyData:
         protocol = progress.protocol()
         everyone = (*study.trainees(), *study.trainees(archived=True))
         consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
-        trials, versions = [], defaultdict(set)
+        enrolled = [name for name in progress.enrolled() if name in consenting]
+        asked = {name: set(progress.count_played(name).counted_trials) for name in enrolled}
+        trials, versions, beside = [], defaultdict(set), 0
         for pseudonym in sorted(consenting):
-            counts: dict[str, int] = defaultdict(int)
-            for stored in study.history(pseudonym):
-                if stored.record.task == TRIAL_RUN:
-                    continue
-                counts[stored.record.mode] += 1
-                trials.append(trial_row(stored, counts[stored.record.mode]))
+            history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
+            if pseudonym in asked:
+                played, ids = len(history), asked[pseudonym]
+                history = [trial for trial in history if trial.record.trial_id in ids]
+                beside += played - len(history)
+            trials += trial_rows(history)
+            for stored in history:
                 for name, version in stored.record.versions.items():
                     versions[name].add(version)
-        enrolled = [name for name in progress.enrolled() if name in consenting]
         return StudyData(
             title=protocol.title if protocol else path.stem,
             trials=tuple(trials),
@@ -165,16 +173,32 @@ def _from_database(path: Path) -> StudyData:
                 for name in enrolled
                 for entry in progress.progress(name).skipped
             ),
+            beside_protocol=beside,
             without_consent=len(everyone) - len(consenting),
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
         )
 
 
-def trial_row(stored: StoredTrial, number: int) -> TrialRow:
-    """Return a stored trial as a row of a report."""
+def trial_rows(history: Iterable[StoredTrial]) -> list[TrialRow]:
+    """Return the trials of one trainee, in the order they were started, as rows."""
+    counts: dict[str, int] = defaultdict(int)
+    rows = []
+    for stored in history:
+        is_run = stored.record.task == TRIAL_RUN
+        counts[stored.record.mode] += not is_run
+        rows.append(_trial_row(stored, 0 if is_run else counts[stored.record.mode]))
+    return rows
+
+
+def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
     record, rigid, score = stored.record, stored.registrations.get(RIGID), stored.score
-    values = {"completion_time_s": record.completion_time_s, **stored.motion}
+    values = {
+        "completion_time_s": record.completion_time_s,
+        "refused_touches": record.rejected_touches,
+        "undone_touches": record.undone_touches,
+        **stored.motion,
+    }
     if rigid is not None:
         values["rmse_mm"] = rigid.fre_mm
         if rigid.expected_tre_mm is not None:
@@ -191,6 +215,8 @@ def trial_row(stored: StoredTrial, number: int) -> TrialRow:
         values=values,
         trial_id=record.trial_id,
         started_utc=record.started_utc,
+        scenario=record.scenario,
+        score_version="" if score is None else score.version,
     )
 
 

@@ -18,7 +18,7 @@ KILL_AFTER_S = 5.0
 
 
 class ChildProcess:
-    """A program with its output; nothing here waits for it but `stop`.
+    """A program with its output; nothing here waits for it but `wait` and `stop`.
 
     Attributes:
         arguments: what was started.
@@ -66,6 +66,11 @@ class ChildProcess:
             while True:
                 lines.append(self._lines.popleft())
         return lines
+
+    def wait(self) -> int:
+        """Wait until it has ended, and return its exit status; only for what is soon done."""
+        self._reader.join()
+        return self._process.wait()
 
     def stop(self) -> None:
         """Ask it to end, and end it where it does not within seconds."""

@@ -27,6 +27,7 @@ from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
+from rastrainer.scenario import load_scenario
 from rastrainer.slicer.control_points import labelsOf, localPoints
 from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.headless_output import writeOutput
@@ -139,7 +140,7 @@ def _run(arguments: argparse.Namespace) -> None:
     if not 0 < arguments.timeout < math.inf:
         raise InputError("The timeout must be a number of seconds above 0.")
     shelf = ScenarioShelf(arguments.scenario)
-    (scenario,) = shelf.scenarios()
+    scenario = load_scenario(arguments.scenario)
     openStudyIn(arguments.output).close()  # What is wrong with it is told before anyone plays.
     host = HeadlessHost(shelf, arguments.output, arguments.cohort)
     showScenario(host.application.scene, scenario)

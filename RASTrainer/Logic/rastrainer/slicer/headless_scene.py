@@ -28,6 +28,10 @@ class HeadlessScene:
         self._markupsLogic = slicer.vtkSlicerMarkupsLogic()
         self._markupsLogic.SetMRMLApplicationLogic(self._applicationLogic)
         self._markupsLogic.SetMRMLScene(self.scene)
+        # It shows of each Sequence what its browser has chosen.
+        self._sequencesLogic = slicer.vtkSlicerSequencesLogic()
+        self._sequencesLogic.SetMRMLApplicationLogic(self._applicationLogic)
+        self._sequencesLogic.SetMRMLScene(self.scene)
 
     def save(self, path: Path) -> None:
         """Write the scene and all its files as one bundle (.mrb), whole or not at all.

@@ -12,11 +12,14 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
+from rastrainer.files import read_bytes
+from rastrainer.plain_xml import plain_xml
 from rastrainer.protocol import Device
 from rastrainer.slicer.link_nodes import prepareNodes
 from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode
 
 URDF = "iiwa7.urdf"
+MOST_BYTES = 4 * 2**20
 MM_PER_M = 1000.0
 
 
@@ -91,10 +94,9 @@ def _role(number: int) -> str:
 
 def _readShells(folder: Path) -> list[list[Shell]]:
     """Return the visual meshes of links 0 to 7; what is fixed to a link belongs to it."""
-    try:
-        root = ElementTree.parse(folder / URDF).getroot()
-    except (OSError, ElementTree.ParseError):
-        raise InputError(f"The robot's description {folder / URDF} cannot be read.") from None
+    path = folder / URDF
+    content = plain_xml(read_bytes(path, MOST_BYTES), f"The robot's description {path}")
+    root = ElementTree.fromstring(content)
     colors = {
         material.get("name"): tuple(float(v) for v in material.find("color").get("rgba").split())
         for material in root.findall("material")

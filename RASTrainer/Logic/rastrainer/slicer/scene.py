@@ -11,6 +11,8 @@ class Role:
     """What a node of ours is for. It stays when the node is renamed, saved and loaded again."""
 
     HEAD_MODEL = "head model"
+    HEAD_PREVIEW = "head preview"
+    HEAD_SEGMENT = "head segment"
     FIXED_FIDUCIALS = "fixed fiducials"
     TARGET = "target"
     CAPTURED_POINTS = "captured points"
@@ -27,6 +29,7 @@ class Role:
     PLAN_TARGET = "plan target"
     PLAN_TRAJECTORY = "plan trajectory"
     ROBOT = "robot"
+    REPLAY = "replay"
 
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:

@@ -12,11 +12,14 @@ from rastrainer.slicer.connector_kit import ConnectorKit
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.plan_desk import PlanDesk
 from rastrainer.slicer.registration_desk import RegistrationDesk
+from rastrainer.slicer.replay_desk import ReplayDesk
 from rastrainer.slicer.scenario_desk import ScenarioDesk
+from rastrainer.slicer.scenario_maker import ScenarioMaker
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.simulator_desk import SimulatorDesk
 from rastrainer.slicer.simulator_setup import SimulatorSetup
+from rastrainer.slicer.study_desk import StudyDesk
 from rastrainer.slicer.study_place import openStudyFile
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.slicer.training_desk import TrainingDesk
@@ -39,6 +42,7 @@ class Places:
         simulator: private folder of the simulator.
         study: file of the study, until another is chosen.
         records: folder of the journals of the simulator that is started from here.
+        library: folder of the user's own scenarios, which the simulator knows too.
         package: what pip installs, unless the user says otherwise.
     """
 
@@ -47,6 +51,7 @@ class Places:
     simulator: Path
     study: Path
     records: Path
+    library: Path
     package: str
 
 
@@ -58,8 +63,11 @@ class Session:
         simulator: its set-up and process.
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
+        scenarioMaker: makes scenarios of volumes, and takes and gives them as files.
         training: trials under way.
+        study: leads through the protocol.
         trials: where finished trials arrive.
+        replay: feedback on stored trials, and their replay.
         registration: that is looked at.
         plan: of a target.
         cohort: trials of the published study, with which CTPS compares.
@@ -67,6 +75,7 @@ class Session:
         task: name of the chosen task.
         taskTitle: what people read.
         taskChosen: emits nothing, whenever another task is chosen.
+        scenarioMade: emits the name of a scenario that has just been made.
     """
 
     def __init__(
@@ -75,20 +84,28 @@ class Session:
         self.places = places
         self.studyPath = places.study
         self._scene = scene
-        shelf = ScenarioShelf.below(places.assets / "scenarios")
+        shelf = ScenarioShelf.below(places.assets / "scenarios", places.library)
         self.cohort = read_trials(places.assets / PUBLISHED_STUDY)
         self.link = Link(scene, findKit)
         setup = SimulatorSetup(places.python, places.simulator)
         self.simulator = SimulatorDesk(self.link, setup, places.records)
         self.trainees = TraineeDesk(self.openStudy, places.records)
         self.scenario = ScenarioDesk(scene, shelf, places.assets / ROBOT)
+        self.scenarioMaker = ScenarioMaker(scene, self.simulator, shelf, places.library)
         self.training = TrainingDesk(scene, self.link, shelf.find)
-        self.trials = TrialDesk(scene, self.link, shelf.find, self.openStudy, self.cohort)
+        self.study = StudyDesk(self.trainees, self.training)
+        self.trials = TrialDesk(
+            scene, self.link, shelf.find, self.openStudy, self.cohort, places.records
+        )
+        self.replay = ReplayDesk(
+            scene, self.trainees, shelf.find, places.records, places.assets / ROBOT
+        )
         self.registration = RegistrationDesk(scene)
         self.plan = PlanDesk(scene, self.link, self.registration)
         self.task = ""
         self.taskTitle = ""
         self.taskChosen = Signal()
+        self.scenarioMade = Signal()
         self._trial = ""
         self.trials.trialScored.connect(self._takeScored)
         self.link.stateChanged.connect(self._noticeNewTrial)
@@ -124,6 +141,7 @@ class Session:
             return
         self.link.process()
         self.registration.process()
+        self.replay.process()
         followPlacement(self._scene)
 
     def sceneWasCleared(self) -> None:
@@ -133,6 +151,7 @@ class Session:
 
     def close(self) -> None:
         """Disconnect, close the study, and end the simulator that was started from here."""
+        self.study.close()
         self.training.close()
         self.trials.close()
         self.link.disconnect()

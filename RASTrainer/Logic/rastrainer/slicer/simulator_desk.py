@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -34,27 +35,48 @@ class SimulatorDesk:
         """Whether the simulator has to be set up before it can be started."""
         return not self.setup.isCurrent
 
-    def start(self, port: int, ownProgram: str = "", hasWindow: bool = False) -> None:
+    def start(
+        self,
+        port: int,
+        ownProgram: str = "",
+        hasWindow: bool = False,
+        hasNetwork: bool = False,
+    ) -> None:
         """Start the simulator on this computer.
 
         Args:
             port: to listen on; 0 takes any free one.
             ownProgram: a `rastrainer` installed elsewhere; the private folder's where empty.
             hasWindow: open the trainee's window on this computer, too.
+            hasNetwork: let headsets and browsers of the local network in, by https.
 
         Raises:
             InputError: it is not set up, or cannot be started.
         """
         arguments = ["simulator", "--port", str(port), "--records", str(self._records)]
+        arguments += ["--lan"] if hasNetwork else []
         arguments += ["--desktop"] if hasWindow else []
+        self.program.start(*self.command(arguments, ownProgram))
+
+    def command(
+        self, arguments: Sequence[str], ownProgram: str = ""
+    ) -> tuple[list[str], dict[str, str] | None]:
+        """Return what runs `rastrainer` with these arguments, and the environment for it.
+
+        Args:
+            arguments: such as `simulator --port 0`.
+            ownProgram: a `rastrainer` installed elsewhere; the private folder's where empty.
+
+        Raises:
+            InputError: it is not set up.
+        """
         if ownProgram:
             if not Path(ownProgram).is_file():
                 raise InputError(_("There is no program {path}.").format(path=ownProgram))
-            self.program.start([ownProgram, *arguments])
-            return
+            return [ownProgram, *arguments], None
         if self.needsSetup:
             raise InputError(_("The simulator is not set up yet: press Set up first."))
-        self.program.start(self.setup.command(arguments), environmentWith(self.setup.folder))
+        return self.setup.command(arguments), environmentWith(self.setup.folder)
 
     def stop(self) -> None:
         """Disconnect and end the simulator that was started from here."""

@@ -11,6 +11,9 @@ from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
 _READY = re.compile(r"RASTrainer simulator ready on (\S+):(\d+)$")
+_VIEWS = re.compile(r"RASTrainer simulator serves views on (\S+), pairing code (\d+)$")
+_NETWORK = re.compile(r"RASTrainer simulator serves the local network on (.+); the browser warns")
+_NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: (\d+)$")
 
 
 class ProgramState(str, Enum):
@@ -29,7 +32,10 @@ class SimulatorProgram:
         state: where the process stands.
         port: on which it listens, once it is ready.
         sentence: what happened last, for people.
+        pageAddresses: where a browser or a headset finds the simulator's page.
+        pairingCode: that a browser or a headset is let in for; only whoever started it knows.
         changed: emits nothing, whenever `state` has changed.
+        pairingChanged: emits nothing, whenever an address or the code has.
         wroteLine: emits each line of its output.
     """
 
@@ -37,7 +43,10 @@ class SimulatorProgram:
         self.state = ProgramState.STOPPED
         self.port = 0
         self.sentence = _("No simulator was started from here.")
+        self.pageAddresses: list[str] = []
+        self.pairingCode = ""
         self.changed = Signal()
+        self.pairingChanged = Signal()
         self.wroteLine = Signal()
         self._child: ChildProcess | None = None
         self._lastLine = ""
@@ -46,6 +55,15 @@ class SimulatorProgram:
     def isRunning(self) -> bool:
         """Whether the process is there."""
         return self._child is not None
+
+    @property
+    def pairingSentence(self) -> str:
+        """How a browser or a headset is paired; empty while there is nothing to pair with."""
+        if not (self.isRunning and self.pairingCode):
+            return ""
+        return _("In a browser or a headset open {addresses} and enter the code {code}.").format(
+            addresses=_(" or ").join(self.pageAddresses), code=self.pairingCode
+        )
 
     def start(self, command: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         """Start the process; a second time does nothing while it runs.
@@ -57,6 +75,7 @@ class SimulatorProgram:
             return
         self._child = ChildProcess(command, environment)
         self._lastLine = ""
+        self._pair([], "")
         self._change(ProgramState.STARTING, _("The simulator is starting."))
 
     def stop(self) -> None:
@@ -66,6 +85,7 @@ class SimulatorProgram:
         self._child.stop()
         self._handOnLines()
         self._child = None
+        self._pair([], "")
         self._change(ProgramState.STOPPED, _("The simulator was stopped."))
 
     def process(self) -> None:
@@ -77,6 +97,7 @@ class SimulatorProgram:
         if status is None:
             return
         self._child = None
+        self._pair([], "")
         if status == 0:
             # As when the trainee's window is closed.
             self._change(ProgramState.STOPPED, _("The simulator has ended."))
@@ -100,6 +121,19 @@ class SimulatorProgram:
                     ProgramState.READY,
                     _("The simulator runs on port {port}.").format(port=self.port),
                 )
+            self._readPairing(line)
+
+    def _readPairing(self, line: str) -> None:
+        if views := _VIEWS.match(line):
+            self._pair([views.group(1)], views.group(2))
+        elif network := _NETWORK.match(line):
+            self._pair([*self.pageAddresses, *network.group(1).split(" or ")], self.pairingCode)
+        elif code := _NEW_CODE.match(line):
+            self._pair(self.pageAddresses, code.group(1))
+
+    def _pair(self, addresses: list[str], code: str) -> None:
+        self.pageAddresses, self.pairingCode = addresses, code
+        self.pairingChanged.emit()
 
     def _change(self, state: ProgramState, sentence: str) -> None:
         self.state, self.sentence = state, sentence

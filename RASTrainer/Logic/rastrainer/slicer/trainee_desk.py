@@ -7,9 +7,10 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.export.erasure import Erasure, erase_trainee
+from rastrainer.export.tidy_csv import write_history
+from rastrainer.export.trainee_json import export_trainee
 from rastrainer.slicer.signal import Signal
 from rastrainer.study import StoredTrial, Study, Trainee
-from rastrainer.study_export import export_history, export_trainee
 
 
 class TraineeDesk:
@@ -107,7 +108,7 @@ class TraineeDesk:
     def exportHistory(self, path: Path, everybody: bool = False) -> int:
         """Write trials as a CSV file, of the chosen trainee or of all; return their number."""
         everyone = [trainee.pseudonym for trainee in self.trainees(archived=True)]
-        return export_history(self.study, everyone if everybody else [self.chosen], path)
+        return write_history(self.study, everyone if everybody else [self.chosen], path)
 
     def history(self) -> tuple[StoredTrial, ...]:
         """Return the trials of the chosen trainee in the order they were started."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from rastrainer.ctps import Trial
@@ -22,9 +23,10 @@ from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.trial_scene import showTrial
 from rastrainer.study import DeletedTrialError, Study
-from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
+from rastrainer.trial_analysis import TrialAnalysis
 from rastrainer.trial_record import TrialRecord
 from rastrainer.trial_results import RevealedTruth
+from rastrainer.trial_review import review, with_progress
 
 _UNDER_WAY = {Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value}
 
@@ -53,8 +55,18 @@ class TrialDesk:
         findScenario: Callable[[str], Scenario],
         openStudy: Callable[[], Study],
         cohort: Sequence[Trial] = (),
+        records: Path | None = None,
     ) -> None:
-        """The study is opened when it is first needed; `cohort` is what CTPS compares with."""
+        """Take in the trials of a link.
+
+        Args:
+            scene: the scene.
+            link: to the simulator.
+            findScenario: gives the scenario of a name.
+            openStudy: opens the study when it is first needed.
+            cohort: what CTPS compares with.
+            records: folder of the simulator's journals, if it is on this computer.
+        """
         self.trialScored = Signal()
         self.problemFound = Signal()
         self.received: list[str] = []
@@ -63,6 +75,7 @@ class TrialDesk:
         self._findScenario = findScenario
         self._openStudy = openStudy
         self._cohort = cohort
+        self._records = records
         self._study: Study | None = None
         self._told: set[str] = set()
         self._state: Mapping[str, Any] = {}
@@ -91,8 +104,9 @@ class TrialDesk:
         """Keep a delivered trial, then acknowledge it, then go on with it."""
         try:
             record = TrialRecord.from_json(value)
-            analysis = self._analyze(record)
-            isRevealed = self._keep(value, record, analysis)
+            study = self._openedStudy()
+            analysis = self._analyze(record, study)
+            isRevealed = _keep(value, record, analysis, study)
         except DeletedTrialError:
             # Its trainee is gone for good: it must not be offered for ever.
             self._acknowledge(record)
@@ -105,38 +119,29 @@ class TrialDesk:
             self.received.append(record.trial_id)
         if analysis is not None and not isRevealed and record.trial_id not in self._told:
             self._show(analysis)
-            self._tellScore(analysis, self._complain)
+            self._tellScore(with_progress(analysis, study), self._complain)
 
     def _acknowledge(self, record: TrialRecord) -> None:
         self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": record.trial_id})
 
-    def _analyze(self, record: TrialRecord) -> TrialAnalysis | None:
+    def _analyze(self, record: TrialRecord, study: Study) -> TrialAnalysis | None:
         try:
-            return analyze_trial(record, self._findScenario(record.scenario), self._cohort)
+            scenario = self._findScenario(record.scenario)
+            return review(record, scenario, study, self._records, self._cohort)
         except InputError as error:
             self._complain(_("A trial is kept but cannot be scored: {error}").format(error=error))
             return None
 
-    def _keep(
-        self, value: Mapping[str, Any], record: TrialRecord, analysis: TrialAnalysis | None
-    ) -> bool:
-        """Store a trial with its results, once; return whether its truth is known already."""
-        study = self._openedStudy()
-        if analysis is None:
-            study.add_trial(value)
-        else:
-            study.add_trial(value, analysis.fits.values(), analysis.target_errors, analysis.score)
-        return study.trial(record.trial_id).true_tre_mm is not None
-
     def _resume(self) -> None:
         """Go on with trials whose score was told to nobody before the connection was cut."""
         try:
-            records = self._openedStudy().unrevealed()
+            study = self._openedStudy()
+            records = study.unrevealed()
         except InputError as error:
             self._complain(str(error))
             return
         for record in records:
-            analysis = self._analyze(record)
+            analysis = self._analyze(record, study)
             if analysis is not None and record.trial_id not in self._told:
                 # A trial of another simulator is none of this one's business.
                 self._tellScore(analysis, logging.info)
@@ -178,6 +183,17 @@ class TrialDesk:
             self.problemFound.emit(sentence)
 
 
+def _keep(
+    value: Mapping[str, Any], record: TrialRecord, analysis: TrialAnalysis | None, study: Study
+) -> bool:
+    """Store a trial with its results, once; return whether its truth is known already."""
+    if analysis is None:
+        study.add_trial(value)
+    else:
+        study.add_trial(value, analysis.fits.values(), analysis.target_errors, analysis.score)
+    return study.trial(record.trial_id).true_tre_mm is not None
+
+
 def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
     published = analysis.published_score
     return {
@@ -193,9 +209,6 @@ def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
             "accuracyDesirability": analysis.score.accuracy_desirability,
             "ctps": None if published is None else published.published,
             "warnings": [warning.message for warning in analysis.rigid.warnings],
-            "feedback": [
-                *analysis.feedback.touch_sentences[:3],
-                *(advice.sentence for advice in analysis.feedback.advice),
-            ],
+            "feedback": analysis.feedback.short_sentences,
         },
     }

@@ -24,6 +24,11 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         sentences.append(
             f"{data.without_consent} trainees did not agree to research and are left out."
         )
+    if data.beside_protocol:
+        sentences.append(
+            f"{data.beside_protocol} trials were played that the protocol had not asked for; they "
+            "are left out."
+        )
     sentences.append(
         "CTPS depends on the cohort and rises with slower completion; differences in CTPS are not "
         "differences in skill."

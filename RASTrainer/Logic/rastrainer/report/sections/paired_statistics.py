@@ -64,7 +64,7 @@ def _table(comparisons: Sequence[ModeComparison]) -> str:
         mode_title(mode).split(" ")[0] for mode in (comparisons[0].first, comparisons[0].second)
     ]
     headers = ["Outcome", "n", *modes, "difference [95 %]", "t", "p", "p (Holm)"]
-    return table([[*headers, "Wilcoxon p", "g_z"]], rows)
+    return table([[*headers, "Wilcoxon p", "g_z"]], rows, "wide")
 
 
 def _row(comparison: ModeComparison) -> list[Cell | str]:

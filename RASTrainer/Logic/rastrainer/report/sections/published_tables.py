@@ -74,7 +74,9 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
     for subject in subjects:
         color = performance_color(scores.subjects[subject], scores.subjects.values())
         last.append(Cell(f"{scores.subjects[subject]:.2f}", 2, color, "total"))
-    return table(headers, [*rows, [*last, Cell(f"{scores.overall:.2f}", kind="total")]])
+    return table(
+        headers, [*rows, [*last, Cell(f"{scores.overall:.2f}", kind="total")]], "wide tasks"
+    )
 
 
 def _by_task(data: StudyData, mode: str, scores: CohortScores) -> str:

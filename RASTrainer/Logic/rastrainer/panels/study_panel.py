@@ -1,0 +1,200 @@
+"""The section Study: leads the chosen trainee through the protocol, step by step."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import Any
+
+import qt
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.experiment.progress import SKIPPED, Progress, StepEntry
+from rastrainer.experiment.steps import Step, StepKind
+from rastrainer.panels.questionnaire_form import QuestionnaireForm
+from rastrainer.panels.widgets import fillTable, setSentence, setUsable
+from rastrainer.questionnaires.catalog import find_questionnaire
+from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.study_desk import TRIALS
+from rastrainer.slicer.translation import _
+
+TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
+
+
+class StudyPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: Session) -> None:
+        self._ui = ui
+        self._session = session
+        self._desk = session.study
+        self._form = QuestionnaireForm(ui.questionnaireWidget)
+        self._progress: Progress | None = None
+        self._judged: tuple | None = None
+        ui.beginStudyButton.connect("clicked()", self.begin)
+        ui.enrollButton.connect("clicked()", self.enroll)
+        ui.startStepButton.connect("clicked()", self.startStep)
+        ui.finishStepButton.connect("clicked()", self.finishStep)
+        ui.skipStepButton.connect("clicked()", self.skipStep)
+        ui.saveAnswersButton.connect("clicked()", self.saveAnswers)
+        ui.protocolPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
+        self._desk.changed.connect(self._show)
+        self._show()
+
+    def close(self) -> None:
+        """Listen to the session no more."""
+        self._desk.changed.disconnect(self._show)
+
+    def begin(self) -> None:
+        """Make the chosen file the protocol of the study, after asking."""
+        with slicer.util.tryWithErrorDisplay(_("The study was not begun.")):
+            question = _(
+                "Begin the study with this protocol? A study keeps its protocol for good; another "
+                "one needs another study's file."
+            )
+            if slicer.util.confirmYesNoDisplay(question, _("Begin the study")):
+                self._desk.begin(Path(self._ui.protocolPathLineEdit.currentPath))
+
+    def enroll(self) -> None:
+        """Give the chosen trainee a place in the study."""
+        with slicer.util.tryWithErrorDisplay(_("The trainee was not enrolled.")):
+            self._desk.enroll()
+
+    def startStep(self) -> None:
+        """Start the trial that comes next."""
+        with slicer.util.tryWithErrorDisplay(_("The step was not started.")):
+            self._desk.startStep()
+
+    def finishStep(self) -> None:
+        """End the trial run or the break."""
+        with slicer.util.tryWithErrorDisplay(_("The step was not ended.")):
+            self._desk.finishStep()
+
+    def saveAnswers(self) -> None:
+        """Keep the answers of the questionnaire."""
+        with slicer.util.tryWithErrorDisplay(_("The answers were not kept.")):
+            self._desk.answer(self._form.answers())
+
+    def skipStep(self) -> None:
+        """Leave the step out, for a reason."""
+        reason = qt.QInputDialog.getText(
+            slicer.util.mainWindow(),
+            _("Skip the step"),
+            _("Why is it left out? The reason goes into the report."),
+        )
+        if reason:
+            with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
+                self._desk.skipStep(reason)
+
+    def showState(self) -> None:
+        """Show what goes on by itself: the time of a trial run or a break, and the connection."""
+        progress = self._progress
+        step = None if progress is None else progress.next_step
+        self._warn()
+        if step is None or step.kind not in TIMED:
+            setSentence(self._ui.stepTimeText, "")
+        else:
+            setSentence(
+                self._ui.stepTimeText,
+                _("{over} of {minutes:g} min are over.").format(
+                    over=_clock(self._desk.minutesOver(progress)), minutes=step.minutes
+                ),
+            )
+        self._showButtons()
+
+    def _warn(self) -> None:
+        """Warn, once for each trial, of one that will not count."""
+        trial = self._session.training.progress
+        key = (trial.trainee, trial.task, trial.mode, trial.isOpen)
+        if key != self._judged:
+            self._judged = key
+            with contextlib.suppress(InputError):
+                setSentence(self._ui.besideText, self._desk.beside())
+
+    def _show(self) -> None:
+        ui = self._ui
+        self._judged = None
+        try:
+            protocol, progress = self._desk.protocol(), self._desk.progress()
+        except InputError as error:
+            protocol = progress = None
+            setSentence(ui.protocolText, str(error))
+        else:
+            setSentence(
+                ui.protocolText,
+                _("No protocol: trainees practice freely.") if protocol is None else protocol.title,
+            )
+        self._progress = progress
+        ui.protocolPathLineEdit.visible = ui.beginStudyButton.visible = protocol is None
+        ui.enrollButton.visible = protocol is not None and progress is None
+        ui.stepGroupBox.visible = progress is not None
+        if progress is not None:
+            ui.stepText.text = progress.sentence
+            ui.stepsProgressBar.maximum = len(progress.steps)
+            ui.stepsProgressBar.value = len(progress.entries)
+            fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])
+        step = None if progress is None else progress.next_step
+        asked = step is not None and step.kind is StepKind.QUESTIONNAIRE
+        ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = asked
+        key = (self._session.trainees.chosen, step.name) if asked else None
+        self._form.show(key, find_questionnaire(step.questionnaire) if asked else None)
+        ui.finishStepButton.visible = step is not None and step.kind in TIMED
+        ui.startStepButton.visible = step is not None and step.kind in TRIALS
+        ui.skipStepButton.visible = step is not None
+        self.showState()
+
+    def _showButtons(self, *_arguments: Any) -> None:
+        ui = self._ui
+        setUsable(
+            ui.beginStudyButton,
+            bool(ui.protocolPathLineEdit.currentPath),
+            _("Lead the trainees through this protocol from now on."),
+            _("Choose the file of a protocol first."),
+        )
+        setUsable(
+            ui.enrollButton,
+            bool(self._session.trainees.chosen),
+            _("Give the trainee the first free place, which decides the order of modes and tasks."),
+            _("Choose a trainee in the section Trainees first."),
+        )
+        if self._progress is not None and self._progress.next_step is not None:
+            self._showStepButtons(self._progress, self._progress.next_step)
+
+    def _showStepButtons(self, progress: Progress, step: Step) -> None:
+        isConnected = self._session.link.status.state is LinkState.CONNECTED
+        isOpen = self._session.training.progress.isOpen
+        setUsable(
+            self._ui.startStepButton,
+            isConnected and not isOpen,
+            step.sentence,
+            _("A trial is open: abort it or let it be registered first.")
+            if isConnected
+            else _("Connect to the simulator first."),
+        )
+        setUsable(
+            self._ui.finishStepButton,
+            self._desk.minutesOver(progress) >= step.minutes,
+            _("Go on with the next step."),
+            _("Its time is not over yet; to go on earlier, skip it with a reason."),
+        )
+
+
+def _row(progress: Progress, number: int) -> tuple[str, str, str]:
+    step = progress.steps[number]
+    if number < len(progress.entries):
+        return str(number + 1), _outcome(progress.entries[number]), step.sentence
+    isNext = number == len(progress.entries)
+    return str(number + 1), _("next") if isNext else "", step.sentence
+
+
+def _outcome(entry: StepEntry) -> str:
+    if entry.outcome == SKIPPED:
+        return _("left out: {reason}").format(reason=entry.details["reason"])
+    return _("done")
+
+
+def _clock(minutes: float) -> str:
+    whole, seconds = divmod(int(60.0 * minutes), 60)
+    return f"{whole}:{seconds:02d}"

@@ -1,0 +1,191 @@
+"""A recorded trial as a Sequence: the tool, the touches and the clearance over time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import slicer
+import vtk
+
+from rastrainer.arm_chain import ArmChain
+from rastrainer.errors import InputError
+from rastrainer.journal.replay_track import ReplayTrack
+from rastrainer.motion.trajectory import Trajectory
+from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
+
+SAMPLE_HZ = 10.0
+"""Of what is shown; the journal has 50 samples a second."""
+SAME_ROBOT_MM = 0.01
+TOOL_COLOR = (0.2, 0.45, 0.85)
+TOUCH_COLOR = (0.95, 0.55, 0.1)
+TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
+
+_TOOL, _TIP, _TOUCHES, _CLEARANCE = "tool", "tool model", "touches", "clearance"
+
+
+def showReplay(
+    scene: Any, name: str, track: ReplayTrack, chain: ArmChain, worldToHead: np.ndarray
+) -> Any:
+    """Put a trial into the scene as a Sequence in place of the one before.
+
+    It has nodes of its own, so that a running simulator does not disturb it.
+
+    Args:
+        scene: the scene.
+        name: of the trial, for people.
+        track: from its journal.
+        chain: of the robot that it was recorded with.
+        worldToHead: (4, 4) float, mm, registration of the trial.
+
+    Returns:
+        The `vtkMRMLSequenceBrowserNode`, at the first sample.
+
+    Raises:
+        InputError: the trial was recorded with another robot.
+    """
+    trajectory = track.trajectory
+    rows = _rows(trajectory.times_s)
+    poses = chain.tool_to_world(track.q[rows]) if chain.moving == track.q.shape[1] else None
+    tips = trajectory.tip_mm[rows]
+    if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
+        raise InputError("The trial was recorded with another robot than the one that is here.")
+    removeReplay(scene)
+    placed = _node(scene, "vtkMRMLLinearTransformNode", "place", f"{name}: WorldToHead")
+    placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
+    tool = _node(scene, "vtkMRMLLinearTransformNode", _TOOL, f"{name}: tool")
+    touches = _node(scene, "vtkMRMLMarkupsFiducialNode", _TOUCHES, f"{name}: touches")
+    clearance = _node(scene, "vtkMRMLTextNode", _CLEARANCE, f"{name}: clearance")
+    _showTool(scene, f"{name}: tool model", tool)
+    _prepareTouches(touches)
+    tool.SetAndObserveTransformNodeID(placed.GetID())
+    touches.SetAndObserveTransformNodeID(placed.GetID())
+    browser = _node(scene, "vtkMRMLSequenceBrowserNode", "browser", f"Replay of {name}")
+    browser.SetIndexDisplayMode(browser.IndexDisplayAsIndexValue)
+    browser.SetPlaybackRateFps(SAMPLE_HZ)
+    times = trajectory.times_s[rows]
+    for proxy, states in (
+        (tool, zip(times, _toolStates(tool, poses), strict=True)),
+        (touches, _touchStates(touches, trajectory)),
+        (clearance, zip(times, _clearanceStates(trajectory.clearance_mm[rows]), strict=True)),
+    ):
+        sequence = _node(scene, "vtkMRMLSequenceNode", f"{proxy.GetName()} sequence", "")
+        sequence.SetName(f"{proxy.GetName()} sequence")
+        sequence.SetIndexName("time")
+        sequence.SetIndexUnit("s")
+        sequence.SetIndexType(sequence.NumericIndex)
+        for time, state in states:
+            # The proxy becomes what the state is, with all its attributes.
+            state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
+            sequence.SetDataNodeAtValue(state, f"{time:.3f}")
+        # Told of both at once, Slicer makes no proxy of its own.
+        wasModifying = browser.StartModify()
+        browser.AddSynchronizedSequenceNode(sequence)
+        browser.AddProxyNode(proxy, sequence, False)
+        browser.SetOverwriteProxyName(sequence, False)
+        browser.SetSaveChanges(sequence, False)
+        browser.EndModify(wasModifying)
+    browser.SetSelectedItemNumber(0)
+    return browser
+
+
+def goTo(scene: Any, timeS: float) -> None:
+    """Show the moment of the trial's time in s, as far as a replay is in the scene."""
+    browser = findReplay(scene)
+    if browser is None:
+        return
+    sequence = browser.GetMasterSequenceNode()
+    times = [float(sequence.GetNthIndexValue(n)) for n in range(sequence.GetNumberOfDataNodes())]
+    # Never after the moment, so that the touch that is looked at has not been made yet.
+    browser.SetSelectedItemNumber(max(0, int(np.searchsorted(times, timeS, side="right")) - 1))
+
+
+def moment(scene: Any) -> tuple[float, str] | None:
+    """Return the replay's time in s and what is said about the clearance; None without one."""
+    browser = findReplay(scene)
+    text = findNode(scene, "vtkMRMLTextNode", _role(_CLEARANCE))
+    if browser is None or text is None or browser.GetMasterSequenceNode() is None:
+        return None
+    value = browser.GetMasterSequenceNode().GetNthIndexValue(browser.GetSelectedItemNumber())
+    return float(value or 0.0), text.GetText()
+
+
+def findReplay(scene: Any) -> Any | None:
+    """Return the browser of the replay that is in the scene, or None."""
+    return findNode(scene, "vtkMRMLSequenceBrowserNode", _role("browser"))
+
+
+def removeReplay(scene: Any) -> None:
+    """Take the replay and all its nodes out of the scene."""
+    nodes = scene.GetNodes()
+    ours = [nodes.GetItemAsObject(n) for n in range(nodes.GetNumberOfItems())]
+    for node in ours:
+        role = node.GetAttribute(ROLE_ATTRIBUTE) or ""
+        if role.startswith(f"{Role.REPLAY} ") and node.GetScene() is not None:
+            if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
+                scene.RemoveNode(node.GetDisplayNode())
+            scene.RemoveNode(node)
+
+
+def _rows(times: np.ndarray) -> np.ndarray:
+    """Return which samples are shown: about ten a second, the first and the last."""
+    wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
+    return np.unique([*np.searchsorted(times, wanted), len(times) - 1])
+
+
+def _toolStates(tool: Any, poses: np.ndarray) -> Any:
+    for pose in poses:
+        state = type(tool)()
+        state.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
+        yield state
+
+
+def _touchStates(touches: Any, trajectory: Trajectory) -> Any:
+    """Yield the touches so far, from the beginning and from each touch on."""
+    made = trajectory.touches
+    for count in range(len(made) + 1):
+        state = type(touches)()
+        state.SetLocked(True)
+        for touch in made[:count]:
+            state.AddControlPoint(vtk.vtkVector3d(*touch.position_mm), touch.label)
+        yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
+
+
+def _clearanceStates(clearance: np.ndarray) -> Any:
+    for value in clearance:
+        state = slicer.vtkMRMLTextNode()
+        state.SetText(f"{value:.1f} mm")
+        yield state
+
+
+def _showTool(scene: Any, name: str, tool: Any) -> None:
+    """Show a needle whose tip is the tool's: its shaft lies along −z."""
+    line = vtk.vtkLineSource()
+    line.SetPoint1(0.0, 0.0, 0.0)
+    line.SetPoint2(0.0, 0.0, -TOOL_LENGTH_MM)
+    tube = vtk.vtkTubeFilter()
+    tube.SetInputConnection(line.GetOutputPort())
+    tube.SetRadius(TOOL_RADIUS_MM)
+    tube.SetNumberOfSides(16)
+    tube.CappingOn()
+    tube.Update()
+    model = _node(scene, "vtkMRMLModelNode", _TIP, name)
+    model.SetAndObservePolyData(tube.GetOutput())
+    model.GetDisplayNode().SetColor(TOOL_COLOR)
+    model.SetAndObserveTransformNodeID(tool.GetID())
+
+
+def _prepareTouches(touches: Any) -> None:
+    touches.SetLocked(True)
+    display = touches.GetDisplayNode()
+    display.SetSelectedColor(TOUCH_COLOR)
+    display.SetGlyphScale(2.5)
+    display.SetTextScale(3.5)
+
+
+def _node(scene: Any, className: str, part: str, name: str) -> Any:
+    return findOrAddNode(scene, className, _role(part), name)
+
+
+def _role(part: str) -> str:
+    return f"{Role.REPLAY} {part}"

@@ -1,0 +1,1 @@
+"""A recorded trial shown again in the simulator's views."""

@@ -1,0 +1,49 @@
+"""A journal of a made-up trial of a few seconds, for the tests of what shows it again."""
+
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.arm_chain import read_arm_chain
+from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
+from rastrainer_simulator.assets import asset_path
+
+TICK_S = 0.004
+START_S = 100.0
+URDF = asset_path("robots", "iiwa7") / "iiwa7.urdf"
+
+
+def write_recorded_trial(
+    folder: Path, trial_id: str, seconds: float = 3.0, trainee: str = "T-001"
+) -> np.ndarray:
+    """Write the journal of a trial with a touch each second; return its tips (n, 3) float, mm."""
+    times = np.arange(5, round(seconds / TICK_S) + 1, 5) * TICK_S
+    q = np.array([0.1, 0.5, -0.2, -1.4, 0.3, 0.9, 0.0]) + 0.05 * np.sin(times)[:, None]
+    tips = read_arm_chain(URDF).tool_to_world(q)[:, :3, 3]
+    header = {
+        "kind": "header",
+        "format": FORMAT,
+        "version": FORMAT_VERSION,
+        "tick": 0,
+        "simTime": START_S + TICK_S,
+        "trialId": trial_id,
+        "trainee": trainee,
+        "task": "task-1",
+        "tickS": TICK_S,
+    }
+    entries = [header]
+    for number, (time, posture, tip) in enumerate(zip(times, q, tips, strict=True)):
+        stamp = {"tick": 5 * number, "simTime": START_S + time}
+        sample = {"q": posture.tolist(), "tipMm": tip.tolist(), "clearanceMm": 30.0 - 5.0 * time}
+        entries.append({"kind": "sample", **stamp, **sample})
+        if round(time / TICK_S) % 250 == 0:
+            touch = {"label": str(round(time)), "positionMm": tip.tolist(), "kept": round(time)}
+            stamp = {"tick": 5 * number, "simTime": START_S + time + TICK_S}
+            entries.append({"kind": "touch", **stamp, **touch})
+    lines, previous = [], NO_LINE
+    for n, entry in enumerate(entries, start=1):
+        line, previous = encode_line(n, previous, entry)
+        lines.append(line)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"20260302T090000Z_{trial_id}.journal").write_bytes(b"".join(lines))
+    return tips

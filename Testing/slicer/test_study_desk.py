@@ -1,0 +1,179 @@
+"""The study leads each trainee: what comes next, its time, its questionnaires, and resuming."""
+
+import json
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.study_desk import StudyDesk
+from rastrainer.slicer.trainee_desk import TraineeDesk
+from rastrainer.study import Study
+from Testing.slicer.training_room import Room
+
+SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
+STARTED = "2999-01-01T10:00:00Z"
+
+
+class Lab:
+    """A study with a protocol, its trainee, and the hands of an instructor."""
+
+    def __init__(self, room, folder):
+        self.room, self.path = room, folder / "study.db"
+        self.moment = datetime.now(timezone.utc)
+        self.trainees = TraineeDesk(lambda: Study.open(self.path), folder / "journals")
+        self.desk = StudyDesk(self.trainees, room.desk, lambda: room.now, lambda: self.moment)
+
+    def close(self):
+        self.desk.close()
+        self.trainees.close()
+
+    @property
+    def next(self):
+        return self.desk.progress().next_step.name
+
+    def practice(self, seconds):
+        """Let the trial run be played for so long."""
+        self.tell(phase="running")
+        self.room.now += seconds
+        self.tell(phase="idle")
+
+    def tell(self, **changes):
+        """Have the simulator tell of a trial, and wait until the desk knows."""
+        told = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
+        self.room.tell(**told)
+        self.room.run_until(lambda: told.items() <= vars(self.room.desk.progress).items())
+
+
+@pytest.fixture
+def room(scene, scenario):
+    room = Room(scene, scenario)
+    yield room
+    room.close()
+
+
+@pytest.fixture
+def lab(room, tmp_path):
+    lab = Lab(room, tmp_path)
+    lab.trainees.create("T001", consent=True)
+    yield lab
+    lab.close()
+
+
+@pytest.fixture
+def enrolled(lab):
+    lab.desk.begin(SHIPPED)
+    assert lab.desk.enroll() == 0
+    return lab
+
+
+def test_without_a_protocol_trainees_practice_freely(lab):
+    assert (lab.desk.protocol(), lab.desk.progress()) == (None, None)
+    lab.desk.startTrial("task-2", "desktop")
+    lab.room.run_until(lambda: lab.room.sent("StartTask"))
+
+
+def test_who_is_not_enrolled_starts_no_trial_in_a_study_with_a_protocol(lab):
+    lab.desk.begin(SHIPPED)
+    with pytest.raises(InputError, match="Enroll the trainee"):
+        lab.desk.startTrial("task-1", "hmd")
+
+
+def test_the_study_starts_only_what_comes_next(enrolled):
+    desk, room = enrolled.desk, enrolled.room
+    with pytest.raises(InputError, match="Answer the questionnaire SSQ"):
+        desk.startStep()
+    with pytest.raises(InputError, match="16 answers"):
+        desk.answer([0] * 15)
+    desk.answer([0] * 16)
+    with pytest.raises(InputError, match=r"Not yet: .*trial run with the headset"):
+        desk.startTrial("task-1", "desktop")
+    desk.startStep()
+    room.run_until(lambda: room.sent("StartTask"))
+    assert room.sent("StartTask") == [{"task": "trial-run", "trainee": "T001", "mode": "hmd"}]
+
+
+def test_the_time_of_a_trial_run_outlives_an_interruption(enrolled, tmp_path):
+    enrolled.desk.answer([0] * 16)
+    enrolled.practice(120.0)
+    with pytest.raises(InputError, match=r"5 minutes, of which 2\.0 are over"):
+        enrolled.desk.finishStep()
+    enrolled.close()
+    again = Lab(enrolled.room, tmp_path)
+    again.trainees.choose("T001")
+    assert again.desk.minutesOver(again.desk.progress()) == 2.0
+    again.practice(180.0)
+    again.desk.finishStep()
+    assert again.next == "hmd/1/task-1"
+    again.close()
+
+
+def test_practice_of_another_trainee_or_task_does_not_count(enrolled):
+    enrolled.desk.answer([0] * 16)
+    for other in ({"trainee": "T002"}, {"task": "task-1"}, {"mode": "desktop"}):
+        enrolled.tell(phase="running", **other)
+        enrolled.room.now += 600.0
+    enrolled.practice(6.0)
+    assert enrolled.desk.minutesOver(enrolled.desk.progress()) == pytest.approx(0.1)
+
+
+def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
+    enrolled, make_record, tmp_path
+):
+    enrolled.desk.answer([0] * 16)
+    enrolled.desk.skipStep("has practiced in the pilot")
+    enrolled.close()
+    with Study.open(tmp_path / "study.db") as study:
+        study.add_trial(
+            make_record(
+                "00000000-0000-0000-0000-000000000001",
+                trainee="T001",
+                mode="hmd",
+                startedUtc=STARTED,
+                completedUtc=STARTED,
+            )
+        )
+    again = Lab(enrolled.room, tmp_path)
+    again.trainees.choose("T001")
+    assert again.next == "hmd/1/task-2"
+    again.close()
+
+
+def test_a_break_lasts_as_long_as_the_protocol_says_by_the_clock(lab, tmp_path):
+    short = json.loads(SHIPPED.read_text()) | {
+        "tasks": ["task-1"],
+        "questionnaires": [],
+        "trialRun": {"minutes": 0},
+    }
+    path = tmp_path / "short.json"
+    path.write_text(json.dumps(short))
+    lab.desk.begin(path)
+    lab.desk.enroll()
+    lab.desk.skipStep("the headset's battery was empty")
+    assert lab.next == "desktop/break"
+    lab.moment = datetime.now(timezone.utc) + timedelta(minutes=9.9)
+    with pytest.raises(InputError, match="The break takes 10 minutes"):
+        lab.desk.finishStep()
+    lab.moment += timedelta(minutes=0.2)
+    lab.desk.finishStep()
+    entry = lab.desk.progress().entries[-1]
+    assert (entry.outcome, round(entry.details["minutes"], 1)) == ("done", 10.1)
+
+
+def test_a_trial_that_will_not_count_is_told_while_it_is_played(enrolled):
+    enrolled.desk.answer([0] * 16)
+    enrolled.tell(phase="running", task="task-3")
+    assert (
+        "plays task-3 in the mode hmd, which the study does not ask for" in enrolled.desk.beside()
+    )
+    enrolled.tell(phase="running", task="trial-run")
+    assert enrolled.desk.beside() == ""
+    enrolled.tell(phase="running", trainee="somebody", task="task-3")
+    assert enrolled.desk.beside() == ""
+
+
+def test_the_next_step_is_not_skipped_without_a_reason(enrolled):
+    with pytest.raises(InputError, match="only with a reason"):
+        enrolled.desk.skipStep("no")
+    assert enrolled.next == "hmd/before/ssq"

@@ -1,0 +1,92 @@
+"""The section Study by its buttons alone: begin, enroll, answer, skip; what is refused is told."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rastrainer.experiment.study_progress import StudyProgress
+from rastrainer.questionnaires.ssq import SSQ
+from rastrainer.study import Study
+
+SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
+
+
+@pytest.fixture
+def panel(host):
+    """The module with the sections Trainees, Study and Training open, and a trainee T001."""
+    host.open()
+    for section in ("trainees", "study", "training"):
+        host.find(f"{section}CollapsibleButton").collapsed = False
+    host.process_events()
+    host.press("createTraineeButton")
+    return host
+
+
+@pytest.fixture
+def begun(panel):
+    panel.type("protocolPathLineEdit", str(SHIPPED))
+    panel.answer("Begin the study", "Yes")
+    panel.press("beginStudyButton")
+    panel.press("enrollButton")
+    return panel
+
+
+def entries(host):
+    with Study.open(host.find("studyPathLineEdit").currentPath) as study:
+        return [(e.step, e.outcome) for e in StudyProgress(study).progress("T001").entries]
+
+
+def outcomes(host):
+    table = host.find("stepsTable")
+    return [table.item(row, 1).text() for row in range(table.rowCount)]
+
+
+def test_a_study_begins_with_a_protocol_only_after_a_yes(panel, tmp_path):
+    assert "practice freely" in panel.text("protocolText")
+    with pytest.raises(AssertionError, match="Choose the file of a protocol first"):
+        panel.press("beginStudyButton")
+    (tmp_path / "wrong.json").write_text(json.dumps({"formatVersion": 1, "steps": []}))
+    panel.type("protocolPathLineEdit", str(tmp_path / "wrong.json"))
+    panel.answer("Begin the study", "Yes")
+    panel.press("beginStudyButton")
+    assert "steps must be left out" in panel.messages[-1].text
+    panel.type("protocolPathLineEdit", str(SHIPPED))
+    panel.answer("Begin the study", "No")
+    panel.press("beginStudyButton")
+    assert "practice freely" in panel.text("protocolText")
+    panel.answer("Begin the study", "Yes")
+    panel.press("beginStudyButton")
+    assert panel.text("protocolText") == "Desktop against headset, as in the published study"
+    with pytest.raises(AssertionError, match="is hidden"):
+        panel.press("beginStudyButton")
+
+
+def test_a_questionnaire_is_a_form_that_keeps_no_half_answers(begun):
+    assert begun.text("stepText") == "Step 1 of 19: Answer the questionnaire SSQ."
+    begun.choose("ssq_nauseaComboBox", "2")
+    begun.press("saveAnswersButton")
+    assert "SSQ: not answered yet: 1, 2, 3, 4, 5, 6, 7, 9" in begun.messages[-1].text
+    assert begun.find("ssq_nauseaComboBox").currentText == "2"
+    for item in SSQ.items:
+        begun.choose(f"{item.name}ComboBox", "1")
+    begun.press("saveAnswersButton")
+    assert entries(begun) == [("hmd/before/ssq", "done")]
+    assert outcomes(begun)[:3] == ["done", "next", ""]
+
+
+def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun):
+    begun.answer("Why is it left out?", "no")
+    begun.press("skipStepButton")
+    assert "only with a reason" in begun.messages[-1].text
+    begun.answer("Why is it left out?", "the sheets were missing")
+    begun.press("skipStepButton")
+    assert outcomes(begun)[:2] == ["left out: the sheets were missing", "next"]
+    assert begun.text("stepTimeText") == "0:00 of 5 min are over."
+    with pytest.raises(AssertionError, match="Its time is not over yet"):
+        begun.press("finishStepButton")
+    with pytest.raises(AssertionError, match="Connect to the simulator first"):
+        begun.press("startStepButton")
+    begun.press("createTraineeButton")
+    begun.choose("traineeComboBox", "T001")
+    assert outcomes(begun)[:2] == ["left out: the sheets were missing", "next"]

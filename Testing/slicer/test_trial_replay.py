@@ -1,0 +1,103 @@
+"""A recorded trial is a Sequence: tool, touches and clearance over the trial's time."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+import vtk
+
+from rastrainer.arm_chain import ArmChain, read_arm_chain
+from rastrainer.errors import InputError
+from rastrainer.journal.replay_track import find_track
+from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.trial_replay import findReplay, goTo, moment, removeReplay, showReplay
+from Testing.slicer.recorded_trial import URDF, write_recorded_trial
+
+TRIAL = "00000000-0000-0000-0000-000000000001"
+WORLD_TO_HEAD = np.array(
+    [[0.0, 1, 0, 5], [-1, 0, 0, -20], [0, 0, 1, -300], [0, 0, 0, 1]], dtype=float
+)
+
+
+@pytest.fixture
+def tips(tmp_path):
+    return write_recorded_trial(tmp_path, TRIAL)
+
+
+@pytest.fixture
+def replayed(scene, tips, tmp_path):  # noqa: ARG001 (the journal is needed)
+    track = find_track(tmp_path, TRIAL)
+    return showReplay(scene, "Trial 1", track, read_arm_chain(URDF), WORLD_TO_HEAD)
+
+
+def node(scene, name):
+    found = scene.GetFirstNodeByName(f"Trial 1: {name}")
+    assert found is not None, name
+    return found
+
+
+def tip_in_scene(scene):
+    """Return where the needle's tip is shown, RAS mm."""
+    matrix = vtk.vtkMatrix4x4()
+    node(scene, "tool").GetMatrixTransformToWorld(matrix)
+    return np.array([matrix.GetElement(row, 3) for row in range(3)])
+
+
+def shown(scene):
+    """Return how many nodes of each class there are, but for storage, which Slicer adds itself."""
+    nodes = scene.GetNodes()
+    names = [nodes.GetItemAsObject(n).GetClassName() for n in range(nodes.GetNumberOfItems())]
+    return Counter(name for name in names if "Storage" not in name and "Display" not in name)
+
+
+def test_the_tool_is_where_it_was_at_every_time(scene, replayed, tips):
+    assert replayed.GetNumberOfItems() == pytest.approx(30, abs=1)
+    for seconds in (0.02, 1.0, 2.98):
+        goTo(scene, seconds)
+        shown, said = moment(scene)
+        assert 0.0 <= seconds - shown + 1e-6 < 0.12
+        tip = tips[round(shown / 0.02) - 1]
+        expected = WORLD_TO_HEAD[:3, :3] @ tip + WORLD_TO_HEAD[:3, 3]
+        np.testing.assert_allclose(tip_in_scene(scene), expected, atol=1e-6)
+        assert said == f"{30.0 - 5.0 * shown:.1f} mm"
+
+
+def test_touches_come_when_they_were_made(scene, replayed):  # noqa: ARG001
+    counts = []
+    for seconds in (0.9, 1.1, 2.5, 3.0):
+        goTo(scene, seconds)
+        counts.append(node(scene, "touches").GetNumberOfControlPoints())
+    assert counts == [0, 1, 2, 3]
+    assert node(scene, "touches").GetNthControlPointLabel(2) == "3"
+
+
+def test_another_trial_takes_the_place_of_the_one_before(scene, replayed, tmp_path):
+    before = shown(scene)
+    write_recorded_trial(tmp_path / "other", TRIAL, seconds=1.0)
+    track = find_track(tmp_path / "other", TRIAL)
+    other = showReplay(scene, "Trial 2", track, read_arm_chain(URDF), WORLD_TO_HEAD)
+    assert other is not replayed
+    assert shown(scene) == before
+    removeReplay(scene)
+    assert findReplay(scene) is None
+    assert moment(scene) is None
+    goTo(scene, 1.0)
+
+
+def test_a_replay_is_saved_with_the_scene(headless_scene, replayed, tmp_path):
+    headless_scene.save(tmp_path / "trial.mrb")
+    again = HeadlessScene()
+    again.load(tmp_path / "trial.mrb")
+    assert findReplay(again.scene).GetNumberOfItems() == replayed.GetNumberOfItems()
+
+
+def test_a_journal_of_another_robot_or_none_at_all_is_told(scene, tips, tmp_path):  # noqa: ARG001
+    chain = read_arm_chain(URDF)
+    longer = chain.origins.copy()
+    longer[3, 2, 3] += 10.0
+    track, other = find_track(tmp_path, TRIAL), ArmChain(longer, chain.axes)
+    with pytest.raises(InputError, match="another robot"):
+        showReplay(scene, "Trial 1", track, other, WORLD_TO_HEAD)
+    assert findReplay(scene) is None
+    with pytest.raises(InputError, match="only on the computer whose simulator has recorded it"):
+        find_track(tmp_path, TRIAL[:-1] + "2")
