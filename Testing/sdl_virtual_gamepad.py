@@ -13,7 +13,6 @@ from rastrainer_simulator.controls.inputs import AXES, BUTTONS
 GAMECONTROLLER, WHEEL = 1, 2
 """SDL's types of joysticks: it lays out a virtual one of the first type as a game controller."""
 FULL = 32767
-INIT_JOYSTICK = 0x200
 _TRIGGERS = ("lefttrigger", "righttrigger")
 
 _Update = ctypes.CFUNCTYPE(None, ctypes.c_void_p)

@@ -21,6 +21,7 @@ SUBCOMMANDS = {
     "scenario": "rastrainer_simulator.scenario_command",
     "simulator": "rastrainer_simulator.simulator_command",
     "window": "rastrainer_simulator.window_command",
+    "doctor": "rastrainer_simulator.doctor_command",
     "replay": "rastrainer_simulator.replay_command",
     "verify": "rastrainer_simulator.verify_command",
     "simulate-cohort": "rastrainer_simulator.cohort_command",

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import RASTrainerError
+from rastrainer.journal.journal_reader import JournalReading
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.loop_statistics import LoopStatistics, Punctuality
@@ -71,6 +72,7 @@ class ControlLoop:
         records: Path,
         rate_hz: float = 250.0,
         speed: float | None = 1.0,
+        interrupted: JournalReading | None = None,
     ) -> None:
         """Prepare the loop; `start` sets it going.
 
@@ -79,6 +81,8 @@ class ControlLoop:
             records: folder of the trials' journals; it is created with the first trial.
             rate_hz: ticks in a simulated second.
             speed: simulated seconds in a second; None runs as fast as the machine can.
+            interrupted: journal of a trial that the simulation has taken up, which waits to be
+                gone on with.
         """
         self._simulation = simulation
         self._dt = 1.0 / rate_hz
@@ -86,6 +90,8 @@ class ControlLoop:
         self._archive = TrialArchive(records)
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="journal")
         self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt)
+        if interrupted is not None:
+            self._recorder.take_up(simulation, interrupted)
         self._state = simulation.state
         self._held = HeldBack(self._state.training)
         self._sticks = HANDS_OFF

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
+from rastrainer.journal.journal_reader import JournalReading
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, FIDUCIAL_COUNT, CommandName
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.config_folder import config_folder
 from rastrainer_simulator.desktop_process import DesktopProcess
@@ -25,6 +26,11 @@ from rastrainer_simulator.flow.preferences import Preferences, read_preferences
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.igtl.state_feed import StateFeed
+from rastrainer_simulator.logs.trial_log import TrialLog
+from rastrainer_simulator.record.interrupted_trial import find_interrupted
+from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.record.records_folder import RecordsFolder
+from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.scenario_loader import ScenarioLoader
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.setup import load_setup
@@ -60,6 +66,7 @@ class ServerOptions:
         has_gamepad: whether gamepads at this computer are read.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
         config: folder of the user's settings; None is the usual one.
+        goes_on: whether a trial that the simulator's end has interrupted is taken up.
     """
 
     records: Path
@@ -77,6 +84,7 @@ class ServerOptions:
     has_gamepad: bool = True
     has_desktop: bool = False
     config: Path | None = None
+    goes_on: bool = True
 
 
 class SimulatorServer:
@@ -86,16 +94,21 @@ class SimulatorServer:
         """Load the scenario and the robot, which takes about a second.
 
         Raises:
-            InputError: one of their files cannot be used.
+            InputError: one of their files cannot be used, or another simulator writes to the
+                folder of the journals.
         """
         self._options = options
         self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
+        taken_up = self._take_up() if options.goes_on else None
+        simulation, reading = taken_up or (self._make_simulation(options.scenario), None)
+        self._goes_on = reading is not None
+        self._records = RecordsFolder(options.records)
         self._control_loop = ControlLoop(
-            self._make_simulation(options.scenario), options.records, speed=options.speed
+            simulation, options.records, speed=options.speed, interrupted=reading
         )
         self._scenarios = ScenarioLoader(
-            self._control_loop, self._make_simulation, _is_loopback(options.host)
+            self._control_loop, self._make_simulation, _is_loopback(_peers_host(options))
         )
 
     async def run(self, on_ready: Callable[[str], None]) -> None:
@@ -117,6 +130,7 @@ class SimulatorServer:
         )
         feed = StateFeed(link.publisher.is_due, link.tell, loop)
         unsubscribe = self._control_loop.subscribe(feed)
+        self._control_loop.subscribe(TrialLog(loop))
         tasks = [loop.create_task(link.beat())]
         stop = asyncio.Event()
         desk = self._desk(link, stop) if self._options.has_views else None
@@ -124,13 +138,16 @@ class SimulatorServer:
         # What was loaded stays: no garbage collection needs to look at it between two ticks.
         gc.collect()
         gc.freeze()
-        with _stop_on_signals(loop, stop):
+        with stop_on_signals(loop, stop):
             self._control_loop.start()
+            _log.info("The simulator has started.", extra={"data": versions()})
             try:
                 on_ready(await self._open(link, tasks))
                 if serve_views is not None:
                     views = await serve_views(on_ready)
                     tasks.append(loop.create_task(desk.run()))
+                if self._goes_on:
+                    on_ready(self._interruption())
                 if self._options.has_desktop and views is not None:
                     window = DesktopProcess(
                         f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open()
@@ -150,6 +167,8 @@ class SimulatorServer:
                 # What was commanded is still answered, and then the connections are closed.
                 await loop.run_in_executor(None, self._stop)
                 await link.server.close()
+                self._records.close()
+                _log.info("The simulator has ended.", extra={"data": self._health()})
 
     def _preferred_settings(self) -> SimulationSettings:
         """Return how the trainee wants the simulation to behave; without views, as by default."""
@@ -161,6 +180,29 @@ class SimulatorServer:
             # Whether the file is missing or wrong, the desk looks at it again, and says so.
             preferences = Preferences()
         return preferences.applied_to(SimulationSettings())
+
+    def _take_up(self) -> tuple[Simulation, JournalReading] | None:
+        """Return a simulation with the trial that was interrupted, and its journal."""
+        try:
+            found = find_interrupted(self._options.records)
+            if found is None:
+                return None
+            reading, interrupted = found
+            setup = setup_of(reading.header, self._options.scenario, self._options.robot_meshes)
+        except InputError as error:
+            _log.warning("An interrupted trial is not gone on with: %s", error)
+            return None
+        simulation = Simulation(setup, next(self._seeds))
+        simulation.take_up(interrupted)
+        return simulation, reading
+
+    def _interruption(self) -> str:
+        training = self._control_loop.latest.training
+        kept = f"{len(training.touches)} of {FIDUCIAL_COUNT} points are kept"
+        return (
+            f"goes on with the interrupted trial of {training.trainee} at {training.task}: {kept}; "
+            "go on with it or abort it"
+        )
 
     @property
     def _config(self) -> Path:
@@ -175,6 +217,8 @@ class SimulatorServer:
             config=self._config,
             records=self._options.records,
             use_settings=self._use_settings,
+            list_scenarios=self._scenarios.list,
+            use_scenario=self._scenarios.load,
             is_slicer_there=lambda: bool(link.server.clients),
             quit=stop.set,
         )
@@ -200,6 +244,7 @@ class SimulatorServer:
             self._options.view_port,
             self._options.robot_meshes,
             self._config / "certificates" if self._options.has_network else None,
+            self._scenarios.picture,
         )
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:
@@ -242,6 +287,11 @@ class SimulatorServer:
         }
 
 
+def _peers_host(options: ServerOptions) -> str:
+    """Return the address by which peers are met."""
+    return options.host if options.connect_to is None else options.connect_to[0]
+
+
 def _is_loopback(host: str) -> bool:
     try:
         return ip_address(host).is_loopback
@@ -250,14 +300,23 @@ def _is_loopback(host: str) -> bool:
 
 
 @contextlib.contextmanager
-def _stop_on_signals(loop: asyncio.AbstractEventLoop, stop: asyncio.Event) -> Iterator[None]:
-    """Set the event on SIGTERM and Ctrl-C, in place of what these do otherwise."""
+def stop_on_signals(loop: asyncio.AbstractEventLoop, stop: asyncio.Event) -> Iterator[None]:
+    """Set the event on SIGTERM, on Ctrl-C and when the terminal is closed."""
 
-    def ask(*_signal: object) -> None:
-        loop.call_soon_threadsafe(stop.set)
+    def end(name: str) -> None:
+        _log.info("The simulator is asked to end by %s.", name)
+        stop.set()
+
+    def ask(number: int, *_frame: object) -> None:
+        loop.call_soon_threadsafe(end, signal.Signals(number).name)
 
     # Not by the event loop's own means, which Windows lacks.
-    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    hang_up = getattr(signal, "SIGHUP", None)
+    # Who starts a program by nohup wants it to outlive the terminal.
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
+        numbers.append(hang_up)
+    before = {number: signal.signal(number, ask) for number in numbers}
     try:
         yield
     finally:

@@ -16,6 +16,9 @@ from rastrainer_simulator.training.training import TrainingSettings
 
 T = TypeVar("T")
 
+LARGEST_NUMBER = 10_000
+"""No length, angle, speed or count of iterations is larger; a larger one would only never end."""
+
 
 @dataclasses.dataclass(frozen=True)
 class SimulationSettings:
@@ -71,6 +74,15 @@ def _from_json(kind: Any, name: str, value: Any) -> Any:
     if dataclasses.is_dataclass(kind) and isinstance(value, Mapping):
         return settings_from_json(kind, value)
     try:
+        if kind in (int, float) and not _is_reasonable(value):
+            raise ValueError
+        if isinstance(value, (list, Mapping)):
+            raise TypeError
         return kind(value)
     except (TypeError, ValueError):
-        raise InputError(f"The setting {name} cannot be {value!r}.") from None
+        raise InputError(f"The setting {name} cannot be {str(value)[:40]!r}.") from None
+
+
+def _is_reasonable(value: Any) -> bool:
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return is_number and abs(value) <= LARGEST_NUMBER

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -40,6 +40,9 @@ from rastrainer_simulator.training.phase_rules import refusal
 from rastrainer_simulator.training.training import Moment, Reply, Training
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.record.interrupted_trial import InterruptedTrial
 
 BEHIND_THE_TOOL = ("links", "self", "table")
 """Parts of the arm that the trainee does not steer and that may still be in the way."""
@@ -87,6 +90,21 @@ class Simulation:
     def continue_from(self, point: StartingPoint) -> None:
         """Count ticks, time and revisions on from another simulation, before the first step."""
         self._training.continue_from(point.revision)
+        self._view.camera = point.camera or self._view.camera
+        self.state = self._state(point.tick, point.sim_time, Motion.NONE)
+
+    def take_up(self, interrupted: InterruptedTrial, point: StartingPoint | None = None) -> None:
+        """Go on with a trial of a journal, in place of any other, before the next step.
+
+        The arm stands as in the last sample: where the trainee has left it. `point` tells from
+        where ticks, time and view are to go on where that is not the journal's last line.
+        """
+        point = point or interrupted.point
+        self._training.take_up(interrupted.revision_before, interrupted.steps)
+        self._put_in_place(interrupted.q)
+        self._proximity = interrupted.proximity
+        self._is_within_reach = interrupted.is_within_reach
+        self._obstacle = interrupted.obstacle
         self._view.camera = point.camera or self._view.camera
         self.state = self._state(point.tick, point.sim_time, Motion.NONE)
 
@@ -164,8 +182,8 @@ class Simulation:
         posture = self._posture
         return self._teleoperation.step(dt, operator_input, posture.tip, axes, posture.surface)
 
-    def _put_in_place(self) -> None:
-        """Put the head where the trial has it, and the arm where trials start."""
+    def _put_in_place(self, q: Joints | None = None) -> None:
+        """Put the head where the trial has it, and the arm where trials start, or at `q`."""
         self._placed = self._training.truth
         head_to_world = np.array(self._placed.head_to_world)
         head_to_world[:3, 3] /= MM
@@ -174,7 +192,7 @@ class Simulation:
         self._stand_to_world[:3, 3] = head_to_world[:3, :3] @ self._head_base + head_to_world[:3, 3]
         self._collision.set_head_pose(head_to_world)
         self._contact.head_has_moved()
-        self._posture = self._postures.of(self._contact.at(self._start))
+        self._posture = self._postures.of(self._contact.at(q or self._start))
         self._proximity = Proximity.FREE
         self._is_within_reach = True
         self._obstacle = ""

@@ -12,6 +12,7 @@ from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 FASTEST = 1000.0
 LARGEST_SEED = 2**63 - 1
 DEFAULT_VIEW_PORT = 18945
+DEFAULT_RECORDS = Path.home() / "RASTrainer" / "trials"
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -58,7 +59,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--records",
         type=Path,
         metavar="DIR",
-        default=Path.home() / "RASTrainer" / "trials",
+        default=DEFAULT_RECORDS,
         help="folder of the trials' journals (default: %(default)s)",
     )
     parser.add_argument(
@@ -81,6 +82,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
     )
+    parser.add_argument(
+        "--go-on",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="go on with the newest trial where it was interrupted; it waits, paused, to be "
+        "resumed or aborted",
+    )
+    parser.add_argument(
+        "--log-folder",
+        type=Path,
+        metavar="DIR",
+        help="folder of the logs (default: the usual, or logs in that of --config)",
+    )
     parser.set_defaults(run=run)
 
 
@@ -94,11 +108,13 @@ def run(arguments: argparse.Namespace) -> int:
     connect_to = None if arguments.connect is None else _address(arguments.connect)
     # Only here: the robot and the scenario take time to import.
     import asyncio
-    import logging
 
+    from rastrainer_simulator.logs.log_files import keep_logs
+    from rastrainer_simulator.logs.log_folder import log_folder
     from rastrainer_simulator.server import ServerOptions, SimulatorServer
 
-    logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    own = None if arguments.config is None else arguments.config / "logs"
+    logs = arguments.log_folder or own or log_folder()
     options = ServerOptions(
         records=arguments.records,
         host=arguments.host,
@@ -109,14 +125,16 @@ def run(arguments: argparse.Namespace) -> int:
         has_gamepad=arguments.gamepad,
         has_desktop=arguments.desktop,
         config=arguments.config,
+        goes_on=arguments.go_on,
         connect_to=connect_to,
         speed=arguments.speed,
         scenario=arguments.scenario,
         robot_meshes=arguments.robot_meshes,
         seed=secrets.randbits(63) if arguments.seed is None else arguments.seed,
     )
-    server = SimulatorServer(options)
-    asyncio.run(server.run(lambda where: print(f"RASTrainer simulator {where}", flush=True)))
+    with keep_logs(logs, f"simulator-{arguments.port}"):
+        server = SimulatorServer(options)
+        asyncio.run(server.run(lambda where: print(f"RASTrainer simulator {where}", flush=True)))
     return 0
 
 

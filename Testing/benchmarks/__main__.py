@@ -1,7 +1,8 @@
 """`make bench`: run every benchmark, print one table, write build/bench.json.
 
 A benchmark is a file `bench_*.py` here with a function `rows(quick: bool) -> list[dict]`; each row
-has the keys of `COLUMNS`, with None where there is nothing to compare with.
+has the keys of `COLUMNS`, with None where there is nothing to compare with. What takes minutes is
+in a function `long_rows() -> list[dict]`, which `--long` adds.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
+from itertools import chain
 from pathlib import Path
 
 COLUMNS = ("name", "median", "p99", "unit", "peer", "peer_median", "peer_p99", "success", "n")
@@ -19,18 +21,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="make bench", description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="benchmarks to run (default: all)")
     parser.add_argument("--quick", action="store_true", help="fewer repetitions, rougher numbers")
+    parser.add_argument("--long", action="store_true", help="also what takes minutes")
     parser.add_argument("--output", type=Path, default=Path("build/bench.json"))
     arguments = parser.parse_args()
     found = sorted(path.stem.removeprefix("bench_") for path in HERE.glob("bench_*.py"))
+    arguments.output.parent.mkdir(parents=True, exist_ok=True)
     rows = []
     print(_line(COLUMNS))
     for name in arguments.names or found:
         module = importlib.import_module(f"Testing.benchmarks.bench_{name}")
-        for row in module.rows(arguments.quick):
+        measures = [lambda m=module: m.rows(arguments.quick)]
+        if arguments.long and hasattr(module, "long_rows"):
+            measures.append(module.long_rows)
+        for row in chain.from_iterable(measure() for measure in measures):
             rows.append({column: row[column] for column in COLUMNS})
             print(_line(rows[-1].values()), flush=True)
-    arguments.output.parent.mkdir(parents=True, exist_ok=True)
-    arguments.output.write_text(json.dumps(rows, indent=2) + "\n")
+        # Half an hour's numbers are not lost to the last benchmark's failure.
+        arguments.output.write_text(json.dumps(rows, indent=2) + "\n")
     print(f"Written to {arguments.output}.")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import secrets
 import tempfile
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -18,10 +19,13 @@ from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.scene.glb_reader import Glb
 from Testing.simulator.view_server.served import ViewClient
 
+CROWD = 4
+
 
 def rows(quick: bool) -> list[dict]:
     """Return the rows `views.*` of the stream and the process, and `scene.*` of all six tasks."""
-    return [*_stream_rows(2.0 if quick else 10.0), *_scene_rows(quick)]
+    seconds = 2.0 if quick else 10.0
+    return [*_stream_rows(seconds), _crowd_row(seconds), *_scene_rows(quick)]
 
 
 def _stream_rows(seconds: float) -> list[dict]:
@@ -50,6 +54,25 @@ def _stream_rows(seconds: float) -> list[dict]:
         row("views.rss", [rss], "MB"),
         row("views.cpu", 100.0 * np.array(cpu), "%"),
     ]
+
+
+def _crowd_row(seconds: float) -> dict:
+    """Return what several views are sent together."""
+    key = secrets.token_urlsafe()
+    thread = LoopThread()
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        arguments = (Path(folder) / "records", "--view-port", "0")
+        simulator = stack.enter_context(ViewedSimulator(*arguments, key=key))
+        views = [stack.enter_context(ViewClient(thread, simulator.url, key)) for _ in range(CROWD)]
+        for view in views:
+            view.join()
+            view.next("state")
+        sizes = [0]
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            sizes += [len(view.next_text().encode()) for view in views]
+    thread.stop()
+    return row(f"views.stream to {CROWD}", [sum(sizes) / seconds / 1000], "kB/s")
 
 
 def _scene_rows(quick: bool) -> list[dict]:

@@ -7,7 +7,7 @@ from rastrainer_simulator.controls.control_name import ControlName
 from Testing.end_to_end.virtual_display import VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 
-HELD_S = 0.1
+HELD_S = 0.02
 STICKS = (("KeyA", "KeyD"), ("KeyS", "KeyW"), ("KeyF", "KeyR"))
 
 

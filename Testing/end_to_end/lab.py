@@ -19,7 +19,7 @@ from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ViewClient
 
 SLICER = (sys.executable, "-m", "rastrainer.slicer.headless")
-PATIENCE_S = 120
+PATIENCE_S = 600
 VIEWS = "RASTrainer simulator serves views on "
 
 
@@ -29,18 +29,20 @@ class Lab:
     Attributes:
         simulator: the process, and its gamepad.
         display, keyboard: those of the window.
+        records: folder of the journals.
         url, key: by which views join.
         view: one that watches.
     """
 
     def __init__(self, folder: Path, *arguments: str):
         self._folder = folder
+        self.records = folder / "records"
         self._stack = ExitStack()
         self.key = secrets.token_urlsafe(32)
         os.environ["RASTRAINER_VIEW_KEY"] = self.key
         try:
             self.simulator = self._stack.enter_context(
-                SimulatorWithGamepad(folder / "records", "--view-port", "0", *arguments)
+                SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)
             )
         finally:
             del os.environ["RASTRAINER_VIEW_KEY"]
@@ -67,23 +69,33 @@ class Lab:
         window.wait_for_frames()
         return window
 
-    def start_slicer(self) -> subprocess.Popen:
-        """Start Slicer's side, which scores one trial and ends."""
-        process = subprocess.Popen(
-            [
-                *(*SLICER, "--port", str(self.simulator.port), "--trials", "1"),
-                *("--scenario", str(asset_path("scenarios", "colin27"))),
-                *("--output", str(self._folder / "study")),
-            ],
-            stdout=subprocess.PIPE,
-            text=True,
+    def start_slicer(self, trials: int = 1) -> SlicerProcess:
+        """Start Slicer's side, which scores so many trials and ends."""
+        slicer = SlicerProcess(
+            *("--port", str(self.simulator.port), "--trials", str(trials)),
+            *("--scenario", str(asset_path("scenarios", "colin27"))),
+            *("--output", str(self._folder / "study"), "--timeout", str(PATIENCE_S)),
         )
-        self._stack.callback(process.kill)
-        return process
+        self._stack.callback(slicer.kill)
+        return slicer
 
 
-def trial_of(slicer: subprocess.Popen) -> dict:
-    """Wait for the end of Slicer's side and return the results that it tells of its trial."""
-    lines = slicer.communicate(timeout=PATIENCE_S)[0].splitlines()
-    told = [json.loads(line) for line in lines]
-    return next(line for line in told if line["event"] == "trial")
+class SlicerProcess:
+    """Slicer's side, headless."""
+
+    def __init__(self, *arguments: str):
+        self._process = subprocess.Popen([*SLICER, *arguments], stdout=subprocess.PIPE, text=True)
+
+    def kill(self) -> None:
+        """End it as a crash would; a second time changes nothing."""
+        self._process.kill()
+        self._process.wait()
+
+    def told_until(self, event: str) -> list[dict]:
+        """Return what it tells from now on, up to the first event of a kind."""
+        told = []
+        for line in self._process.stdout:
+            told.append(json.loads(line))
+            if told[-1]["event"] == event:
+                return told
+        raise AssertionError(f"Slicer's side has told no {event}: {told}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -27,17 +28,20 @@ class SimulatorProcess:
     def __init__(self, records: Path, *arguments: str, **others: Any):
         config = str(records.with_name(records.name + "-config"))
         settings = ["--port", "0", "--records", str(records), "--config", config]
+        # A pipe that nobody reads would be full after some minutes.
+        self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self._process = subprocess.Popen(
             [*self.command, *settings, *arguments],
             stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=self._errors,
             text=True,
             **others,
         )
         self.pid = self._process.pid
         self.ready = self.next_line()
         if not self.ready:
-            raise AssertionError(self._process.communicate()[1])
+            self._process.wait()
+            raise AssertionError(self._what_it_said())
         self.port = int(self.ready.removeprefix(READY)) if self.ready.startswith(READY) else 0
 
     def __enter__(self) -> SimulatorProcess:
@@ -54,10 +58,18 @@ class SimulatorProcess:
     def stop(self, number: int = signal.SIGTERM) -> tuple[int, str]:
         """Ask it to stop; return its exit status and what it has said on stderr."""
         self._process.send_signal(number)
-        errors = self._process.communicate(timeout=20)[1]
-        return self._process.returncode, errors
+        return self.wait()
 
     def kill(self) -> None:
         """End it as a crash would."""
         self._process.kill()
         self._process.communicate()
+
+    def wait(self) -> tuple[int, str]:
+        """Wait until it has ended of itself; return its exit status and what it said on stderr."""
+        self._process.communicate(timeout=20)
+        return self._process.returncode, self._what_it_said()
+
+    def _what_it_said(self) -> str:
+        self._errors.seek(0)
+        return self._errors.read()

@@ -18,17 +18,19 @@ from rastrainer_simulator.teleoperation.axes import camera_axes
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.view_server.served import ViewClient
 
-PATIENCE_S = 40.0
+PATIENCE_S = 120.0
 AGAIN_S = 1.5
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
 COARSE_M, FINE_M = 0.03, 0.01
 """Nearer than this the sticks are pushed less."""
-LEAST_PUSH = 0.35
+LEAST_PUSH, LEAST_FINE_PUSH = 0.35, 0.7
 """Beyond the sticks' dead zone."""
-LONGEST_WAY_S = 6.0
+LONGEST_WAY_S = 4.0
 NEAR_M = 0.008
-MOST_ATTEMPTS = 8
+MOST_ATTEMPTS = 15
+STILL_STATES = 20
+"""So many states in a row that are the same: the arm stands."""
 
 
 class Hands(Protocol):
@@ -67,7 +69,7 @@ class WatchingView:
     def next_state(self) -> None:
         """Wait for the next state."""
         with self._has_state:
-            self._has_state.wait(1.0)
+            assert self._has_state.wait(PATIENCE_S), "the stream has ended"
 
     def _watch(self) -> None:
         with suppress(Exception):
@@ -104,6 +106,10 @@ class StreamTrainee:
         return len(self.view.state["touched"])
 
     @property
+    def warnings(self) -> list[str]:
+        return [warning.text for warning in self.view.screen.warnings]
+
+    @property
     def tip(self) -> np.ndarray:
         return self.view.pose("tool")[:3, 3]
 
@@ -112,6 +118,29 @@ class StreamTrainee:
         while not condition():
             assert time.monotonic() < give_up, f"{what} never came; the screen: {self.view.screen}"
             self.view.next_state()
+
+    def until_warned(self, text: str) -> None:
+        """Wait until the screen shows a warning of that text."""
+        self.until(lambda: text in self.warnings, text)
+
+    def until_not_warned(self, text: str) -> None:
+        """Wait until the screen shows no warning of that text."""
+        self.until(lambda: text not in self.warnings, f"the end of: {text}")
+
+    def until_moved(self) -> None:
+        """Wait until the tip has moved by 10 mm."""
+        start = self.tip.copy()
+        self.until(lambda: np.linalg.norm(self.tip - start) > 0.01, "a move of the arm")
+
+    def until_still(self) -> None:
+        """Wait until the tip stands."""
+        places: list[list[float]] = []
+
+        def stands() -> bool:
+            places.append(self.tip.tolist())
+            return places[-STILL_STATES:] == [places[-1]] * STILL_STATES
+
+        self.until(stands, "the arm's stop")
 
     def until_menu(self, name: str | None) -> None:
         """Wait until a menu of that name is open, or none."""
@@ -131,6 +160,11 @@ class StreamTrainee:
         self.focus(item)
         before = self.menu.name
         self.press("accept", lambda: not self.menu or self.menu.name != before, f"after {item}")
+
+    def read_on(self, name: str) -> None:
+        """Accept page by page until a menu of that name is open."""
+        while (before := self.menu).name != name:
+            self.press("accept", lambda b=before: self.menu != b, "the next page")
 
     def focus(self, item: str) -> None:
         """Move the focus to an item."""
@@ -155,10 +189,25 @@ class StreamTrainee:
         places = [self.place_of(label) for label in self.view.scene["fiducials"]]
         return np.mean(places, axis=0)
 
+    def begin_task(self, task: str) -> None:
+        """Choose a task in the experiment's menu, and wait until its scene is there.
+
+        It is built while the trial has begun, the first time on a machine.
+        """
+        self.choose(task)
+        self.until_menu(None)
+        self.until(lambda: self.view.scene["task"] == task, f"the scene of {task}")
+
+    def press_against_head(self) -> None:
+        """Push the tool into the head until it touches it, and let go."""
+        inward = self.head_center - self.tip
+        wanted = self._stick_axes() @ inward / np.linalg.norm(inward)
+        self.hands.push(*(0.5 * wanted).tolist(), False)
+        self.until(lambda: self.view.state["proximity"] == "contact", "the contact")
+        self.hands.push(0.0, 0.0, 0.0, False)
+
     def approach(self, label: str, near_m: float) -> None:
         """Carry the tip over the head to a place above a fiducial."""
-        # A task's scene is built while the trial has begun, the first time on a machine.
-        self.until(lambda: label in self.view.scene["fiducials"], f"fiducial {label}")
         point, center = self.place_of(label), self.head_center
         outward = (point - center) / np.linalg.norm(point - center)
         start = self.tip - center
@@ -169,6 +218,11 @@ class StreamTrainee:
             between = (1.0 - share) * first + share * outward
             self.steer_to(center + height * between / np.linalg.norm(between), near_m)
 
+    def touch(self, label: str) -> None:
+        """Go to a fiducial and record it."""
+        self.approach(label, 0.03)
+        self.press_on(label)
+
     def press_on(self, label: str) -> None:
         """Record the fiducial under the tip; whoever missed it comes from above once more."""
         point, center = self.place_of(label), self.head_center
@@ -176,7 +230,7 @@ class StreamTrainee:
         kept = self.touched
         for _attempt in range(MOST_ATTEMPTS):
             self.steer_to(point + 0.012 * outward, 0.008)
-            self.steer_to(point, 0.004, fine=True)
+            self.steer_to(point, 0.003, fine=True)
             self.hands.push(0.0, 0.0, 0.0, False)
             if np.linalg.norm(point - self.tip) < NEAR_M:
                 self.hands.tap("touch")
@@ -193,13 +247,13 @@ class StreamTrainee:
             # The simulator pauses where a busy machine keeps the window from drawing.
             self.choose("resume")
         axes = self._stick_axes()
-        slow = FINE_M if fine else COARSE_M
+        slow, least = (FINE_M, LEAST_FINE_PUSH) if fine else (COARSE_M, LEAST_PUSH)
         give_up = self.view.state["time"] + LONGEST_WAY_S
         while np.linalg.norm(away := place - self.tip) > near:
             if self.view.state["time"] > give_up:
                 break
             far = float(np.linalg.norm(away))
-            wanted = axes @ away / far * max(LEAST_PUSH, min(1.0, far / slow))
+            wanted = axes @ away / far * max(least, min(1.0, far / slow))
             self.hands.push(*wanted.tolist(), fine)
             self.view.next_state()
 

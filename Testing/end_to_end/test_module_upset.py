@@ -74,8 +74,7 @@ def test_the_simulator_may_be_killed_and_started_again_at_every_step(story):
     story.kill_simulator()
     assert "no touch is lost" in host.text("phaseText")
     story.start_simulator()
-    story.start_task()
-    story.touch_some()
+    story.go_on_with_task()
     story.touch_the_others()
     # The module hears nothing of the registration, and then the simulator is gone.
     host.press("connectButton")

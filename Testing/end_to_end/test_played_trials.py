@@ -1,7 +1,8 @@
-"""A hundred whole trials, played, recorded and replayed: what the trainee is told of them holds."""
+"""Whole trials, played, recorded and replayed: what the trainee is told of them holds."""
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -28,7 +29,6 @@ from rastrainer_simulator.virtual_trial import VirtualTrial, play_virtual_trial
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 STEP_S = 0.05
-SEEDS = range(100)
 
 
 class Played(NamedTuple):
@@ -75,20 +75,22 @@ def compared(report: ReplayReport) -> tuple[int, int]:
     return report.compared["touch"], report.ticks
 
 
-@pytest.fixture(scope="module")
-def played() -> list[Played]:
-    halves = [list(SEEDS[0::2]), list(SEEDS[1::2])]
+@pytest.fixture(scope="module", params=[40, pytest.param(100, marks=pytest.mark.soak)])
+def played(request) -> list[Played]:
+    seeds = list(range(request.param))
     with multiprocessing.get_context("spawn").Pool(2) as pool:
-        first, second = pool.map(played_trials, halves)
+        first, second = pool.map(played_trials, [seeds[0::2], seeds[1::2]])
     return first + second
 
 
-def test_true_target_error_lies_in_the_reported_interval_in_at_least_90_of_100_trials(played):
-    assert len(played) == 100
-    assert sum(trial.is_within_interval for trial in played) >= 90
+def test_true_target_error_lies_in_the_reported_interval_as_often_as_in_one_of_95_percent(played):
+    expected = 0.95 * len(played)
+    # Three standard deviations of so many trials.
+    fewest = expected - 3.0 * math.sqrt(0.05 * expected)
+    assert sum(trial.is_within_interval for trial in played) >= fewest
 
 
-def test_100_recorded_trials_replay_to_the_same_joints_and_touches_to_the_last_bit(played):
-    assert [trial.difference for trial in played] == [None] * 100
+def test_recorded_trials_replay_to_the_same_joints_and_touches_to_the_last_bit(played):
+    assert [trial.difference for trial in played] == [None] * len(played)
     assert all(trial.compared_touches >= 15 for trial in played)
     assert all(trial.compared_postures > 100 for trial in played)

@@ -51,15 +51,16 @@ def test_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_pat
         (["--scenario", "nowhere"], "The scenario's folder nowhere does not exist."),
     ],
 )
-def test_wrong_argument_ends_with_one_sentence_and_status_2(capsys, arguments, sentence):
-    assert main(["simulator", *arguments]) == 2
+def test_wrong_argument_ends_with_one_sentence_and_status_2(tmp_path, capsys, arguments, sentence):
+    assert main(["simulator", "--config", str(tmp_path), *arguments]) == 2
     assert capsys.readouterr().err == f"rastrainer: {sentence}\n"
 
 
 def test_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
-        command = [*COMMAND, "--records", str(tmp_path), "--port", port]
+        places = ["--records", str(tmp_path), "--config", str(tmp_path)]
+        command = [*COMMAND, *places, "--port", port]
         done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(f"rastrainer: Cannot listen on 127.0.0.1:{port}")

@@ -112,7 +112,7 @@ def trial(scenario, tmp_path_factory) -> dict:
         seen["after"] = player.do("GetTrial", trialId=trial_id)
         player.wait_for_heartbeats(3)
         seen["offers at last"] = player.offers
-        seen["journals"] = [path.name for path in records.iterdir()]
+        seen["journals"] = [path.name for path in records.glob("*.journal")]
         seen["exit"] = simulator.stop()
     return seen
 

@@ -11,12 +11,14 @@ import os
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
+from rastrainer_simulator.cli import main as run
+from rastrainer_simulator.gamepad.gamepads import Gamepads
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.sdl_virtual_gamepad import INIT_JOYSTICK, VirtualGamepad, load_sdl
+from Testing.sdl_virtual_gamepad import VirtualGamepad
 
 REPOSITORY = Path(__file__).parents[2]
 
@@ -69,10 +71,39 @@ class SimulatorWithGamepad(SimulatorProcess):
         self._process.stdin.flush()
 
 
+class Plug:
+    """Plugs the gamepad in and out in the thread that looks at gamepads, before it looks.
+
+    In any other thread SDL would call back to Python while the one that looks holds what both
+    need: each would wait for the other.
+    """
+
+    def __init__(self, gamepad: VirtualGamepad):
+        self._gamepad = gamepad
+        self._orders: SimpleQueue[tuple[bool, threading.Event]] = SimpleQueue()
+        look = Gamepads.poll
+
+        def plug_and_look(gamepads: Gamepads) -> None:
+            self._carry_out()
+            look(gamepads)
+
+        Gamepads.poll = plug_and_look
+
+    def order(self, is_in: bool) -> None:
+        """Plug it in or out, and wait until that is done."""
+        is_done = threading.Event()
+        self._orders.put((is_in, is_done))
+        is_done.wait()
+
+    def _carry_out(self) -> None:
+        while not self._orders.empty():
+            is_in, is_done = self._orders.get()
+            (self._gamepad.plug_in if is_in else self._gamepad.plug_out)()
+            is_done.set()
+
+
 def main() -> int:
     """Be the process: obey the pipe beside the ordinary program."""
-    from rastrainer_simulator.cli import main as run
-
     felt = Path(sys.argv[1])
     threading.Thread(target=_obey, args=(felt,), daemon=True).start()
     return run(sys.argv[2:])
@@ -81,14 +112,12 @@ def main() -> int:
 def _obey(path: Path) -> None:
     with path.open("a", buffering=1) as felt:
         gamepad = VirtualGamepad(lambda *strengths: felt.write(json.dumps(strengths) + "\n"))
-        sdl = load_sdl()
-        while not sdl.SDL_WasInit(INIT_JOYSTICK):
-            time.sleep(0.01)
-        gamepad.plug_in()
+        plug = Plug(gamepad)
+        plug.order(True)
         for line in sys.stdin:
             order = json.loads(line)
             if "plug" in order:
-                (gamepad.plug_in if order["plug"] else gamepad.plug_out)()
+                plug.order(order["plug"])
             elif "move" in order:
                 gamepad.move(**order["move"])
             elif "tap" in order:

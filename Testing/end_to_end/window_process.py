@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -61,6 +62,10 @@ class WindowProcess:
         """Wait until so many more pictures have been shown."""
         wanted = len(self.frames()) + count
         wait_until(lambda: len(self.frames()) >= wanted, "a picture")
+
+    def wait_for_tick(self, tick: int) -> None:
+        """Wait until a picture of that tick, or of a later one, has been shown."""
+        wait_until(lambda: json.loads(self.frames()[-1])["tick"] >= tick, "a picture of the tick")
 
     def next_picture(self, known: set[Path]) -> Path:
         """Wait for a picture that is not among those known, and return its path."""

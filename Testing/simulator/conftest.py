@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from rastrainer_simulator.setup import SimulationSetup, load_setup
@@ -17,3 +19,10 @@ def setup() -> SimulationSetup:
 def scenario(setup):
     """Return the scenario that comes with RASTrainer."""
     return setup.scenario
+
+
+@pytest.fixture(scope="session")
+def anywhere(setup):
+    """Return a setup in which every touch counts, wherever the tip is."""
+    training = replace(setup.settings.training, acceptance_radius=10.0)
+    return replace(setup, settings=replace(setup.settings, training=training))

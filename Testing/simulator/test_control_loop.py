@@ -28,13 +28,6 @@ PATIENCE_S = 30.0
 
 
 @pytest.fixture(scope="module")
-def anywhere(setup):
-    """Return a setup in which every touch counts, wherever the tip is."""
-    training = replace(setup.settings.training, acceptance_radius=10.0)
-    return replace(setup, settings=replace(setup.settings, training=training))
-
-
-@pytest.fixture(scope="module")
 def shared(anywhere):
     return Simulation(anywhere, 3)
 

@@ -1,8 +1,6 @@
 import numpy as np
 import pytest
 import trimesh
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
@@ -18,6 +16,7 @@ from rastrainer_simulator.scene.table_nodes import stand_node, table_node
 from rastrainer_simulator.views.moment import Moment
 from rastrainer_simulator.views.offscreen import write_png
 from rastrainer_simulator.views.picture import render_picture
+from Testing.read_png import read_png
 
 RADIUS = 80.0
 SIZE = (480, 270)
@@ -67,19 +66,9 @@ def picture(tmp_path_factory, ball, head_to_world):
         done = frozenset({"1"})
         moment = Moment(links, head_to_world, ball.base, done, "2", proximity)
         render_picture(path, nodes, robot, moment, size=SIZE, **arguments)
-        return _pixels(path)
+        return read_png(path).astype(int)
 
     return render
-
-
-def _pixels(path) -> np.ndarray:
-    reader = vtkPNGReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    image = reader.GetOutput()
-    width, height, _ = image.GetDimensions()
-    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, 3)
-    return pixels[::-1].astype(int)
 
 
 def _share(pixels: np.ndarray, low, high) -> float:

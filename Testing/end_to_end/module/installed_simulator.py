@@ -23,7 +23,8 @@ def main():
     os.environ.pop("PYTHONPATH", None)
     # No screen, no window.
     given = [argument for argument in sys.argv[1:] if argument != "--desktop"]
-    program = [sys.executable, "-m", "rastrainer_simulator.cli", *given, *{options!r}]
+    options = {options!r} if given[:1] == ["simulator"] else []
+    program = [sys.executable, "-m", "rastrainer_simulator.cli", *given, *options]
     os.execv(sys.executable, program)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import socket
+from collections.abc import Sequence
 from pathlib import Path
 
 from Testing.end_to_end.module.installed_simulator import PACKAGE, write_program, write_wheel
@@ -19,12 +20,13 @@ FAST = ("--speed", "20", "--no-views", "--no-gamepad")
 class Story:
     """The steps of a session, in their order; each presses buttons and waits for what they do."""
 
-    def __init__(self, host: Host, folder: Path) -> None:
+    def __init__(self, host: Host, folder: Path, options: Sequence[str] = FAST) -> None:
         self.host = host
         self.folder = folder
-        self.records = folder / "records"
+        # Where the module looks for the journals of its simulator.
+        self.records = Path.home() / "RASTrainer" / "trials"
         self._pid_file = folder / "simulator.pid"
-        self._options = [*FAST, "--records", str(self.records)]
+        self._options = [*options, "--records", str(self.records)]
         self.player: Player | None = None
         self.port = 0
 
@@ -97,6 +99,14 @@ class Story:
         host.wait_until(lambda: "running" in host.text("phaseText"), "the trial runs")
         self.player = Player(self.port, self.records)
 
+    def go_on_with_task(self) -> None:
+        """Resume the trial that the simulator has taken up after its crash."""
+        host = self.host
+        host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial waits")
+        host.press("pauseButton")
+        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial goes on")
+        self.player = Player(self.port, self.records)
+
     def touch_some(self) -> None:
         self._touch(1, 6)
 
@@ -145,6 +155,12 @@ class Story:
         host.press("showTablesButton")
         host.press("learningCurveButton")
         assert host.scene.GetFirstNodeByClass("vtkMRMLPlotChartNode") is not None
+        assert "LC-CUSUM" in host.text("feedbackText")
+        host.press("replayButton")
+        replay = host.scene.GetFirstNodeByName(f"Replay of {TRAINEE}, task-1")
+        assert replay.GetNumberOfItems() > 100
+        host.press("worstTouchButton")
+        host.wait_until(lambda: "clearance" in host.text("replayText"), "the replay is told")
 
     def export(self) -> None:
         host = self.host
@@ -157,6 +173,12 @@ class Story:
             host.press(button)
             assert TRAINEE in (self.folder / name).read_text(encoding="utf-8")
 
+    def write_report(self) -> None:
+        host = self.host
+        host.answer("Folder for the report", self.folder / "report")
+        host.press("reportButton")
+        assert TRAINEE in (self.folder / "report" / "report.html").read_text(encoding="utf-8")
+
     def delete_trainee(self) -> None:
         host = self.host
         host.answer("cannot be undone", "No")
@@ -166,6 +188,7 @@ class Story:
         host.press("deleteTraineeButton")
         assert TRAINEE not in host.find("traineeComboBox").currentText
         assert host.find("historyTable").rowCount == 0
+        assert list(self.records.glob("*.journal")) == []
 
     def stop_simulator(self) -> None:
         host = self.host
@@ -188,6 +211,7 @@ class Story:
         plan_a_target,
         look_at_score,
         export,
+        write_report,
         delete_trainee,
         stop_simulator,
     )

@@ -1,0 +1,63 @@
+"""Folders of finished trials, as a simulator leaves them that nobody was connected to."""
+
+from __future__ import annotations
+
+import uuid
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.journal.folder import SUFFIX
+from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
+from rastrainer.scenario import load_scenario
+from rastrainer.trial_record import TouchedPoint, TrialRecord
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.stamps import stamp
+from rastrainer_simulator.training.true_error import Truth
+
+COLIN = asset_path("scenarios", "colin27")
+TRAINEE = "T-042"
+TASK = "task-1"
+
+
+def write_finished_trials(folder: Path, numbers: range) -> list[str]:
+    """Write a registered trial for each number and return their UUIDs."""
+    scenario = load_scenario(COLIN)
+    return [_write(folder, number, scenario) for number in numbers]
+
+
+def _write(folder: Path, number: int, scenario) -> str:
+    trial_id = str(uuid.UUID(int=number, version=4))
+    task = scenario.task(TASK)
+    truth = Truth(
+        scenario.perturbed_head_to_world(number),
+        scenario.target_position,
+        dict(zip(task.labels, task.fiducials, strict=True)),
+    )
+    rng = np.random.default_rng(number)
+    utc = f"2024-05-17T{number // 3600 % 24:02d}:{number // 60 % 60:02d}:{number % 60:02d}.000Z"
+    record = TrialRecord(
+        trial_id=trial_id,
+        trainee=TRAINEE,
+        task=TASK,
+        mode="desktop",
+        scenario=scenario.name,
+        started_utc=utc,
+        completed_utc=utc,
+        completion_time_s=90.0 + number % 30,
+        points=tuple(
+            TouchedPoint(label, tuple(truth.in_world(point + rng.normal(0, 0.7, 3))), n, utc)
+            for n, (label, point) in enumerate(truth.fiducials.items())
+        ),
+        rejected_touches=0,
+        undone_touches=0,
+        versions={"rastrainer": "0"},
+    )
+    times = stamp(0, 0.0)
+    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, **times}
+    registered = {"kind": "registered", **times, "record": record.to_json()}
+    journal = Journal(folder / f"20240517T{number:06d}Z_{trial_id}{SUFFIX}")
+    journal.write([header | {"seed": number}, registered | {"truth": truth.to_json()}], sync=False)
+    journal.close()
+    return trial_id

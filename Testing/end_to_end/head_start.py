@@ -1,0 +1,6 @@
+"""Builds what every simulator builds first, so that what is forked afterwards has it already."""
+
+from rastrainer_simulator.setup import load_setup
+from rastrainer_simulator.simulation import Simulation
+
+Simulation(load_setup(), 0)

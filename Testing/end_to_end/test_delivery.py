@@ -1,0 +1,151 @@
+"""Finished trials reach the study exactly once, whatever becomes of connections and both ends.
+
+The server's part is the control loop, the link and the offers as they run in the simulator; the
+other side's is Slicer's link, trial desk and study. Between them are real sockets and a proxy that
+cuts, delays, lets messages overtake each other and leaves links half-open.
+"""
+
+from __future__ import annotations
+
+import random
+import time
+
+import pytest
+
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.trial_desk import TrialDesk
+from rastrainer.study import Study
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.igtl.simulator_link import SimulatorLink
+from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
+from rastrainer_simulator.setup import load_setup
+from rastrainer_simulator.simulation import Simulation
+from Testing.end_to_end.faulty_proxy import FaultyProxy
+from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
+from Testing.simulator.igtl.servers import HOST, LoopThread
+from Testing.slicer.simulator_double import wait_until
+
+PATIENCE_S = 60.0
+
+
+class Server:
+    """The simulator's loop and link over a folder of records."""
+
+    def __init__(self, thread, simulation, records):
+        self._thread = thread
+        self._loop = ControlLoop(simulation, records, rate_hz=50.0)
+        self._loop.start()
+        self._link = thread.call(
+            SimulatorLink,
+            latest=lambda: self._loop.latest,
+            submit=self._loop.submit,
+            unacknowledged=self._loop.unacknowledged,
+        )
+        self.port = thread.run(self._link.server.listen(HOST, 0))
+
+    def offer(self):
+        """Do what the heartbeat does every two seconds."""
+        self._thread.call(self._link.offers.repeat)
+
+    @property
+    def undelivered(self):
+        return len(self._loop.unacknowledged())
+
+    def close(self):
+        self._thread.run(self._link.server.close())
+        self._loop.stop()
+
+
+class SlicerSide:
+    """Scene, link, desk and study, as Slicer has them."""
+
+    def __init__(self, path, scenario, port):
+        self._path = path
+        scene = HeadlessScene().scene
+        self.link = Link(scene, headlessKit)
+        self.desk = TrialDesk(scene, self.link, lambda _name: scenario, lambda: Study.open(path))
+        self.scored = 0
+        self.desk.trialScored.connect(self._count)
+        self.link.connectTo(port=port)
+
+    def process(self):
+        self.link.connector.PeriodicProcess()
+        self.link.process()
+
+    def run_for(self, steps):
+        for _ in range(steps):
+            self.process()
+            time.sleep(0.002)
+
+    def close(self):
+        self.link.disconnect()
+        self.desk.close()
+
+    def _count(self, _trial):
+        self.scored += 1
+
+
+def deliver(folder, simulation, trials, seed, longest_s):
+    """Deliver so many trials through faults and ends of both sides; return what was seen."""
+    rng = random.Random(seed)
+    records, study = folder / "records", folder / "study.db"
+    wanted = write_finished_trials(records, range(1, trials + 1))
+    scenario = load_scenario(COLIN)
+    thread = LoopThread()
+    server = Server(thread, simulation, records)
+    proxy = FaultyProxy(server.port, rng, longest_s)
+    slicer = SlicerSide(study, scenario, proxy.port)
+    ends = [0, 0]
+    try:
+        while server.undelivered:
+            server.offer()
+            slicer.run_for(rng.randrange(5, 60))
+            if rng.random() < 0.04:
+                ends[0] += 1
+                slicer.close()
+                slicer = SlicerSide(study, scenario, proxy.port)
+            if rng.random() < 0.04:
+                ends[1] += 1
+                server.close()
+                server = Server(thread, simulation, records)
+                proxy.target = server.port
+        proxy.be_peaceful()
+        slicer.close()
+        slicer = SlicerSide(study, scenario, proxy.port)
+        with Study.open(study) as opened:
+            wait_until(lambda: not opened.unrevealed(), slicer.process, PATIENCE_S)
+    finally:
+        slicer.close()
+        proxy.close()
+        server.close()
+        thread.stop()
+    with Study.open(study) as opened:
+        stored = [trial.record.trial_id for trial in opened.history(TRAINEE)]
+    assert sorted(stored) == sorted(wanted)
+    assert TrialArchive(records).unacknowledged() == ()
+    assert find_unacknowledged(records) == []
+    return proxy.faults, ends
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    return Simulation(load_setup(), 1)
+
+
+def test_twenty_trials_arrive_exactly_once_through_faults_and_ends_of_both_sides(
+    simulation, tmp_path
+):
+    faults, _ends = deliver(tmp_path, simulation, trials=20, seed=2, longest_s=0.2)
+    assert sum(faults.values()) >= 3
+
+
+@pytest.mark.soak
+def test_a_thousand_trials_arrive_exactly_once(simulation, tmp_path, capsys):
+    faults, ends = deliver(tmp_path, simulation, trials=1000, seed=3, longest_s=12.0)
+    assert set(faults) == {"cut", "reset", "half-open", "late"}
+    assert min(ends) >= 3
+    with capsys.disabled():
+        print(f"\n1000 trials: {faults}; Slicer's side ended {ends[0]} times, the server {ends[1]}")

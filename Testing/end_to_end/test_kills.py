@@ -1,0 +1,195 @@
+"""`kill -9` of the server, of Slicer's side and of both: nothing acknowledged is lost."""
+
+from __future__ import annotations
+
+import random
+import signal
+import sqlite3
+import time
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.scenario import load_scenario
+from rastrainer.study import Study
+from rastrainer_simulator.cli import main
+from rastrainer_simulator.record.interrupted_trial import InterruptedTrial
+from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
+from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
+from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, Nursery
+from Testing.end_to_end.simulator_process import READY
+from Testing.end_to_end.surviving_player import UNTOLD, Killing, SurvivingPlayer
+
+PATIENCE_S = 60.0
+
+
+@pytest.fixture(scope="module")
+def simulators(tmp_path_factory):
+    """A nursery of simulators."""
+    with Nursery(SIMULATOR, tmp_path_factory.mktemp("simulators")) as nursery:
+        yield nursery
+
+
+@pytest.fixture(scope="module")
+def slicer_sides(tmp_path_factory):
+    """A nursery of Slicer's sides."""
+    with Nursery(SLICER_SIDE, tmp_path_factory.mktemp("slicer-sides")) as nursery:
+        yield nursery
+
+
+class Lab:
+    """A folder of records and one of Slicer's side, and the processes that come and go there."""
+
+    def __init__(self, folder, nursery, slicer_nursery=None, speed=10):
+        self.records, self.output = folder / "records", folder / "slicer"
+        self._config = str(folder / "config")
+        self._nursery, self._slicer_nursery = nursery, slicer_nursery
+        self._speed = str(speed)
+        self.port = 0
+
+    def start_simulator(self):
+        """Return a function that ends it by a signal."""
+        words = ("--no-views", "--speed", self._speed, "--port", str(self.port))
+        simulator = self._nursery.fork(
+            "simulator", "--records", str(self.records), "--config", self._config, *words
+        )
+        ready = simulator.next_line()
+        assert ready.startswith(READY), ready
+        self.port = int(ready.removeprefix(READY))
+        return simulator.end
+
+    def start_slicer(self):
+        """Return Slicer's side, which waits for more trials than there are."""
+        words = ("--port", str(self.port), "--scenario", str(COLIN), "--output", str(self.output))
+        return self._slicer_nursery.fork(*words, "--trials", "100000", "--timeout", "1000")
+
+    @property
+    def journals(self):
+        return sorted(self.records.glob(f"*{SUFFIX}"))
+
+    def stored(self):
+        """Return how many trials the study holds, and how many of them have their truth."""
+        try:
+            with Study.open(self.output / "study.db") as study:
+                trials = study.history(TRAINEE)
+        except (InputError, sqlite3.Error):
+            return 0, 0
+        assert len({trial.record.trial_id for trial in trials}) == len(trials)
+        return len(trials), sum(trial.true_tre_mm is not None for trial in trials)
+
+
+def kill_servers(lab, kills, seed):
+    """Play on through so many kills, then one trial to its end; return the player."""
+    rng = random.Random(seed)
+    player = SurvivingPlayer(load_scenario(COLIN), rng)
+    killed = 0
+    while killed < kills:
+        end = lab.start_simulator()
+        assert not player.play(lab.port, Killing(rng, lambda end=end: end(signal.SIGKILL)), 1000)
+        killed += 1
+    end = lab.start_simulator()
+    assert player.play(lab.port, None, 1)
+    end(signal.SIGTERM)
+    return player
+
+
+def check_records(lab, player, replayed):
+    """Every acknowledged touch stands in a journal that is whole or recovered."""
+    open_trials = 0
+    found = {}
+    for path in lab.journals:
+        if path.stat().st_size == 0:
+            continue
+        reading = read_journal(path)
+        assert reading.integrity is not Integrity.ALTERED
+        if not reading.entries:
+            continue
+        trial = reading.header["trialId"]
+        if trial in player.registered:
+            assert reading.integrity is Integrity.INTACT
+            record = reading.of_kind("registered")[-1]["record"]
+            found[trial] = [(p["label"], tuple(p["positionMm"])) for p in record["points"]]
+        elif InterruptedTrial.of(reading.entries) is not None:
+            open_trials += 1
+    assert found.keys() >= player.registered
+    for trial in player.registered:
+        kept = player.kept[trial]
+        assert [label for label, _ in found[trial]] == [label for label, _ in kept]
+        # A touch whose answer the kill has swallowed was never acknowledged, but counts.
+        assert all(
+            position in (UNTOLD, recorded)
+            for (_, position), (_, recorded) in zip(kept, found[trial], strict=True)
+        )
+    assert open_trials == 0
+    offered = {record.trial_id for record in TrialArchive(lab.records).unacknowledged()}
+    assert offered >= player.registered
+    chosen = [path for path in lab.journals if path.stem.partition("_")[2] in player.registered]
+    for path in chosen[:replayed]:
+        assert main(["replay", str(path)]) == 0
+
+
+def test_a_server_killed_again_and_again_goes_on_where_the_trainee_was(tmp_path, simulators):
+    lab = Lab(tmp_path, simulators)
+    player = kill_servers(lab, kills=8, seed=3)
+    assert player.resumed >= 4
+    check_records(lab, player, replayed=0)
+
+
+@pytest.mark.soak
+def test_three_hundred_kills_of_the_server_lose_no_acknowledged_touch(tmp_path, simulators, capsys):
+    lab = Lab(tmp_path, simulators)
+    player = kill_servers(lab, kills=300, seed=4)
+    assert player.resumed >= 150
+    check_records(lab, player, replayed=2)
+    with capsys.disabled():
+        touches = sum(map(len, player.kept.values()))
+        print(
+            f"\n300 kills: {len(player.registered)} trials, {touches} touches, {player.resumed} "
+            "times gone on with"
+        )
+
+
+def kill_slicer(lab, kills, seed, trials, also_server):
+    """Kill Slicer's side, and the server with it or at another time, until all is stored."""
+    rng = random.Random(seed)
+    wanted = set(write_finished_trials(lab.records, range(1, trials + 1)))
+    end_simulator = lab.start_simulator()
+    slicer = lab.start_slicer()
+    for _ in range(kills):
+        # While it starts, or while trials arrive: they are offered every two seconds.
+        if rng.random() < 0.9:
+            while '"connected"' not in slicer.next_line():
+                pass
+        time.sleep(rng.uniform(0.0, 2.5))
+        slicer.end(signal.SIGKILL)
+        if also_server and rng.random() < 0.5:
+            end_simulator(signal.SIGKILL)
+            end_simulator = lab.start_simulator()
+        slicer = lab.start_slicer()
+    give_up = time.monotonic() + PATIENCE_S + trials
+    while lab.stored() != (trials, trials) or find_unacknowledged(lab.records):
+        assert time.monotonic() < give_up, lab.stored()
+        time.sleep(0.1)
+    slicer.end(signal.SIGKILL)
+    end_simulator(signal.SIGTERM)
+    with Study.open(lab.output / "study.db") as study:
+        assert {trial.record.trial_id for trial in study.history(TRAINEE)} == wanted
+    assert TrialArchive(lab.records).unacknowledged() == ()
+    assert all(read_journal(path).integrity is Integrity.INTACT for path in lab.journals)
+
+
+def test_slicers_side_and_the_server_killed_at_any_moment_deliver_every_trial_once(
+    tmp_path, simulators, slicer_sides
+):
+    lab = Lab(tmp_path, simulators, slicer_sides, speed=1)
+    kill_slicer(lab, kills=3, seed=6, trials=6, also_server=True)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("also_server", [False, True], ids=["alone", "with the server"])
+def test_three_hundred_kills_of_slicers_side_lose_and_double_no_trial(
+    tmp_path, simulators, slicer_sides, also_server
+):
+    lab = Lab(tmp_path, simulators, slicer_sides, speed=1)
+    kill_slicer(lab, kills=300, seed=7, trials=400, also_server=also_server)

@@ -1,0 +1,161 @@
+"""The simulator as a lab runs it: a full disk, a clean end, its ports and its logs."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import resource
+import signal
+import socket
+import subprocess
+import urllib.error
+import urllib.request
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.protocol import Device
+from rastrainer_simulator.record.trial_archive import SUFFIX
+from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.view_server.served import ViewClient
+
+TRAINEE = "Pseudonym-77"
+KEY = "a-key-that-nobody-else-knows-0123456789-abcdefgh"
+UNLIMITED = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+
+
+class NoViews(SimulatorProcess):
+    """A simulator of OpenIGTLink alone."""
+
+    def __init__(self, records, *arguments):
+        super().__init__(records, "--no-views", *arguments)
+
+
+def do(client, name, **arguments):
+    return client.send_command(name, arguments, timeout=20)
+
+
+def in_phase(client, phase):
+    def is_so(message):
+        return json.loads(message.content.text)["phase"] == phase
+
+    return json.loads(client.wait_for(Device.SIM_STATE, is_so, timeout=20).content.text)
+
+
+def journal(folder):
+    (path,) = folder.glob(f"*{SUFFIX}")
+    return path
+
+
+def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_goes_on_once_there_is_room(tmp_path):
+    records = tmp_path / "records"
+    with (
+        SimulatorProcess(records, "--no-views") as simulator,
+        Client(port=simulator.port) as client,
+    ):
+        assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok
+        size = journal(records).stat().st_size
+        # A file system in which the file may grow by some hundred bytes and no more.
+        resource.prlimit(simulator.pid, resource.RLIMIT_FSIZE, (size + 300, UNLIMITED[1]))
+        refused = do(client, "Pause")
+        assert not refused.ok
+        assert "could not be recorded and does not count" in refused.error
+        assert "File too large" in refused.error
+        state = in_phase(client, "paused")
+        assert "make room or choose another folder" in state["instruction"]
+        resource.prlimit(simulator.pid, resource.RLIMIT_FSIZE, UNLIMITED)
+        assert do(client, "Resume").ok
+        in_phase(client, "running")
+        status, _errors = simulator.stop()
+    assert status == 0
+    assert read_journal(journal(records)).integrity is Integrity.INTACT
+
+
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory):
+    """Return a folder after a simulator in use, with a view, a client and a trial, was ended."""
+    folder = tmp_path_factory.mktemp("lab")
+    thread = LoopThread()
+    with contextlib.ExitStack() as stack:
+        stack.callback(thread.stop)
+        simulator = stack.enter_context(ViewedSimulator(folder / "records", key=KEY))
+        client = stack.enter_context(Client(port=simulator.port))
+        view = stack.enter_context(ViewClient(thread, simulator.url, KEY))
+        view.join()
+        pairing = urllib.request.Request(f"{simulator.url}/pair", b'{"code": "000000"}')
+        with contextlib.suppress(urllib.error.HTTPError):
+            urllib.request.urlopen(pairing, timeout=20)
+        with socket.create_connection(("127.0.0.1", simulator.port)) as stranger:
+            stranger.sendall(b"no message at all" * 10_000)
+            assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok
+            result = simulator.stop(signal.SIGTERM)
+    return folder, result, simulator.code
+
+
+def log_lines(folder):
+    path = folder / "records-config" / "logs" / "simulator-0.log"
+    return [json.loads(line) for line in path.read_text().splitlines()]
+
+
+def test_a_simulator_in_use_ends_cleanly_on_sigterm_and_closes_the_journal(ended):
+    folder, (status, _errors), _code = ended
+    assert status == 0
+    reading = read_journal(journal(folder / "records"))
+    assert reading.integrity is Integrity.INTACT
+    assert reading.entries[-1]["kind"] == "stopped"
+
+
+def test_the_log_tells_from_start_to_end_in_lines_of_json(ended):
+    lines = log_lines(ended[0])
+    messages = [line["message"] for line in lines]
+    assert messages[0] == "The simulator has started."
+    assert "The trial is running." in messages
+    assert messages[-2:] == [
+        "The simulator is asked to end by SIGTERM.",
+        "The simulator has ended.",
+    ]
+    assert all({"utc", "level", "logger", "process", "message"} <= set(line) for line in lines)
+    assert any(line["level"] == "warning" for line in lines)
+
+
+def test_no_secret_and_no_pseudonym_stands_in_the_log(ended):
+    folder, (_status, errors), code = ended
+    written = "".join(path.read_text() for path in folder.glob("records-config/logs/*"))
+    assert written
+    for secret in (code, KEY, TRAINEE):
+        assert secret not in written
+        assert secret not in errors
+
+
+def test_a_view_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = str(other.getsockname()[1])
+        places = ["--records", str(tmp_path / "records"), "--config", str(tmp_path / "config")]
+        command = [*COMMAND, *places, "--port", "0", "--view-port", port, "--no-gamepad"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"rastrainer: Views cannot be served on 127.0.0.1:{port}")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_an_interrupted_trial_is_told_on_the_terminal_and_left_alone_where_that_is_wanted(tmp_path):
+    records = tmp_path / "records"
+    with (
+        SimulatorProcess(records, "--no-views") as simulator,
+        Client(port=simulator.port) as client,
+    ):
+        assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok
+        simulator.kill()
+    with SimulatorProcess(records, "--no-views", "--no-go-on") as simulator:
+        with Client(port=simulator.port) as client:
+            in_phase(client, "idle")
+        assert simulator.stop()[0] == 0
+    with NoViews(records) as simulator:
+        assert simulator.next_line() == (
+            f"RASTrainer simulator goes on with the interrupted trial of {TRAINEE} at task-1: "
+            "0 of 15 points are kept; go on with it or abort it"
+        )
+        assert simulator.stop(signal.SIGHUP)[0] == 0

@@ -1,0 +1,76 @@
+"""A scenario of one's own in a running simulator: listed, loaded over OpenIGTLink, trained on."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.scenario_library import user_library
+from rastrainer.scenario_writer import new_folder, write_scenario
+from Testing.domain.made_up_scenario import ball_head, made_up_scenario
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.slicer.head.phantoms import phantom
+from Testing.slicer.head.volume_file import write_nrrd
+
+RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli", "scenario"]
+
+
+@pytest.fixture
+def environment(tmp_path, monkeypatch):
+    """A home of its own for the user, here and in the processes."""
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(tmp_path))
+    return dict(os.environ)
+
+
+def trains_on(port, name, title):
+    """Load a scenario by its name into a running simulator, and begin a trial on it."""
+    with Client(port=port) as client:
+        assert client.send_command(
+            "Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "test"}, timeout=20
+        ).ok
+        loaded = client.send_command("LoadScenario", {"folder": name}, timeout=60)
+        assert (loaded.ok, loaded.error) == (True, "")
+        assert dict(loaded.data) == {"name": name, "title": title}
+        listed = client.send_command("ListTasks", {}, timeout=20)
+        assert listed.data["scenario"] == name
+        task = listed.data["tasks"][0]["name"]
+        started = client.send_command("StartTask", {"task": task, "trainee": "anna"}, timeout=20)
+        assert (started.ok, started.error) == (True, "")
+        state = client.wait_for(
+            "SimState", lambda told: json.loads(told.content.text)["phase"] == "running", 20
+        )
+        assert json.loads(state.content.text)["task"] == task
+
+
+def test_a_scenario_of_the_library_is_trained_on_by_its_name(environment, tmp_path):
+    with new_folder(user_library() / "ball") as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+    options = ("--no-views", "--no-gamepad")
+    with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
+        trains_on(simulator.port, "ball", "A ball")
+
+
+@pytest.mark.soak
+def test_a_volume_is_built_loaded_and_trained_on_by_the_command_line(environment, tmp_path):
+    options = ("--no-views", "--no-gamepad")
+    with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
+        volume = write_nrrd(tmp_path / "head.nrrd", phantom(spacing=(1.0, 1.0, 1.2), noise=2.0))
+        folder = user_library() / "my-head"
+        words = ["build", str(volume), "-o", str(folder), "--title", "My head"]
+        subprocess.run([*RASTRAINER, *words], check=True, env=environment)
+        listed = subprocess.run(
+            [*RASTRAINER, "list"], check=True, env=environment, capture_output=True, text=True
+        )
+        assert "my-head" in listed.stdout
+        trains_on(simulator.port, "my-head", "My head")
+        package = tmp_path / "my-head.zip"
+        words = ["pack", str(folder), str(package)]
+        subprocess.run([*RASTRAINER, *words], check=True, env=environment)
+        assert package.stat().st_size < 10_000_000
