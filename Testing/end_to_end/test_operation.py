@@ -57,10 +57,11 @@ def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_goes_on_once_there_
         Client(port=simulator.port) as client,
     ):
         assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok
+        assert do(client, "Pause").ok
         size = journal(records).stat().st_size
         # A file system in which the file may grow by some hundred bytes and no more.
         resource.prlimit(simulator.pid, resource.RLIMIT_FSIZE, (size + 300, UNLIMITED[1]))
-        refused = do(client, "Pause")
+        refused = do(client, "Resume")
         assert not refused.ok
         assert "could not be recorded and does not count" in refused.error
         assert "File too large" in refused.error

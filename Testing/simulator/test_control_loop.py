@@ -211,8 +211,8 @@ def test_on_a_full_disk_the_trial_pauses_and_goes_on_once_there_is_room(
         wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
         still_full = running.do(CommandName.RESUME)
     assert not refused.ok
-    assert "No space left on device" in refused.message
     assert not still_full.ok
+    assert "No space left on device" in still_full.message
     wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
     assert len(running.loop.latest.training.touches) == 1
     assert "No space left on device" in running.loop.latest.training.instruction
