@@ -65,8 +65,11 @@ def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_goes_on_once_there_
         assert not refused.ok
         assert "could not be recorded and does not count" in refused.error
         assert "File too large" in refused.error
-        state = in_phase(client, "paused")
-        assert "make room or choose another folder" in state["instruction"]
+        client.wait_for(
+            Device.SIM_STATE,
+            lambda message: "make room or choose another folder" in message.content.text,
+            timeout=20,
+        )
         resource.prlimit(simulator.pid, resource.RLIMIT_FSIZE, UNLIMITED)
         assert do(client, "Resume").ok
         in_phase(client, "running")
