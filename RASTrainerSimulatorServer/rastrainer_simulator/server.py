@@ -10,7 +10,7 @@ import logging
 import signal
 from collections.abc import Awaitable, Callable, Iterator, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,9 +23,9 @@ from rastrainer_simulator.controls.config_folder import config_folder
 from rastrainer_simulator.desktop_process import DesktopProcess
 from rastrainer_simulator.flow.preferences import FILE_NAME as PREFERENCES_FILE
 from rastrainer_simulator.flow.preferences import Preferences, read_preferences
-from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.igtl.state_feed import StateFeed
+from rastrainer_simulator.limits_file import read_limits
 from rastrainer_simulator.logs.trial_log import TrialLog
 from rastrainer_simulator.record.interrupted_trial import find_interrupted
 from rastrainer_simulator.record.recorded_setup import setup_of
@@ -59,7 +59,6 @@ class ServerOptions:
         speed: simulated seconds in a second.
         scenario: folder; None is the one that comes with RASTrainer.
         robot_meshes: folder of the robot's official meshes; None is our own.
-        limits: what one client may cost.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
         has_views: whether views are served at all, and a trainee can operate.
         has_network: whether views of other computers are served, too.
@@ -77,7 +76,6 @@ class ServerOptions:
     speed: float = 1.0
     scenario: Path | None = None
     robot_meshes: Path | None = None
-    limits: Limits = field(default_factory=Limits)
     view_port: int | None = None
     has_views: bool = True
     has_network: bool = False
@@ -94,10 +92,11 @@ class SimulatorServer:
         """Load the scenario and the robot, which takes about a second.
 
         Raises:
-            InputError: one of their files cannot be used, or another simulator writes to the
-                folder of the journals.
+            InputError: one of their files or that of the limits cannot be used, or another
+                simulator writes to the folder of the journals.
         """
         self._options = options
+        self._limits = read_limits(self._config)
         self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
         taken_up = self._take_up() if options.goes_on else None
@@ -126,7 +125,7 @@ class SimulatorServer:
             submit=self._submit,
             unacknowledged=self._control_loop.unacknowledged,
             health=self._health,
-            limits=self._options.limits,
+            limits=self._limits.clients,
         )
         feed = StateFeed(link.publisher.is_due, link.tell, loop)
         unsubscribe = self._control_loop.subscribe(feed)
@@ -245,6 +244,7 @@ class SimulatorServer:
             self._options.robot_meshes,
             self._config / "certificates" if self._options.has_network else None,
             self._scenarios.picture,
+            self._limits.views,
         )
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:

@@ -12,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.simulator_command import DEFAULT_VIEW_PORT
+from rastrainer_simulator.view_server.limits import ViewLimits
 from rastrainer_simulator.view_server.operator_desk import OperatorDesk
 from rastrainer_simulator.view_server.sessions import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.view_server.view_server import ViewServer
@@ -27,6 +28,7 @@ async def open_views(
     robot_meshes: Path | None,
     certificates: Path | None = None,
     scenario_picture: Callable[[str], Path | None] = lambda _name: None,
+    limits: ViewLimits | None = None,
 ) -> ViewServer:
     """Return a server that listens on this computer; `tell` is given what people must know.
 
@@ -37,7 +39,8 @@ async def open_views(
     the environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
     the same one to a window.
 
-    `scenario_picture` returns the picture of a scenario by its name.
+    `scenario_picture` returns the picture of a scenario by its name; `limits` are those of
+    `ViewLimits` unless a site has its own.
 
     Raises:
         InputError: the port cannot be listened on, or the key is no key.
@@ -47,7 +50,7 @@ async def open_views(
         tell(f"has a new pairing code for views: {code}")
 
     server = ViewServer(
-        control_loop, desk, tell_new_code, robot_meshes, scenario_picture=scenario_picture
+        control_loop, desk, tell_new_code, robot_meshes, limits, scenario_picture=scenario_picture
     )
     agreed = os.environ.get(KEY_VARIABLE)
     if agreed is not None:

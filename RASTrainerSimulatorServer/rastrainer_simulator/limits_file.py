@@ -1,0 +1,63 @@
+"""What clients and views may cost at one site: the file `limits.json` of the user's settings."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any, TypeVar
+
+from rastrainer.errors import InputError
+from rastrainer.files import read_json
+from rastrainer_simulator.igtl.limits import Limits
+from rastrainer_simulator.view_server.limits import ViewLimits
+
+FILE_NAME = "limits.json"
+MOST_BYTES = 2**14
+LARGEST = 2**30
+"""No count, time or size is larger: a limit that limits nothing is a mistake."""
+
+T = TypeVar("T")
+
+
+@dataclasses.dataclass(frozen=True)
+class ServerLimits:
+    """What everyone at the server's ports may cost.
+
+    Attributes:
+        clients: those over OpenIGTLink.
+        views: the window, browsers and headsets.
+    """
+
+    clients: Limits = dataclasses.field(default_factory=Limits)
+    views: ViewLimits = dataclasses.field(default_factory=ViewLimits)
+
+
+def read_limits(folder: Path) -> ServerLimits:
+    """Return the limits that the file in a folder sets; what it leaves out is as by default.
+
+    Raises:
+        InputError: the file cannot be read, or sets what is no limit.
+    """
+    path = folder / FILE_NAME
+    if not path.exists():
+        return ServerLimits()
+    groups = {field.name: field.default_factory for field in dataclasses.fields(ServerLimits)}
+    values = read_json(path, MOST_BYTES)
+    if not isinstance(values, dict) or not values.keys() <= groups.keys():
+        raise InputError(f"{path} must be a JSON object with any of {', '.join(groups)}.")
+    return ServerLimits(
+        **{name: _limits(path, name, groups[name], value) for name, value in values.items()}
+    )
+
+
+def _limits(path: Path, group: str, kind: type[T], values: Any) -> T:
+    defaults = dataclasses.asdict(kind())
+    if not isinstance(values, dict) or not values.keys() <= defaults.keys():
+        listed = ", ".join(defaults)
+        raise InputError(f"{path}: {group} must be a JSON object with any of {listed}.")
+    for name, value in values.items():
+        is_whole = isinstance(defaults[name], int)
+        if type(value) not in ((int,) if is_whole else (int, float)) or not 0 < value <= LARGEST:
+            what = "whole number" if is_whole else "number"
+            raise InputError(f"{path}: {group}.{name} must be a {what} above 0, up to {LARGEST}.")
+    return kind(**values)
