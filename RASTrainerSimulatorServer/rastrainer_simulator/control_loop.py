@@ -29,6 +29,7 @@ from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.subscribers import Subscribers
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
 
@@ -100,7 +101,7 @@ class ControlLoop:
         self._answers = PendingAnswers()
         self._refused: str | None = None
         self._successor: tuple[Simulation, int] | None = None
-        self._subscribers: tuple[Callable[[StepResult], None], ...] = ()
+        self._subscribers: Subscribers[StepResult] = Subscribers()
         self._punctuality = Punctuality()
         self._thread = threading.Thread(target=self._run, name="control loop", daemon=True)
         self._is_stopping = threading.Event()
@@ -159,12 +160,7 @@ class ControlLoop:
 
         Returns what ends the subscription.
         """
-        self._subscribers = (*self._subscribers, callback)
-
-        def unsubscribe() -> None:
-            self._subscribers = tuple(c for c in self._subscribers if c is not callback)
-
-        return unsubscribe
+        return self._subscribers.add(callback)
 
     def hold_sticks(self, sticks: OperatorInput) -> None:
         """Take the sticks as they are from now on; the commands in it are ignored."""
@@ -291,8 +287,7 @@ class ControlLoop:
         self.latest = result.state
         for answer in result.answers:
             self._answers.give(answer)
-        for callback in self._subscribers:
-            callback(result)
+        self._subscribers.tell(result)
 
     def _finish(self) -> None:
         """Write all, answer what was on its way to the disk, and refuse what came too late."""

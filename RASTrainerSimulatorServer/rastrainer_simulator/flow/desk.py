@@ -21,6 +21,7 @@ from rastrainer_simulator.flow.session import Session, Surroundings
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.state import StepResult
+from rastrainer_simulator.subscribers import Subscribers
 from rastrainer_simulator.view_server.operator_desk import (
     Control,
     Feedback,
@@ -65,7 +66,7 @@ class Desk:
         self._flow = Flow(self._session, control_loop)
         self.rumble: Rumbler = _nothing_vibrates
         self._results: deque[StepResult] = deque()
-        self._listeners: tuple[Callable[[News], None], ...] = ()
+        self._subscribers: Subscribers[News] = Subscribers()
         self._views: dict[int, Hello] = {}
         self._lasting: dict[str, tuple[str, Mapping[str, object]]] = {}
         self._number = 0
@@ -95,12 +96,7 @@ class Desk:
 
     def subscribe(self, listener: Callable[[News], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control."""
-        self._listeners = (*self._listeners, listener)
-
-        def unsubscribe() -> None:
-            self._listeners = tuple(each for each in self._listeners if each is not listener)
-
-        return unsubscribe
+        return self._subscribers.add(listener)
 
     def view_joined(self, view: int, hello: Hello) -> None:
         """Take note of a view; with a headset the next trial is one in a headset."""
@@ -300,8 +296,7 @@ class Desk:
             self._tell(screen)
 
     def _tell(self, news: News) -> None:
-        for listener in self._listeners:
-            listener(news)
+        self._subscribers.tell(news)
 
 
 def _nothing_vibrates(strength: float, seconds: float) -> None:

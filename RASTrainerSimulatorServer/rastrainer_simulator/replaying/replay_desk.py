@@ -9,6 +9,7 @@ from rastrainer_simulator.flow.feedback import SENSATIONS, happening
 from rastrainer_simulator.flow.screen import Hint, Message, Screen, Tone
 from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.state import StepResult
+from rastrainer_simulator.subscribers import Subscribers
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.view_server.operator_desk import Control, Feedback, Frames, Hello, News
 
@@ -60,7 +61,7 @@ class ReplayDesk:
         self._loop = loop
         self._language = language
         self._texts = Texts(LANGUAGES[language])
-        self._listeners: tuple[Callable[[News], None], ...] = ()
+        self._subscribers: Subscribers[News] = Subscribers()
         self._count = 0
         self._held: dict[int, frozenset[int]] = {}
         self._does = {
@@ -77,12 +78,7 @@ class ReplayDesk:
 
     def subscribe(self, listener: Callable[[News], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen and event; returns what ends that."""
-        self._listeners = (*self._listeners, listener)
-
-        def unsubscribe() -> None:
-            self._listeners = tuple(one for one in self._listeners if one is not listener)
-
-        return unsubscribe
+        return self._subscribers.add(listener)
 
     def view_joined(self, view: int, hello: Hello) -> None:
         """Take note of a view."""
@@ -159,8 +155,7 @@ class ReplayDesk:
             self._tell(screen)
 
     def _tell(self, news: News) -> None:
-        for listener in self._listeners:
-            listener(news)
+        self._subscribers.tell(news)
 
     def _make_screen(self) -> Screen:
         loop, say = self._loop, self._texts.say

@@ -11,6 +11,7 @@ from rastrainer_simulator.loop_statistics import LoopStatistics
 from rastrainer_simulator.replaying.film import Film
 from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.state import SimulationState, StepResult
+from rastrainer_simulator.subscribers import Subscribers
 
 PERIOD_S = 1.0 / 60.0
 
@@ -39,7 +40,7 @@ class ReplayLoop:
         self.latest: SimulationState = film.frames[0].state
         self.changed: Callable[[], None] = lambda: None
         self._camera: str | None = None
-        self._subscribers: tuple[Callable[[StepResult], None], ...] = ()
+        self._subscribers: Subscribers[StepResult] = Subscribers()
         self._shown = -1
 
     @property
@@ -49,12 +50,7 @@ class ReplayLoop:
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
         """Have `callback` called with each frame; returns what ends that."""
-        self._subscribers = (*self._subscribers, callback)
-
-        def unsubscribe() -> None:
-            self._subscribers = tuple(one for one in self._subscribers if one is not callback)
-
-        return unsubscribe
+        return self._subscribers.add(callback)
 
     def play_from(self, time_s: float, until_s: float | None = None, speed: float = 1.0) -> None:
         """Go on from a time in s, up to another or the end."""
@@ -108,5 +104,4 @@ class ReplayLoop:
 
     def _tell(self, events: tuple) -> None:
         result = StepResult(self.latest, events)
-        for callback in self._subscribers:
-            callback(result)
+        self._subscribers.tell(result)
