@@ -85,6 +85,7 @@ class SlicerProcess:
 
     def __init__(self, *arguments: str):
         self._process = subprocess.Popen([*SLICER, *arguments], stdout=subprocess.PIPE, text=True)
+        self.pid = self._process.pid
 
     def kill(self) -> None:
         """End it as a crash would; a second time changes nothing."""

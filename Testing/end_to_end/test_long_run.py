@@ -1,0 +1,135 @@
+"""Hours of training in a row: memory and descriptors stay flat, and no error stands in a log."""
+
+from __future__ import annotations
+
+import json
+import random
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+import pytest
+
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.scenario import load_scenario
+from rastrainer.study import Study
+from rastrainer_simulator.record.trial_archive import SUFFIX
+from Testing.benchmarks.process_cost import resident_mb
+from Testing.end_to_end.finished_trials import COLIN, TRAINEE
+from Testing.end_to_end.lab import SlicerProcess
+from Testing.end_to_end.stream_trainee import WatchingView
+from Testing.end_to_end.surviving_player import SurvivingPlayer
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.view_server.served import ViewClient
+
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="memory and descriptors are read where Linux tells them"
+)
+
+KEY = "the-views-key-of-this-long-run-only"
+MOST_GROWTH_MB = 8.0
+"""Between the first fifth and the last, of either process: what caches and studies grow by."""
+
+
+@dataclass(frozen=True)
+class Usage:
+    """Of a process at one moment: MB of memory in use and open descriptors."""
+
+    resident_mb: float
+    descriptors: int
+
+    @classmethod
+    def of(cls, pid: int) -> Usage:
+        return cls(resident_mb(pid), len(list(Path(f"/proc/{pid}/fd").iterdir())))
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a long run left: use of each process after every trial, and the simulator's log."""
+
+    simulator: list[Usage]
+    slicer: list[Usage]
+    errors: list[dict]
+    trials: int
+
+
+def train(folder: Path, seconds: float) -> Run:
+    """Play trial after trial, each in a connection of its own, a view and Slicer's side beside."""
+    thread = LoopThread()
+    records = folder / "records"
+    simulators, slicers = [], []
+    player = SurvivingPlayer(load_scenario(COLIN), random.Random(1))
+    with ViewedSimulator(records, "--speed", "4", "--view-port", "0", key=KEY) as simulator:
+        slicer = SlicerProcess(
+            *("--port", str(simulator.port), "--trials", "1000000", "--timeout", "100000"),
+            *("--scenario", str(COLIN), "--output", str(folder / "slicer")),
+        )
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            with ViewClient(thread, simulator.url, KEY) as view:
+                WatchingView(view)
+                assert player.play(simulator.port, None, 1)
+                slicer.told_until("trial")
+                simulators.append(Usage.of(simulator.pid))
+                slicers.append(Usage.of(slicer.pid))
+        slicer.kill()
+        status, _said = simulator.stop()
+    thread.stop()
+    assert status == 0
+    check_nothing_lost(folder, player.registered)
+    log = folder.glob("records-config/logs/*.log*")
+    lines = [json.loads(line) for path in log for line in path.read_text().splitlines()]
+    errors = [line for line in lines if line["level"] in ("error", "critical")]
+    return Run(simulators, slicers, errors, len(player.registered))
+
+
+def check_nothing_lost(folder: Path, registered: set[str]) -> None:
+    """Every trial that was played is in the study once, and its journal is whole."""
+    with Study.open(folder / "slicer" / "study.db") as study:
+        stored = [trial.record.trial_id for trial in study.history(TRAINEE)]
+    assert sorted(stored) == sorted(registered)
+    journals = list((folder / "records").glob(f"*{SUFFIX}"))
+    assert len(journals) == len(registered)
+    assert all(read_journal(path).integrity is Integrity.INTACT for path in journals)
+
+
+def growth_mb(usages: list[Usage]) -> float:
+    """Return how much more memory is in use in the last fifth than in the second, MB."""
+    fifth = max(len(usages) // 5, 1)
+    early, late = usages[fifth : 2 * fifth], usages[-fifth:]
+    return median(use.resident_mb for use in late) - median(use.resident_mb for use in early)
+
+
+def check_flat(run: Run) -> None:
+    assert run.errors == []
+    for usages in (run.simulator, run.slicer):
+        assert growth_mb(usages) <= MOST_GROWTH_MB
+        # A journal that is being closed and a view that is leaving may still be counted.
+        assert usages[-1].descriptors <= usages[0].descriptors + 3
+
+
+def told(run: Run) -> str:
+    parts = [
+        f"{name} {growth_mb(usages):+.1f} MB to {usages[-1].resident_mb:.0f}, "
+        f"{usages[-1].descriptors - usages[0].descriptors:+d} descriptors"
+        for name, usages in (("simulator", run.simulator), ("Slicer's side", run.slicer))
+    ]
+    return f"\n{run.trials} trials: {'; '.join(parts)}"
+
+
+def test_two_minutes_of_training_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
+    run = train(tmp_path, 120.0)
+    with capsys.disabled():
+        print(told(run))
+    check_flat(run)
+
+
+@pytest.mark.soak
+def test_two_hours_of_training_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
+    run = train(tmp_path, 7200.0)
+    with capsys.disabled():
+        print(told(run))
+    check_flat(run)
