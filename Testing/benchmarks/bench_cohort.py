@@ -6,13 +6,12 @@ import functools
 import os
 import time
 
-import numpy as np
-
 from rastrainer.cohort.jobs import trial_jobs
 from rastrainer.cohort.population import Population
 from rastrainer.experiment.study_protocol import StudyProtocol
 from rastrainer_simulator.cohort.engines import run_jobs
 from rastrainer_simulator.cohort.play import PlayedTrial, PlaySettings, play_job
+from Testing.benchmarks.row import row
 
 TASKS = ("task-1", "task-2", "task-3", "task-4", "task-5")
 QUICK_TASKS = TASKS[:2]
@@ -43,10 +42,9 @@ def rows(quick: bool) -> list[dict]:
     there = list(run_jobs(play, jobs))
     speed_up = sum(seconds) / (time.perf_counter() - began)
     return [
-        _row("cohort.trial", np.array(seconds), "s", success),
-        _row("cohort.faster", np.array(faster), "×", success),
-        _row(f"cohort.speed_up.{os.cpu_count()}", np.array([speed_up]), "×", success)
-        | {"n": len(there)},
+        row("cohort.trial", seconds, "s", success=success),
+        row("cohort.faster", faster, "×", success=success, worst=1),
+        row(f"cohort.speed_up.{os.cpu_count()}", [speed_up], "×", success=success, n=len(there)),
     ]
 
 
@@ -54,18 +52,3 @@ def _timed(play, job) -> tuple[PlayedTrial, float]:
     began = time.perf_counter()
     trial = play(job)
     return trial, time.perf_counter() - began
-
-
-def _row(name: str, values: np.ndarray, unit: str, success: float) -> dict:
-    slowest = 1 if name == "cohort.faster" else 99
-    return {
-        "name": name,
-        "median": float(np.median(values)),
-        "p99": float(np.percentile(values, slowest)),
-        "unit": unit,
-        "peer": None,
-        "peer_median": None,
-        "peer_p99": None,
-        "success": success,
-        "n": values.size,
-    }

@@ -22,6 +22,7 @@ from rastrainer_simulator.planning.touch_planner import TouchPlanner
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.setup import load_setup
+from Testing.benchmarks.row import row, row_of_figures
 
 TICK = 0.004
 TOUR_SPEED = 0.15
@@ -94,17 +95,15 @@ def _clearance_row(
         found, theirs = collision.check(links), peer.check(links)
         ours = (abs(found.tip_m), found.shaft_m, found.links_m, found.self_m)
         agrees.append(all(abs(a - b) < AGREEMENT for a, b in zip(ours, theirs, strict=True)))
-    return {
-        "name": name,
-        "median": float(np.median([np.median(run) for run in times])),
-        "p99": float(np.median([np.percentile(run, 99) for run in times])),
-        "unit": "ms",
-        "peer": "coal, every pair",
-        "peer_median": float(np.median(peer_times)),
-        "peer_p99": float(np.percentile(peer_times, 99)),
-        "success": float(np.mean(agrees)),
-        "n": len(tour),
-    }
+    return row_of_figures(
+        name,
+        np.median([np.percentile(run, [50, 99]) for run in times], axis=0),
+        "ms",
+        peer="coal, every pair",
+        peer_figures=tuple(np.percentile(peer_times, [50, 99])),
+        success=float(np.mean(agrees)),
+        n=len(tour),
+    )
 
 
 def _times(check: Callable[[dict], object], tour: list[dict]) -> np.ndarray:
@@ -188,17 +187,7 @@ def _pose_of(start: np.ndarray, end: np.ndarray) -> coal.Transform3s:
 
 def _depth_row(bench: Bench, collision: Collision, count: int) -> dict:
     depths = np.array([1e3 * depth for depth in islice(_ram_depths(bench, collision), count)])
-    return {
-        "name": "contact.depth",
-        "median": float(np.median(depths)),
-        "p99": float(np.percentile(depths, 99)),
-        "unit": "mm",
-        "peer": None,
-        "peer_median": None,
-        "peer_p99": None,
-        "success": float(np.mean(depths <= DEEPEST_MM)),
-        "n": len(depths),
-    }
+    return row("contact.depth", depths, "mm", success=float(np.mean(depths <= DEEPEST_MM)))
 
 
 def _ram_depths(bench: Bench, collision: Collision) -> Iterator[float]:

@@ -19,6 +19,7 @@ from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.model import load_robot
 from rastrainer_simulator.robot.velocity_limit import limit_step
 from Testing.benchmarks.ik_peers import LeastSquares, Pinocchio, PinPink
+from Testing.benchmarks.row import row
 
 MODES = ("position", "direction", "pose")
 SEED = 2011
@@ -104,7 +105,7 @@ def _wide(robot: Pinocchio, ours: Ours, sizes: Sizes) -> dict:
         kept += bool(np.all(moved <= fastest * (1.0 + 1e-9)) and np.degrees(moved).max() <= 2.0)
         q = limited
     success = kept / len(path)
-    return _row("ik.position.wide", (np.array(steps), None), None, success, len(path), "°/mm")
+    return row("ik.position.wide", steps, "°/mm", success=success)
 
 
 def _cold(
@@ -121,12 +122,14 @@ def _cold(
     few = targets[: sizes.timed]
     times = _cold_times(ours, few, mode, ours.home, sizes.runs)
     return [
-        _row(
+        row(
             f"ik.{mode}.cold{_suffix(peer)}",
-            (times, _cold_times(peer, few, mode, ours.home, sizes.runs)),
+            times,
+            "µs",
             peer.name,
-            success,
-            len(targets),
+            _cold_times(peer, few, mode, ours.home, sizes.runs),
+            success=success,
+            n=len(targets),
         )
         for peer in peers
     ]
@@ -147,26 +150,20 @@ def _track(
         ]
     )
     found = [
-        _row(
+        row(
             f"ik.{mode}.track{_suffix(peer)}",
-            (times, _track_times(peer, targets, mode, start, sizes.runs)[0]),
+            times,
+            "µs",
             peer.name,
-            float(success),
-            len(targets),
+            _track_times(peer, targets, mode, start, sizes.runs)[0],
+            success=float(success),
         )
         for peer in peers
     ]
     if mode == "position":
         steps = np.degrees(np.abs(np.diff(postures, axis=0)).max(axis=1))
         found.append(
-            _row(
-                "ik.position.step",
-                (steps, None),
-                None,
-                float((steps <= STEP_LIMIT).mean()),
-                len(steps),
-                "°/mm",
-            )
+            row("ik.position.step", steps, "°/mm", success=float((steps <= STEP_LIMIT).mean()))
         )
     return found
 
@@ -224,25 +221,3 @@ def _track_times(
             times[run, index] = time.perf_counter_ns() - begin
             postures.append(postures[-1] if q is None else q)
     return np.median(times, axis=0) / 1000.0, postures[1:]
-
-
-def _row(
-    name: str,
-    values: tuple[np.ndarray, np.ndarray | None],
-    peer: str | None,
-    success: float,
-    n: int,
-    unit: str = "µs",
-) -> dict:
-    own, other = values
-    return {
-        "name": name,
-        "median": float(np.median(own)),
-        "p99": float(np.percentile(own, 99)),
-        "unit": unit,
-        "peer": peer,
-        "peer_median": None if other is None else float(np.median(other)),
-        "peer_p99": None if other is None else float(np.percentile(other, 99)),
-        "success": success,
-        "n": n,
-    }

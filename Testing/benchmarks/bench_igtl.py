@@ -17,6 +17,7 @@ from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
 from rastrainer.protocol import PROTOCOL_VERSION
 from Testing.benchmarks.process_cost import cpu_share, resident_mb
+from Testing.benchmarks.row import row
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 PROBE = Message("Echo", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, 30)))
@@ -42,32 +43,23 @@ def rows(quick: bool) -> list[dict]:
         with SimulatorProcess(Path(records)) as simulator, Client(port=simulator.port) as slicer:
             hello = {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"}
             slicer.send_command("Hello", hello)
-            echoes = _echo_times(simulator.port, 100 if quick else 1000)
+            echoes = 1e3 * np.array(_echo_times(simulator.port, 100 if quick else 1000))
             cpu = [cpu_share(simulator.pid, 1.0) for _ in range(3 if quick else 20)]
             rss = resident_mb(simulator.pid)
     peer = _pyigtl_echo_times(50 if quick else 300)
     return [
-        _row("igtl.echo", np.array(echoes) * 1e3, "ms", "pyigtl", np.array(peer) * 1e3),
-        _row("server.start", np.array(starts), "s"),
-        _row("server.rss", np.array([rss]), "MB"),
-        _row("server.cpu", np.array(cpu) * 100.0, "%"),
+        row(
+            "igtl.echo",
+            echoes,
+            "ms",
+            "pyigtl",
+            1e3 * np.array(peer),
+            success=float(np.isfinite(echoes).mean()),
+        ),
+        row("server.start", starts, "s"),
+        row("server.rss", [rss], "MB"),
+        row("server.cpu", 100.0 * np.array(cpu), "%"),
     ]
-
-
-def _row(name: str, values: np.ndarray, unit: str, peer: str | None = None, peers=None) -> dict:
-    """Return a row; a probe that was not answered is NaN and counts against `success`."""
-    answered = values[np.isfinite(values)]
-    return {
-        "name": name,
-        "median": float(np.median(answered)),
-        "p99": float(np.percentile(answered, 99)),
-        "unit": unit,
-        "peer": peer,
-        "peer_median": None if peers is None else float(np.nanmedian(peers)),
-        "peer_p99": None if peers is None else float(np.nanpercentile(peers, 99)),
-        "success": len(answered) / len(values),
-        "n": len(values),
-    }
 
 
 def _start_time(records: Path) -> float:

@@ -25,6 +25,7 @@ from rastrainer_simulator.state import Motion
 from Testing.benchmarks.bare_loop import BareLoop
 from Testing.benchmarks.loop_health import Punctuality, punctuality, read_health
 from Testing.benchmarks.process_cost import resident_mb
+from Testing.benchmarks.row import row, row_of_figures
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 DT = 0.004
@@ -48,22 +49,9 @@ def rows(quick: bool) -> list[dict]:
 def _tick(name: str, setup: SimulationSetup, runs: int) -> dict:
     """Return a row: medians of the runs' medians and 99th percentiles; success is within 4 ms."""
     tours = 1e3 * _tick_times(setup, runs)
-    median, p99 = np.median(np.percentile(tours, [50, 99], axis=1), axis=1)
-    return _row(name, (median, p99), "ms", float((tours < 1e3 * DT).mean()), tours.size)
-
-
-def _row(name: str, values: tuple[float, float], unit: str, success: float, n: int) -> dict:
-    return {
-        "name": name,
-        "median": float(values[0]),
-        "p99": float(values[1]),
-        "unit": unit,
-        "peer": None,
-        "peer_median": None,
-        "peer_p99": None,
-        "success": success,
-        "n": n,
-    }
+    figures = np.median(np.percentile(tours, [50, 99], axis=1), axis=1)
+    in_time = float((tours < 1e3 * DT).mean())
+    return row_of_figures(name, figures, "ms", success=in_time, n=tours.size)
 
 
 def _with_finer_head(setup: SimulationSetup, path: Path) -> SimulationSetup:
@@ -162,12 +150,12 @@ def _on_time(duration_s: float) -> list[dict]:
     return [
         _share_row("loop.on_time", told),
         _share_row("loop.on_time.bare", bare.punctuality),
-        _row("loop.memory", growth, "MB", 1.0, len(memory)),
+        row_of_figures("loop.memory", growth, "MB", n=len(memory)),
     ]
 
 
 def _share_row(name: str, told: Punctuality) -> dict:
-    return _row(name, np.percentile(told.shares, [50, 1]), "%", told.on_time, told.ticks)
+    return row(name, told.shares, "%", success=told.on_time, n=told.ticks, worst=1)
 
 
 def _jog_for_a_second(client: Client) -> None:
