@@ -105,7 +105,7 @@ class Desk:
 
     def view_left(self, view: int) -> None:
         """Forget a view; nobody sees the trial any more if it was the trainee's."""
-        self._lose_sight(view)
+        self._lose_sight(view, "unseen.left")
         self._choose_mode(self._views.pop(view, None))
         self._settle()
 
@@ -172,8 +172,13 @@ class Desk:
     def on_visibility(self, view: int, is_visible: bool) -> None:
         """Pause the trial when the one who operates no longer sees it, and free the control."""
         if not is_visible:
-            self._lose_sight(view)
+            self._lose_sight(view, "unseen.hidden")
             self._settle()
+
+    def on_silence(self, view: int) -> None:
+        """Pause the trial when its picture stands still, and free the control."""
+        self._lose_sight(view, "unseen.still")
+        self._settle()
 
     def pressed(self, control: ControlName) -> None:
         """A control was pressed by the operator."""
@@ -235,10 +240,10 @@ class Desk:
         choices = (by_kind.get("headset"), operated, by_kind.get("desktop"), by_kind.get("page"))
         return next((view for view in choices if view is not None), None)
 
-    def _lose_sight(self, view: int) -> None:
-        """Let go of what is worked without being seen."""
+    def _lose_sight(self, view: int, why: str) -> None:
+        """Let go of what is worked without being seen; `why` is the key of a sentence."""
         if view == self._watched():
-            self._flow.pause()
+            self._flow.pause(why)
         for kind in SourceKind:
             self.controls.forget(self._source(kind, view))
 

@@ -33,6 +33,7 @@ class Flow:
         self._working = Working(session)
         self._seen = ("", Phase.IDLE)
         self._had_slicer = False
+        self._unseen = ""
         session.pages.home = lambda: StartPage(session)
         session.pages.show_start()
 
@@ -76,9 +77,10 @@ class Flow:
         if self._session.pages.top is None:
             self._working.open_menu()
 
-    def pause(self) -> None:
-        """Pause a trial that runs, since nobody can see it."""
+    def pause(self, why: str) -> None:
+        """Pause a trial that runs, since nobody can see it; `why` is the key of a sentence."""
         if self._session.training.phase is Phase.RUNNING and self._session.pages.top is None:
+            self._unseen = why
             self._working.open_menu()
 
     def screen(self, more_warnings: tuple[Message, ...] = ()) -> Screen:
@@ -89,7 +91,7 @@ class Flow:
         if menu is not None:
             return Screen(
                 menu=menu,
-                warnings=(*self._record_warnings(), *warnings),
+                warnings=(*self._pause_warnings(), *warnings),
                 status=self._working.status() if session.has_open_trial else (),
                 hints=self._menu_hints(),
                 language=session.preferences.language,
@@ -106,6 +108,8 @@ class Flow:
         """Show what belongs to the trial's new phase."""
         session = self._session
         training = session.training
+        if training.phase is not Phase.PAUSED:
+            self._unseen = ""
         if training.trial_id and training.trial_id != before[0]:
             self._working.begin(*points_in_world(self._control_loop.truth))
             session.trainee = training.trainee
@@ -135,8 +139,10 @@ class Flow:
             return ()
         return (Message(self._session.texts.say("warning.slicer"), Tone.WARNING),)
 
-    def _record_warnings(self) -> tuple[Message, ...]:
+    def _pause_warnings(self) -> tuple[Message, ...]:
         """Tell why the trial was paused where it was not the trainee who did it."""
+        if self._unseen:
+            return (Message(self._session.texts.say(self._unseen), Tone.WARNING),)
         said = self._session.training.instruction
         if isinstance(said, Said) and said.key == INTERRUPTED:
             return (Message(self._session.texts.again(said), Tone.WARNING),)

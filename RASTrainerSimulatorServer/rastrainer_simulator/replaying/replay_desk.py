@@ -120,6 +120,10 @@ class ReplayDesk:
         if not is_visible:
             self._loop.pause(True)
 
+    def on_silence(self, view: int) -> None:  # noqa: ARG002
+        """Nor does whoever looks at a picture that stands still."""
+        self._loop.pause(True)
+
     def _do(self, action: str | None) -> None:
         if action is not None:
             self._does[action]()

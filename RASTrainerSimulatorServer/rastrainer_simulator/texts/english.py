@@ -48,6 +48,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "Go on with point {point} when you are ready, or abort it.",
         "interrupted complete": "{trainee}, this trial was interrupted; all {count} points are "
         "kept. Register them now.",
+        # When nobody could see the trial, which pauses it.
+        "unseen.left": "Paused: the view that showed the trial was closed or lost.",
+        "unseen.hidden": "Paused: the trial was out of sight.",
+        "unseen.still": "Paused: the picture stood still for some seconds, because this computer "
+        "was too busy to draw it. If that happens again, close other programs.",
         # The simulator's menus.
         "start.title": "RASTrainer",
         "start.text": "Train robot-assisted patient registration on a virtual KUKA LBR iiwa 7. "

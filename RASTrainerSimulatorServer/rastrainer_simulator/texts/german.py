@@ -52,6 +52,11 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "sind gesichert. Mach mit Punkt {point} weiter, wenn du bereit bist, oder brich ihn ab.",
         "interrupted complete": "{trainee}, dieser Versuch wurde unterbrochen; alle {count} Punkte "
         "sind gesichert. Registriere sie jetzt.",
+        # Wenn niemand den Versuch sehen konnte, was ihn anhält.
+        "unseen.left": "Angehalten: Die Ansicht des Versuchs wurde geschlossen oder ging verloren.",
+        "unseen.hidden": "Angehalten: Der Versuch war nicht zu sehen.",
+        "unseen.still": "Angehalten: Das Bild stand einige Sekunden still, weil dieser Rechner zu "
+        "beschäftigt war. Geschieht das wieder, so schließ andere Programme.",
         # The simulator's menus.
         "start.title": "RASTrainer",
         "start.text": "Übe die robotergestützte Patientenregistrierung an einem virtuellen KUKA "

@@ -138,3 +138,6 @@ class OperatorDesk(Protocol):
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
         """Take whether the trainee sees the view: the headset was doffed, the page hidden."""
+
+    def on_silence(self, view: int) -> None:
+        """Take that a view has said nothing for so long that its picture must stand still."""

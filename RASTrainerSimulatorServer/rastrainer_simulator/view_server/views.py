@@ -162,4 +162,4 @@ class Views:
             for view in tuple(self._views.values()):
                 view.release_if_silent(self._limits.silent_s)
                 if view.has_fallen_silent(self._limits.lost_s):
-                    self._desk.on_visibility(view.number, False)
+                    self._desk.on_silence(view.number)

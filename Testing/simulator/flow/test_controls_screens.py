@@ -114,6 +114,28 @@ def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
     trainee.until_menu(None)
 
 
+@pytest.mark.parametrize(
+    ("lose", "why"),
+    [
+        (lambda desk: desk.view_left(1), "was closed or lost"),
+        (lambda desk: desk.on_visibility(1, False), "out of sight"),
+        (lambda desk: desk.on_silence(1), "the picture stood still"),
+    ],
+)
+def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_goes_on(
+    trainee, lose, why
+):
+    trainee.start("task-1")
+    lose(trainee.desk)
+    trainee.until_menu("trial")
+    assert why in trainee.desk.screen.warnings[0].text
+    trainee.submit("Resume")
+    trainee.until_menu(None)
+    trainee.submit("Pause")
+    trainee.until_menu("trial")
+    assert trainee.desk.screen.warnings == ()
+
+
 def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(trainee):
     trainee.desk.view_left(1)
     desk = trainee.desk

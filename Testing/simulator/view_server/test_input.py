@@ -56,6 +56,17 @@ def test_a_view_that_falls_silent_has_let_go(serve, connect, message, call):
     assert ("view_left", number) not in calls, "it may go on watching"
 
 
+def test_a_view_that_told_its_frames_and_falls_silent_shows_a_picture_that_stands_still(
+    serve, connect
+):
+    served = serve(lost_s=0.05)
+    view = connect(served)
+    number = view.join()["view"]
+    view.send({"type": "frames", "shown": 60, "dropped": 0, "refreshHz": 60})
+    calls = served.wait_for_call("on_silence", number)
+    assert ("view_left", number) not in calls, "it may go on watching"
+
+
 def test_a_view_that_says_it_is_alive_holds_on(serve, connect):
     served = serve(silent_s=5.0)
     view = connect(served)
