@@ -32,6 +32,9 @@ REAL_HEADS = {
 }
 """An MRI and a CT, only for tests; `make soak` makes scenarios of them."""
 
+WAIT = ("-o", "DPkg::Lock::Timeout=300")
+"""For another installation to end, s: many machines look for updates when they start."""
+
 
 def missing_packages(target: str) -> list[str]:
     """Return the Debian packages that `target` needs and that are not there."""
@@ -95,8 +98,8 @@ def main() -> int:
     print(f"Installing {', '.join(wanted)} ...", flush=True)
     environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
     quiet = {"check": True, "env": environment, "stdout": subprocess.DEVNULL}
-    subprocess.run(["apt-get", "update", "-qq"], **quiet)
-    subprocess.run(command, **quiet)
+    subprocess.run(["apt-get", *WAIT, "update", "-qq"], **quiet)
+    subprocess.run([command[0], *WAIT, *command[1:]], **quiet)
     return 0
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.igtl.client import Client
+from Testing.benchmarks.bare_loop import BareLoop
 from Testing.benchmarks.process_cost import resident_mb
 
 MOST_GROWTH_MB = 48.0
@@ -49,13 +50,17 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
             return cost
 
 
-def told(before: Cost, after: Cost) -> str:
-    """Return in words what has changed, the share of ticks on time among it."""
+def told(before: Cost, after: Cost, bare: BareLoop) -> str:
+    """Return in words what has changed, the share of ticks on time among it.
+
+    `bare` is a loop that did nothing beside it: where that is late, the machine is to blame.
+    """
     ticks = after.ticks - before.ticks
     late = after.late - before.late
     due = ticks + after.skipped - before.skipped
     return (
-        f"{100.0 * (ticks - late) / max(1, due):.3f} % of {due} ticks on time, "
+        f"{100.0 * (ticks - late) / max(1, due):.3f} % of {due} ticks on time "
+        f"({100.0 * bare.punctuality.on_time:.3f} % of a loop that does nothing), "
         f"{after.resident_mb - before.resident_mb:+.1f} MB, "
         f"{after.descriptors - before.descriptors:+d} descriptors"
     )

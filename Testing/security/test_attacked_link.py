@@ -7,6 +7,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
+from Testing.benchmarks.bare_loop import BareLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.security.attacked_process import (
     MOST_GROWTH_MB,
@@ -33,12 +34,14 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> None:
         quiet = cost_of(simulator.pid, good)
         before = settled(simulator.pid, good, quiet)
         attacked = LinkAttack(simulator.port, count, seed=10**6, policed=policed)
-        attacked.run()
+        with BareLoop() as bare:
+            attacked.run()
         after = settled(simulator.pid, good, before)
         with capsys.disabled():
             print(
                 f"\n{attacked.sent} mutated messages on {attacked.connections} connections "
-                f"({attacked.ended} ended early): {told(before, after)}"
+                f"({attacked.ended} ended early): "
+                f"{told(before, after, bare)}"
             )
         assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
         assert after.resident_mb - before.resident_mb < MOST_GROWTH_MB

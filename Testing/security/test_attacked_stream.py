@@ -7,6 +7,7 @@ import secrets
 import pytest
 
 from rastrainer.igtl.client import Client
+from Testing.benchmarks.bare_loop import BareLoop
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.security.attacked_process import (
     MOST_GROWTH_MB,
@@ -33,10 +34,12 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
         attacked = StreamAttack(simulator.view_port, key, seed=7)
         attacked.run(warm_up)
         before = settled(simulator.pid, slicer, cost_of(simulator.pid, slicer))
-        attacked.run(count)
+        with BareLoop() as bare:
+            attacked.run(count)
         after = settled(simulator.pid, slicer, before)
         with capsys.disabled():
-            print(f"\n{attacked.sent} messages of {attacked.closed} views: {told(before, after)}")
+            messages = f"{attacked.sent} messages of {attacked.closed} views"
+            print(f"\n{messages}: {told(before, after, bare)}")
         assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
         assert after.resident_mb - before.resident_mb < MOST_GROWTH_MB
         assert view.next("state")["type"] == "state"
