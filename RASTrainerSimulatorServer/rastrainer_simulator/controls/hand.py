@@ -74,13 +74,12 @@ class Hand:
     def set_sticks(self, sticks: OperatorInput) -> None:
         """Take sticks that need no bindings, those of a headset."""
         self._sticks = sticks
-        if max(map(abs, (*sticks.translation, *sticks.rotation))) < AT_REST_BELOW:
-            self._sticks_blocked = False
+        self._sticks_blocked = self._sticks_blocked and _are_pushed(sticks)
 
     def block(self) -> None:
         """Ignore what is held now until it is let go."""
         self._blocked = {name for name, value in self._inputs.items() if _is_pushed(value)}
-        self._sticks_blocked = True
+        self._sticks_blocked = _are_pushed(self._sticks)
 
     def advance(self, dt: float) -> None:
         """Go on with the ramps of the keys for `dt` seconds."""
@@ -121,6 +120,10 @@ class Hand:
 
 def _is_pushed(value: float) -> bool:
     return value >= AT_REST_BELOW
+
+
+def _are_pushed(sticks: OperatorInput) -> bool:
+    return any(abs(value) >= AT_REST_BELOW for value in (*sticks.translation, *sticks.rotation))
 
 
 def _joined(first: tuple[float, ...], second: tuple[float, ...]) -> tuple[float, ...]:

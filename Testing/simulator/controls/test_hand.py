@@ -73,6 +73,14 @@ def test_a_headset_s_sticks_wait_likewise():
     assert hand.sticks(DEFAULT_BINDINGS).fine
 
 
+def test_sticks_that_rested_through_a_change_count_at_their_first_push():
+    hand = Hand(Device.GAMEPAD)
+    hand.set_sticks(OperatorInput())
+    hand.block()
+    hand.set_sticks(OperatorInput((0.5, 0.0, 0.0)))
+    assert right(hand) == 0.5
+
+
 @pytest.mark.parametrize(("value", "is_at_rest"), [(0.05, True), (0.5, False), (0.9, False)])
 def test_a_stick_near_its_middle_is_at_rest(value, is_at_rest):
     hand = Hand(Device.GAMEPAD)
