@@ -108,6 +108,8 @@ class SurvivingPlayer:
         state = self._state(client)
         points = client.wait_for(Device.CAPTURED_POINTS, timeout=PATIENCE_S).content.points
         in_flight, self._in_flight = self._in_flight, ""
+        if not self.trial_id and state["trialId"] in self.registered:
+            return
         if state["phase"] == "idle":
             # Only a trial that was never acknowledged, or one that is over, is not there.
             assert not self.trial_id or in_flight == CommandName.REGISTER

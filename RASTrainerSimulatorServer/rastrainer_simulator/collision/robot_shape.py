@@ -71,11 +71,14 @@ def robot_shape(model: RobotModel) -> RobotShape:
 
 
 def _rounded(capsules: tuple[Capsule, ...]) -> tuple[Capsule, ...]:
-    """Return the capsules in whole nanometers: the same ones on every machine."""
+    """Return the capsules in whole nanometers: the same ones on every machine.
+
+    What is rounded to zero from below is -0.0, and becomes 0.0.
+    """
     return tuple(
         Capsule(
-            capsule.start.round(_DECIMALS),
-            capsule.end.round(_DECIMALS),
+            capsule.start.round(_DECIMALS) + 0.0,
+            capsule.end.round(_DECIMALS) + 0.0,
             round(capsule.radius, _DECIMALS),
         )
         for capsule in capsules
