@@ -18,7 +18,7 @@ simulator: .venv/installed page
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile -q
+	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page
