@@ -36,9 +36,3 @@ def test_within_one_triangle_the_way_is_straight():
     mesh = sphere_mesh(1)
     a, b = np.array([[0.5, 0.3, 0.2], [0.2, 0.3, 0.5]]) @ mesh.vertices[mesh.triangles[7]]
     assert SurfaceGraph(mesh).distance(a, b) == pytest.approx(np.linalg.norm(a - b))
-
-
-def test_several_ways_at_once_are_the_single_ones(graph):
-    start, ends = on_sphere(0, 0), [on_sphere(50, 10), on_sphere(120, 40), on_sphere(300, -30)]
-    single = [graph.distance(start, end) for end in ends]
-    assert graph.distances(start, ends) == pytest.approx(single)
