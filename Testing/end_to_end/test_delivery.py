@@ -26,7 +26,7 @@ from rastrainer_simulator.simulation import Simulation
 from Testing.end_to_end.faulty_proxy import FaultyProxy
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
 from Testing.simulator.igtl.servers import HOST, LoopThread
-from Testing.slicer.simulator_double import wait_until
+from Testing.slicer.simulator_double import process_link, run_link_until
 
 PATIENCE_S = 60.0
 
@@ -71,13 +71,9 @@ class SlicerSide:
         self.desk.trialScored.connect(self._count)
         self.link.connectTo(port=port)
 
-    def process(self):
-        self.link.connector.PeriodicProcess()
-        self.link.process()
-
     def run_for(self, steps):
         for _ in range(steps):
-            self.process()
+            process_link(self.link)
             time.sleep(0.002)
 
     def close(self):
@@ -116,7 +112,7 @@ def deliver(folder, simulation, trials, seed, longest_s):
         slicer.close()
         slicer = SlicerSide(study, scenario, proxy.port)
         with Study.open(study) as opened:
-            wait_until(lambda: not opened.unrevealed(), slicer.process, PATIENCE_S)
+            run_link_until(slicer.link, lambda: not opened.unrevealed(), PATIENCE_S)
     finally:
         slicer.close()
         proxy.close()

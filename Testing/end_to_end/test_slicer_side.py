@@ -21,7 +21,7 @@ from rastrainer.slicer.trial_desk import TrialDesk
 from rastrainer.study import Study
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.slicer.simulator_double import wait_until
+from Testing.slicer.simulator_double import run_link_until
 
 COLIN = asset_path("scenarios", "colin27")
 SEED = 11
@@ -49,12 +49,7 @@ class SlicerSide:
         self.desk.trialScored.connect(self.scored.append)
 
     def run_until(self, condition):
-        def process():
-            if self.link.connector is not None:
-                self.link.connector.PeriodicProcess()
-            self.link.process()
-
-        wait_until(condition, process, timeout=90.0)
+        run_link_until(self.link, condition, timeout=90.0)
 
     def is_in(self, state):
         return lambda: self.link.status.state is state

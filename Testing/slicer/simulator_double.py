@@ -15,6 +15,7 @@ from rastrainer.igtl.command import ERROR_KEY, FAIL, STATUS_KEY, SUCCESS, Comman
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
 from rastrainer.protocol import Device
+from rastrainer.slicer.link import Link
 
 Refusal = str
 Responder = Callable[[str, dict[str, Any]], "Mapping[str, Any] | Refusal | None"]
@@ -104,10 +105,22 @@ class SimulatorDouble:
         self.send(Device.COMMAND, CommandReply(command.command_id, command.name, body), metadata)
 
 
-def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 5.0):
+def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 30.0):
     """Call `process` every few ms until `condition()`; the host's timer, in a test."""
     end = time.monotonic() + timeout
     while not condition():
         assert time.monotonic() < end, "the awaited did not happen in time"
         process()
         time.sleep(0.002)
+
+
+def process_link(link: Link) -> None:
+    """Do what Slicer's timers do for a link."""
+    if link.connector is not None:
+        link.connector.PeriodicProcess()
+    link.process()
+
+
+def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 30.0) -> None:
+    """Let the link work until `condition()`."""
+    wait_until(condition, lambda: process_link(link), timeout)

@@ -10,7 +10,7 @@ from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.heartbeat import RECONNECT_AFTER_S, LinkState
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role
-from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 
 class Clock:
@@ -33,24 +33,15 @@ def link(scene, clock):
     link.disconnect()
 
 
-def run(link, condition):
-    def process():
-        if link.connector is not None:
-            link.connector.PeriodicProcess()
-        link.process()
-
-    wait_until(condition, process)
-
-
 def beat(simulator, version=PROTOCOL_VERSION):
     simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=version))
 
 
 def connect(link, simulator):
     link.connectTo(port=simulator.port)
-    run(link, lambda: simulator.commands)
+    run_link_until(link, lambda: simulator.commands)
     beat(simulator)
-    run(link, lambda: link.status.state is LinkState.CONNECTED)
+    run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
 
 
 def test_the_first_thing_said_is_hello_with_the_protocol_version(link, simulator):
@@ -75,21 +66,21 @@ def test_each_state_is_told_once(link, simulator):
 def test_silence_is_told_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):
     connect(link, simulator)
     clock.now += 5.0
-    run(link, lambda: link.status.state is LinkState.STALE)
+    run_link_until(link, lambda: link.status.state is LinkState.STALE)
     beat(simulator)
-    run(link, lambda: link.status.state is LinkState.CONNECTED)
+    run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
     clock.now += RECONNECT_AFTER_S + 1.0
-    run(link, lambda: len(simulator.commands) == 2)
+    run_link_until(link, lambda: len(simulator.commands) == 2)
     assert simulator.commands[1][0] == "Hello"
 
 
 def test_a_simulator_of_another_version_is_named_and_gets_no_commands(link, simulator):
     connect(link, simulator)
     beat(simulator, PROTOCOL_VERSION + 1)
-    run(link, lambda: link.status.state is LinkState.WRONG_VERSION)
+    run_link_until(link, lambda: link.status.state is LinkState.WRONG_VERSION)
     replies = []
     link.send("ListTasks", onReply=replies.append)
-    run(link, lambda: replies)
+    run_link_until(link, lambda: replies)
     assert not replies[0].ok
     assert "version" in replies[0].error
     assert len(simulator.commands) == 1
@@ -98,16 +89,16 @@ def test_a_simulator_of_another_version_is_named_and_gets_no_commands(link, simu
 def test_the_link_comes_back_when_the_simulator_does(link):
     with SimulatorDouble() as simulator:
         connect(link, simulator)
-    run(link, lambda: link.status.state is LinkState.ABSENT)
+    run_link_until(link, lambda: link.status.state is LinkState.ABSENT)
     with SimulatorDouble(port=simulator.port) as restarted:
-        run(link, lambda: restarted.commands)
+        run_link_until(link, lambda: restarted.commands)
         assert restarted.commands[0][0] == "Hello"
 
 
 def test_the_link_survives_a_cleared_scene(link, simulator, scene):
     connect(link, simulator)
     scene.Clear(False)
-    run(link, lambda: len(simulator.commands) == 2)
+    run_link_until(link, lambda: len(simulator.commands) == 2)
     assert link.connector.GetScene() is not None
     assert scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode") is not None
 
@@ -119,14 +110,16 @@ def test_touched_points_are_told_as_they_come(link, simulator):
     for count in (1, 2, 1):
         points = tuple(Point(str(i + 1), (i, 0.0, 0.0)) for i in range(count))
         simulator.send(Device.CAPTURED_POINTS, Points(points))
-        run(link, lambda wanted=count: counts and counts[-1] == wanted)
+        run_link_until(link, lambda wanted=count: counts and counts[-1] == wanted)
     assert counts == [1, 2, 1]
 
 
 def test_the_list_of_touched_points_keeps_our_display_and_role(link, simulator, scene):
     connect(link, simulator)
     simulator.send(Device.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
-    run(link, lambda: scene.GetFirstNodeByName("CapturedPoints").GetNumberOfControlPoints())
+    run_link_until(
+        link, lambda: scene.GetFirstNodeByName("CapturedPoints").GetNumberOfControlPoints()
+    )
     node = scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode")
     assert node.GetAttribute(ROLE_ATTRIBUTE) == Role.CAPTURED_POINTS
     assert node.GetLocked()
@@ -137,7 +130,7 @@ def test_a_deleted_list_comes_again(link, simulator, scene):
     connect(link, simulator)
     scene.RemoveNode(scene.GetFirstNodeByName("CapturedPoints"))
     simulator.send(Device.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
-    run(
+    run_link_until(
         link,
         lambda: (
             (node := scene.GetFirstNodeByName("CapturedPoints")) is not None
@@ -153,7 +146,7 @@ def test_a_renamed_list_still_receives_and_tells(link, simulator, scene):
     for count in (1, 2):
         points = tuple(Point(str(i + 1), (i, 0.0, 0.0)) for i in range(count))
         simulator.send(Device.CAPTURED_POINTS, Points(points))
-        run(link, lambda wanted=count: counts and counts[-1] == wanted)
+        run_link_until(link, lambda wanted=count: counts and counts[-1] == wanted)
         scene.GetFirstNodeByName("CapturedPoints" if count == 1 else "mine").SetName("mine")
     assert scene.GetFirstNodeByName("CapturedPoints") is None
 
@@ -163,7 +156,7 @@ def test_the_state_of_the_simulator_is_told_when_it_changes(link, simulator):
     connect(link, simulator)
     link.stateChanged.connect(states.append)
     simulator.send(Device.SIM_STATE, String('{"phase": "running"}'))
-    run(link, lambda: states)
+    run_link_until(link, lambda: states)
     assert states == [{"phase": "running"}]
 
 
@@ -172,9 +165,9 @@ def test_what_cannot_be_read_is_logged_and_changes_nothing(link, simulator, capl
     connect(link, simulator)
     link.stateChanged.connect(states.append)
     simulator.send(Device.SIM_STATE, String("{not json"))
-    run(link, lambda: "cannot be read" in caplog.text)
+    run_link_until(link, lambda: "cannot be read" in caplog.text)
     simulator.send(Device.SIM_STATE, String('{"phase": "idle"}'))
-    run(link, lambda: states)
+    run_link_until(link, lambda: states)
 
 
 def test_every_finished_trial_is_handed_over_in_order(link, simulator):
@@ -183,7 +176,7 @@ def test_every_finished_trial_is_handed_over_in_order(link, simulator):
     link.trialCompleted.connect(records.append)
     for number in range(3):
         simulator.send_command("TrialCompleted", {"number": number})
-    run(link, lambda: len(records) == 3)
+    run_link_until(link, lambda: len(records) == 3)
     assert [record["number"] for record in records] == [0, 1, 2]
 
 
@@ -192,7 +185,7 @@ def test_a_reply_brings_the_data_of_the_answer(link):
         connect(link, simulator)
         replies = []
         link.send("ListTasks", onReply=replies.append)
-        run(link, lambda: replies)
+        run_link_until(link, lambda: replies)
         assert replies[0].ok
         assert replies[0].data == {"tasks": ["task-1"]}
 
@@ -210,9 +203,9 @@ def test_a_simulator_that_dies_before_it_answers_does_not_leave_one_waiting(link
     connect(link, simulator)
     replies = []
     link.send("ListTasks", onReply=replies.append)
-    run(link, lambda: len(simulator.commands) == 2)
+    run_link_until(link, lambda: len(simulator.commands) == 2)
     simulator.close()
-    run(link, lambda: replies)
+    run_link_until(link, lambda: replies)
     assert "lost" in replies[0].error
 
 
@@ -222,7 +215,7 @@ def test_a_simulator_that_never_answers_does_not_leave_one_waiting(link, clock):
         replies = []
         link.send("ListTasks", onReply=replies.append, timeoutS=2.0)
         clock.now += 2.1
-        run(link, lambda: replies)
+        run_link_until(link, lambda: replies)
         assert replies[0].error == "The simulator gave no answer to ListTasks."
 
 

@@ -18,7 +18,7 @@ from rastrainer.slicer.registration_desk import RegistrationDesk
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.tasks import LABELS
 from rastrainer.trial_results import RevealedTruth
-from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 TUMOR = np.array([20.0, -30.0, 40.0])
 ENTRY = np.array([60.0, -40.0, 70.0])
@@ -50,11 +50,7 @@ class Room:
         self.run_until(lambda: opened)
 
     def run_until(self, condition):
-        def process():
-            self.link.connector.PeriodicProcess()
-            self.link.process()
-
-        wait_until(condition, process)
+        run_link_until(self.link, condition)
 
     def target(self, *points):
         node = self.desk.newTarget() if len(points) == 1 else self.desk.newTrajectory()

@@ -15,7 +15,7 @@ from rastrainer.slicer.registration_nodes import isApplied
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.trial_desk import TrialDesk
 from rastrainer.study import Study
-from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 TRIAL = str(uuid.UUID(int=1))
 OTHER = str(uuid.UUID(int=2))
@@ -76,12 +76,7 @@ class Lab:
         return [arguments for sent, arguments in self.simulator.commands if sent == name]
 
     def run_until(self, condition):
-        def process():
-            if self.link.connector is not None:
-                self.link.connector.PeriodicProcess()
-            self.link.process()
-
-        wait_until(condition, process)
+        run_link_until(self.link, condition)
 
     def close(self):
         self.link.disconnect()

@@ -9,7 +9,7 @@ from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.scene import findNode
 from rastrainer.slicer.training_desk import TrainingDesk
-from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 TRIAL = str(uuid.UUID(int=5))
 
@@ -46,12 +46,7 @@ class Room:
         return findNode(self.scene, class_name, role)
 
     def run_until(self, condition):
-        def process():
-            if self.link.connector is not None:
-                self.link.connector.PeriodicProcess()
-            self.link.process()
-
-        wait_until(condition, process)
+        run_link_until(self.link, condition)
 
     def close(self):
         self.desk.close()

@@ -21,6 +21,8 @@ PATIENCE_MS = 60_000
 POLL_MS = 50
 SMALL = {"width": 400, "height": 220}
 EYES_M = (0.1, 1.62, 0.2)
+JOINED = "page.connection.isConnected"
+"""What is pressed before goes nowhere."""
 
 _EMULATE = """
 ;(() => {
@@ -94,9 +96,10 @@ def _size(answer: Response) -> int:
 
 
 def enter_headset(page: Page) -> None:
-    """Press the button that leads into immersive VR, and wait for the first pictures."""
+    """Press the button that leads into immersive VR, and wait until it has joined and draws."""
     page.click("#headset:enabled")
     page.wait_for_selector("body[data-headset]")
+    wait_for(page, JOINED)
     page.evaluate("frames_(3)")
 
 
@@ -104,6 +107,7 @@ def leave_headset(page: Page) -> None:
     """Leave immersive VR, as the headset's own button does."""
     page.evaluate("page.headset.leave()")
     page.wait_for_selector("body:not([data-headset])")
+    wait_for(page, JOINED)
 
 
 def wait_for(page: Page, expression: str) -> None:

@@ -8,6 +8,7 @@ import re
 import secrets
 import subprocess
 import sys
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -28,6 +29,8 @@ SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
 TRAINEE = "P7"
 PATIENCE_S = 60
 MM = 1000.0
+WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 60}
+"""Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
 LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}
 """Which item of a menu leads toward the start."""
 
@@ -41,13 +44,20 @@ class Place:
         records: folder of the journals.
     """
 
-    def __init__(self, folder: Path, *arguments: str, has_gamepad: bool = False):
+    def __init__(
+        self,
+        folder: Path,
+        *arguments: str,
+        has_gamepad: bool = False,
+        limits: Mapping[str, float] | None = None,
+    ):
         self._stack = ExitStack()
         self._folder = folder
         self.records = folder / "records"
         config = folder / "records-config"
         config.mkdir()
         (config / "preferences.json").write_text('{"order": "any"}', encoding="utf-8")
+        (config / "limits.json").write_text(json.dumps({"views": limits or {}}), encoding="utf-8")
         key = secrets.token_urlsafe(32)
         options = ["--view-port", "0", "--seed", "7", *arguments]
         if not has_gamepad:
@@ -97,14 +107,17 @@ class Place:
         return process
 
     def entries(self, kind: str) -> list[dict]:
-        """Return the entries of a kind in the latest trial's journal."""
+        """Return the entries of a kind in the latest trial's journal, as far as it is written."""
         journal = max(self.records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
-        lines = journal.read_text(encoding="utf-8").splitlines()
+        lines = journal.read_text(encoding="utf-8").rpartition("\n")[0].splitlines()
         return [entry for entry in map(json.loads, lines) if entry["kind"] == kind]
 
 
 class Trainee(StreamTrainee):
     """Goes through the menus, and touches the points in their order."""
+
+    # A headset's buttons are looked at once a picture.
+    again_s = 1.5
 
     def go_home(self) -> None:
         """Go to the start menu from wherever the last one has stopped."""

@@ -12,7 +12,7 @@ import pytest
 from Testing.end_to_end.hands import GamepadHands
 from Testing.web.chromium import enter_headset, open_page
 from Testing.web.hands import BrowserPad, Controllers, PageKeys
-from Testing.web.place import Place, scored_trial
+from Testing.web.place import WITHOUT_GRAPHICS, Place, scored_trial
 
 pytestmark = pytest.mark.soak
 
@@ -42,7 +42,7 @@ WAYS = (
 
 @pytest.mark.parametrize("way", WAYS, ids=lambda way: way.name)
 def test_a_trial_is_played_registered_and_scored_by(way, tmp_path, browser):
-    with Place(tmp_path, has_gamepad=way.has_gamepad) as place:
+    with Place(tmp_path, has_gamepad=way.has_gamepad, limits=WITHOUT_GRAPHICS) as place:
         is_of_browser = way.hands is BrowserPad
         page = open_page(
             browser, place.simulator.url, place.simulator.code, way.headset, has_pad=is_of_browser

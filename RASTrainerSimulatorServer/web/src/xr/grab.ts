@@ -5,8 +5,12 @@ import { Vector3, type Object3D } from "three";
 import type { SceneNews } from "../messages";
 import { yUp } from "../viewpoint";
 
-/** How far the tip may lag behind the hand before the stick is fully pushed. */
-const FULL_M = 0.04;
+/** The tip's speed while the stick is fully pushed; a lag is made up in so long. */
+const FULL_M_S = 0.15;
+const CATCH_UP_S = 0.27;
+/** Where pictures are rare the tip is slower, or it would swing about the hand. */
+const CATCH_UP_PICTURES = 4;
+const SMOOTHING = 0.2;
 const REST_M = 0.001;
 /** Of the simulator's sticks: what is not felt yet, and the power by which they grow. */
 const DEAD_ZONE = 0.12;
@@ -21,6 +25,8 @@ export class Grab {
   private readonly lag = new Vector3();
   private readonly now = new Vector3();
   private tool: Object3D | undefined;
+  /** From one picture to the next, s. */
+  private interval = 0;
 
   /** Know the tool's node, and where right, forward and up of the sticks point. */
   take(tool: Object3D | undefined, scene: SceneNews, camera: string): void {
@@ -47,14 +53,16 @@ export class Grab {
     this.hand = null;
   }
 
-  /** Push the stick so that the tip follows; leaves it as it is while nothing is grabbed. */
-  steer(translation: number[]): void {
+  /** Push the stick, `passed` s after the last time, so that the tip follows what is grabbed. */
+  steer(translation: number[], passed: number): void {
+    this.interval += SMOOTHING * (passed - this.interval);
     if (this.hand === null || this.tool === undefined) return;
     this.hand.getWorldPosition(this.lag).sub(this.handBegan).add(this.tipBegan);
     this.lag.sub(this.tool.getWorldPosition(this.now));
     const size = this.lag.length();
     // So that the tip's speed is proportional to its lag, down to where it rests.
-    const speed = Math.min(1, size / FULL_M);
+    const catchUp = Math.max(CATCH_UP_S, CATCH_UP_PICTURES * this.interval);
+    const speed = Math.min(1, size / (FULL_M_S * catchUp));
     const push = size < REST_M ? 0 : (DEAD_ZONE + (1 - DEAD_ZONE) * speed ** (1 / EXPONENT)) / size;
     for (let index = 0; index < 3; index++) {
       translation[index] = push * this.lag.dot(this.axes[index]!);

@@ -26,6 +26,8 @@ const PRESSED = 0.6;
 const RELEASED = 0.4;
 const REPEAT_AFTER_S = 0.4;
 const REPEAT_EVERY_S = 0.15;
+/** A picture that took longer was late: nobody held the stick for a second step. */
+const LONGEST_STEP_S = 0.1;
 /** Of the gamepad in the mapping "xr-standard". */
 const TRIGGER = 0;
 const SQUEEZE = 1;
@@ -98,9 +100,9 @@ export class Hands {
       this.hovered = hovered;
       this.listener.onHovered(hovered);
     }
-    this.grab.steer(this.message.translation);
+    this.grab.steer(this.message.translation, passed);
     this.tellSticks();
-    this.repeat(this.isInMenu ? step : "", passed);
+    this.repeat(this.isInMenu ? step : "", Math.min(LONGEST_STEP_S, passed));
   }
 
   /** Let both hands feel something. */

@@ -116,7 +116,7 @@ export class Headset {
       this.takeScene(model, state);
     }
     this.lookAround(frame);
-    this.hands.poll(Math.min(0.1, now - this.looked));
+    this.hands.poll(Math.min(1, now - this.looked));
     this.looked = now;
     this.hear(model);
     this.boards.closeUp.draw(this.stage, this.boards.room);
