@@ -173,8 +173,8 @@ class Controls:
             self._repeating = None
             return
         self._repeat_in -= dt
-        if self._repeat_in <= 0.0:
-            self._repeat_in += REPEAT_EVERY_S
+        if self._repeat_in <= 0.0 and self._hands[source].goes_on(name):
+            self._repeat_in = REPEAT_EVERY_S
             self._listener.pressed(control)
 
     def _hold(self, source: Source) -> None:

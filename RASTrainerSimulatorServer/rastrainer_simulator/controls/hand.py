@@ -36,6 +36,7 @@ class Hand:
         self.device = device
         self._inputs: dict[str, float] = {}
         self._down: set[str] = set()
+        self._again: set[str] = set()
         self._blocked: set[str] = set()
         self._sticks = _UNUSED
         self._sticks_blocked = False
@@ -53,6 +54,18 @@ class Hand:
         """Whether an input is pressed."""
         return name in self._down
 
+    def goes_on(self, name: str) -> bool:
+        """Return whether an input that is pressed is known to be held on.
+
+        A key is if it has come down again since it was asked for last. That no release has come
+        says nothing: a window that draws slowly may not have looked.
+        """
+        if self.device is not Device.KEYBOARD:
+            return True
+        has_come_again = name in self._again
+        self._again.discard(name)
+        return has_come_again
+
     def set_inputs(self, values: Mapping[str, float]) -> list[str]:
         """Take all inputs of a gamepad, 0…1; return those that have just been pressed."""
         self._inputs.update(values)
@@ -63,12 +76,13 @@ class Hand:
         if is_down:
             self._inputs.setdefault(code, RAMP_START)
             if code in self._down:
+                self._again.add(code)
                 return []
             self._down.add(code)
             return [code]
         self._inputs.pop(code, None)
-        self._down.discard(code)
-        self._blocked.discard(code)
+        for those in (self._down, self._again, self._blocked):
+            those.discard(code)
         return []
 
     def set_sticks(self, sticks: OperatorInput) -> None:

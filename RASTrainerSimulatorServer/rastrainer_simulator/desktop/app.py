@@ -20,6 +20,7 @@ from rastrainer_simulator.desktop.connection import Connection
 from rastrainer_simulator.desktop.frame_count import FrameCount
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox
+from rastrainer_simulator.desktop.key_repeats import without_late_repeats
 from rastrainer_simulator.desktop.operator_keys import OperatorKeys
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.quality import SLOWEST_FRAME_S, Quality, first_quality
@@ -113,7 +114,7 @@ class DesktopWindow:
     async def _turn(self, log: IO[str] | None) -> None:
         """Take what has come, and draw it if it shows."""
         begin = time.monotonic()
-        for event in pygame.event.get():
+        for event in without_late_repeats(pygame.event.get(), self._keys.is_held):
             self._take(event)
         self._keys.keep_alive()
         while self._inbox.sounds:

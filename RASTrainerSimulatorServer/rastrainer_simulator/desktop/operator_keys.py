@@ -37,6 +37,10 @@ class OperatorKeys:
             is_visible = event.type == pygame.WINDOWRESTORED
             self._connection.send(VISIBILITY, isVisible=is_visible)
 
+    def is_held(self, scancode: int) -> bool:
+        """Return whether a key, by its SDL scancode, is held."""
+        return CODES.get(scancode, "") in self._held
+
     def keep_alive(self) -> None:
         """Say often enough that what is held is still held."""
         now = time.monotonic()

@@ -126,6 +126,23 @@ def test_sticks_do_nothing_in_a_menu(controls):
     assert controls.sticks == HANDS_OFF
 
 
+def test_a_key_repeats_in_a_menu_only_while_its_keyboard_says_so(controls, ear):
+    controls.enter(Situation.MENU)
+    controls.set_key(KEYS, "ArrowDown", True)
+    # A window that draws for so long has not looked at the release.
+    controls.advance(3.0)
+    assert ear.presses == [ControlName.DOWN]
+    for _ in range(100):
+        controls.set_key(KEYS, "ArrowDown", True)
+        controls.advance(0.01)
+    assert 8 <= len(ear.presses) <= 11
+    controls.set_key(KEYS, "ArrowDown", False)
+    steps = len(ear.presses)
+    controls.set_key(KEYS, "ArrowDown", True)
+    controls.advance(3.0)
+    assert len(ear.presses) == steps + 1
+
+
 def test_a_held_direction_repeats_in_a_menu_and_nothing_else_does(controls, ear):
     controls.enter(Situation.MENU)
     controls.set_inputs(GAMEPAD, {"dpdown": 1.0})
