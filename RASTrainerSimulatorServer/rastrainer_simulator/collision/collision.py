@@ -78,6 +78,21 @@ class Collision:
             *self._links(posed),
         )
 
+    def is_clear(self, link_to_world: Mapping[str, np.ndarray], clearance: float) -> bool:
+        """Tell whether the tip can be anywhere, as far as all else is concerned.
+
+        The tool's shaft is off the head, and the links are at least `clearance`, m, from the head,
+        and the arm from itself, the table and the stand. It is what `check` would say, but at the
+        first that is too near no other is asked.
+        """
+        posed = self._arm.pose(link_to_world)
+        return (
+            self._table.nearest(posed)[0] >= clearance
+            and self._head.nearest_to_shaft(posed).distance_m > 0.0
+            and self._head.are_links_off(posed, clearance)
+            and self._self.nearest(posed)[0] >= clearance
+        )
+
     def _links(self, posed: PosedArm) -> tuple[float, str, float, tuple[str, ...], float, str]:
         """Return what is nearest to the links of the head, of the arm, and of table and stand."""
         moved = _SPACE_DIAGONAL * np.abs(posed.ends - self._far_at).max(axis=(2, 3))

@@ -51,6 +51,7 @@ class HeadClearance:
         self._world_to_head[:3, 3] = -rotation.T @ pose[:3, 3]
         self.base = rotation @ self._head.base + pose[:3, 3]
         """(3,) float: the middle of the head's base, World, m."""
+        self._middle = rotation @ self._head.middle + pose[:3, 3]
         self._head_to_world_rows = pose[:3].tolist()
         self._world_to_head_rows = self._world_to_head[:3].tolist()
         # What each capsule's clearance was when it was last queried, and where its axis was then.
@@ -79,6 +80,14 @@ class HeadClearance:
         if found is None or found.distance_m >= FAR:
             return FAR, "", bounds
         return found.distance_m, self._arm.names[row], bounds
+
+    def are_links_off(self, posed: PosedArm, clearance: float) -> bool:
+        """Tell whether every link is at least so far, m, from the head."""
+        rows = range(self._arm.link_count)
+        away = np.linalg.norm(posed.middles[: len(rows)] - self._middle, axis=1)
+        rough = (away - self._arm.reach[: len(rows)] - self._head.radius).tolist()
+        bounds = list(map(max, rough, self._bounds(posed, rows)))
+        return self._nearest(posed, rows, bounds, clearance)[0] is None
 
     def _bounds(self, posed: PosedArm, rows: range) -> list[float]:
         """Return below what the clearance of each capsule cannot be, m."""

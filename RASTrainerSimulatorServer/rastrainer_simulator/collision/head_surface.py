@@ -39,6 +39,10 @@ class HeadSurface:
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]
         self.base = (base.min(axis=0) + base.max(axis=0)) / 2.0
         """(3,) float: the middle of the lowest millimetre, on which the head stands."""
+        self.middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
+        """(3,) float: the middle of the sphere around the whole head."""
+        self.radius = float(np.linalg.norm(vertices - self.middle, axis=1).max())
+        """The radius of that sphere."""
         self._head = fcl.CollisionObject(mesh)
         self._point = thin_segment(np.zeros(3), np.zeros(3))
 

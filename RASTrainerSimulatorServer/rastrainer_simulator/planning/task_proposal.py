@@ -13,6 +13,7 @@ from rastrainer.head_mesh import HeadMesh
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.surface_path import SurfaceGraph
 from rastrainer_simulator.planning.touch_order import (
+    Ways,
     arc_lengths,
     crossing_order,
     easiest_order,
@@ -29,6 +30,8 @@ RISE = 1.1
 """Each task's complexity index is at least so many times that of the task before."""
 
 ATTEMPTS = 20
+ROUGHLY = 0.9
+"""A draw whose index is by a quick estimate below so much of what it must be is not measured."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,19 @@ class Proposal:
     complexity: Complexity
 
 
+@dataclass(frozen=True)
+class _Draw:
+    """Fiducials (15, 3) float in the order to touch, and about what their index will be."""
+
+    plan: TaskPlan
+    fiducials: np.ndarray
+    rough_index: float
+
+
+def _all_usable(positions: np.ndarray) -> np.ndarray:
+    return np.ones(len(positions), dtype=bool)
+
+
 def places_seen_from(
     mesh: HeadMesh, positions: np.ndarray, normals: np.ndarray, eye: np.ndarray
 ) -> Places:
@@ -108,14 +124,26 @@ class TaskProposer:
         eye: np.ndarray,
         target: np.ndarray,
         accepts: Callable[[Proposal], bool] = lambda _proposal: True,
+        usable: Callable[[np.ndarray], np.ndarray] = _all_usable,
     ) -> None:
-        """Keep the places; what is proposed in a row is what `accepts` agrees to."""
+        """Keep the places.
+
+        Args:
+            mesh: the head, RAS mm.
+            places: where fiducials may be.
+            eye: (3,) float, where the default view looks from, RAS mm.
+            target: (3,) float, that shall be located well, RAS mm.
+            accepts: what is proposed in a row is what it agrees to.
+            usable: tells which of some places (n, 3) really can be used, (n,) bool; only those that
+                are chosen are asked about, and the others are not chosen again.
+        """
         self._mesh = mesh
         self._graph = SurfaceGraph(mesh)
         self._places = places
         self._eye = eye
         self._target = target
         self._accepts = accepts
+        self._usable = usable
 
     def propose_rising(
         self, plans: Sequence[TaskPlan], seed: int, begins_easy: bool = False
@@ -135,10 +163,12 @@ class TaskProposer:
         proposals: list[Proposal] = []
         for plan, own_seeds in zip(plans, seeds.tolist(), strict=True):
             least = RISE * proposals[-1].complexity.index if proposals else 0.0
-            draws = (self.propose(plan, own_seed) for own_seed in own_seeds)
             if begins_easy and not proposals:
-                draws = iter(sorted(draws, key=lambda draw: draw.complexity.index))
-            harder = (draw for draw in draws if draw.complexity.index >= least)
+                own_seeds = self._easiest_first(plan, own_seeds)
+            draws = (self._usable_draw(plan, own_seed) for own_seed in own_seeds)
+            likely = (draw for draw in draws if draw.rough_index >= ROUGHLY * least)
+            measured = (self._measured(draw) for draw in likely)
+            harder = (draw for draw in measured if draw.complexity.index >= least)
             rising = next(filter(self._accepts, harder), None)
             if rising is None:
                 raise InputError(f"{plan.title} cannot be made harder than the task before it.")
@@ -151,10 +181,32 @@ class TaskProposer:
         Raises:
             InputError: there is no room for so many fiducials.
         """
+        return self._measured(self._usable_draw(plan, seed))
+
+    def _measured(self, draw: _Draw) -> Proposal:
+        demands = complexity(draw.fiducials, self._mesh, self._graph, self._eye)
+        return Proposal(draw.plan, draw.fiducials, demands)
+
+    def _easiest_first(self, plan: TaskPlan, seeds: Sequence[int]) -> list[int]:
+        return sorted(seeds, key=lambda seed: self._draw(plan, seed).rough_index)
+
+    def _usable_draw(self, plan: TaskPlan, seed: int) -> _Draw:
+        """Draw, and again without what has turned out to be of no use."""
+        while True:
+            draw = self._draw(plan, seed)
+            is_usable = self._usable(draw.fiducials)
+            if is_usable.all():
+                return draw
+            useless = draw.fiducials[~is_usable]
+            kept = ~(self._places.positions[:, None] == useless[None]).all(axis=2).any(axis=1)
+            self._places = Places(*(values[kept] for values in vars(self._places).values()))
+
+    def _draw(self, plan: TaskPlan, seed: int) -> _Draw:
         chosen = self._chosen(plan, np.random.default_rng(seed))
-        fiducials = self._places.positions[self._ordered(plan, chosen)]
-        demands = complexity(fiducials, self._mesh, self._graph, self._eye)
-        return Proposal(plan, fiducials, demands)
+        positions, normals = self._places.positions[chosen], self._places.normals[chosen]
+        ways = ways_between(positions, normals, arc_lengths(positions, normals))
+        order = _order(plan, positions, ways)
+        return _Draw(plan, positions[order], float(ways.costs([order])[0]) + plan.hidden)
 
     def _chosen(self, plan: TaskPlan, random: np.random.Generator) -> list[int]:
         """Return the places of the draw, of several, that locates the target best."""
@@ -188,17 +240,14 @@ class TaskProposer:
                     break
         return chosen
 
-    def _ordered(self, plan: TaskPlan, chosen: list[int]) -> list[int]:
-        positions, normals = self._places.positions[chosen], self._places.normals[chosen]
-        ways = ways_between(positions, normals, arc_lengths(positions, normals))
-        if plan.crossings == 0:
-            order = easiest_order(ways, list(range(len(chosen))))
-        else:
-            by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
-            half = (len(chosen) + 1) // 2
-            sides = [by_side[:half], by_side[half:]]
-            order = crossing_order(ways, sides, plan.crossings)
-        return [chosen[index] for index in order]
+
+def _order(plan: TaskPlan, positions: np.ndarray, ways: Ways) -> list[int]:
+    """Return in which order the places (15, 3) of a task are touched."""
+    if plan.crossings == 0:
+        return easiest_order(ways, list(range(len(positions))))
+    by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
+    half = (len(positions) + 1) // 2
+    return crossing_order(ways, [by_side[:half], by_side[half:]], plan.crossings)
 
 
 def target_spread(fiducials: np.ndarray, target: np.ndarray) -> float:

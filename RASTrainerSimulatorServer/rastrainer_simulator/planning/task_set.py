@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.face_removal import face_vertices
-from rastrainer.surface_queries import outward_normal
+from rastrainer.surface_queries import outward_normals
 from rastrainer.tasks import LABELS, Task
 from rastrainer_simulator.planning.skin_places import smooth_places
 from rastrainer_simulator.planning.task_proposal import (
@@ -29,17 +29,17 @@ PLACE_SPACING_MM = 11.0
 FACE_MARGIN_MM = 10.0
 """No fiducial comes nearer to the face, so that it can be taken off without moving any."""
 
-SCREENING_SEEDS = range(1000, 1006)
-CHECK_SEEDS = range(2000, 2012)
-ATTEMPTS = 4
+WIDE_SEEDS, TRIAL_SEEDS = range(1000, 1006), range(2000, 2012)
+"""Of the poses in which a fiducial must be touchable: worse than a trial's, and like a trial's."""
+
+ATTEMPTS = 6
 WIDEN_DEG, WIDEST_DEG = 10.0, 75.0
 """Where there is no room for the easy tasks, they may lie so much farther from the middle of the
 view, each time."""
 
-NOT_ALL_TOUCHABLE = (
-    "No set of tasks was found whose fiducials the robot can all touch; bring the head nearer to "
-    "the robot, or let it stand with less perturbation."
-)
+MOST_SHARE = 0.94
+"""Of the progress, before the tasks are found."""
+
 _DECIMALS = 4
 
 Progress = Callable[[str, float], None]
@@ -53,6 +53,8 @@ class TaskSetProposer:
         self._bench = bench
         self._progress = progress
         self._skin = Skin(bench.mesh)
+        self._found: dict[tuple[float, ...], bool] = {}
+        self._share = 0.0
 
     def propose(self, seed: int) -> tuple[Task, ...]:
         """Return the tasks, each more demanding than the one before.
@@ -63,30 +65,32 @@ class TaskSetProposer:
         Raises:
             InputError: the robot reaches too little of this head, or there is no room.
         """
-        places, problem = self._places, NOT_ALL_TOUCHABLE
+        bench, problem = self._bench, ""
         for attempt in range(ATTEMPTS):
-            self._progress("Placing fiducials", 0.45 + 0.12 * attempt)
+            proposer = TaskProposer(
+                bench.mesh,
+                self._places,
+                bench.eye,
+                bench.scenario.target_position,
+                self._is_readable,
+                self._are_touchable,
+            )
+            self._tell("Placing fiducials", 0.3 + 0.1 * attempt)
             try:
-                proposer = self._proposer(places)
                 proposals = proposer.propose_rising(
                     _plans(attempt), seed + attempt, begins_easy=attempt > 0
                 )
             except InputError as error:
                 problem = str(error)
                 continue
-            self._progress("Checking reach", 0.52 + 0.12 * attempt)
-            missed = self._missed(proposals)
-            if not len(missed):
-                return tuple(_task(proposal) for proposal in proposals)
-            is_kept = ~(places.positions[:, None] == missed[None]).all(axis=2).any(axis=1)
-            places = Places(*(values[is_kept] for values in vars(places).values()))
+            return tuple(_task(proposal) for proposal in proposals)
         raise InputError(problem)
 
     @cached_property
     def _places(self) -> Places:
         """Where fiducials may be."""
         bench = self._bench
-        self._progress("Finding smooth skin", 0.0)
+        self._tell("Finding smooth skin", 0.0)
         vertices = smooth_places(bench.mesh, PLACE_SPACING_MM)
         positions = bench.mesh.vertices[vertices].astype(float).round(_DECIMALS)
         normals = bench.mesh.vertex_normals[vertices]
@@ -94,38 +98,41 @@ class TaskSetProposer:
         if len(face):
             away = np.array([np.linalg.norm(face - place, axis=1).min() for place in positions])
             positions, normals = positions[away > FACE_MARGIN_MM], normals[away > FACE_MARGIN_MM]
-        can_be = bench.touchable(positions, normals, self._screening_poses())
+        self._tell("Finding what the robot can touch", 0.05)
+        can_be = bench.touchable(positions, normals, bench.poses(range(0)))
         positions, normals = positions[can_be], normals[can_be]
         if len(positions) < len(LABELS):
             raise InputError(
                 f"The robot can touch only {len(positions)} of {len(vertices)} places of this head "
                 "where a fiducial could be; bring the head nearer to the robot."
             )
-        self._progress("Finding what the view shows", 0.38)
+        self._tell("Finding what the view shows", 0.2)
         return places_seen_from(bench.mesh, positions, normals, bench.eye)
 
-    def _screening_poses(self) -> Iterator[np.ndarray]:
-        """Yield poses of the head that are worse than a trial's, and tell the progress."""
-        poses = self._bench.poses(SCREENING_SEEDS, WIDER)
-        for index, pose in enumerate(poses):
-            self._progress("Finding what the robot can touch", 0.05 + 0.3 * index / len(poses))
-            yield pose
-
-    def _proposer(self, places: Places) -> TaskProposer:
+    @cached_property
+    def _poses(self) -> list[np.ndarray]:
+        """In which every fiducial must be touchable, besides the nominal one."""
         bench = self._bench
-        return TaskProposer(
-            bench.mesh, places, bench.eye, bench.scenario.target_position, self._is_readable
-        )
+        return [*bench.poses(WIDE_SEEDS, WIDER)[1:], *bench.poses(TRIAL_SEEDS)[1:]]
+
+    def _are_touchable(self, positions: np.ndarray) -> np.ndarray:
+        """Return which places (n,) bool can be touched wherever the head of a trial may stand."""
+        places = [tuple(position) for position in positions.tolist()]
+        new = [place for place in places if place not in self._found]
+        if new:
+            self._tell("Checking reach", 0.3 + 0.005 * len(self._found))
+            normals = outward_normals(self._bench.mesh, np.array(new))
+            can_be = self._bench.touchable(np.array(new), normals, self._poses)
+            self._found |= dict(zip(new, can_be.tolist(), strict=True))
+        return np.array([self._found[place] for place in places])
+
+    def _tell(self, step: str, share: float) -> None:
+        """Tell the progress, which never goes back."""
+        self._share = max(self._share, min(share, MOST_SHARE))
+        self._progress(step, self._share)
 
     def _is_readable(self, proposal: Proposal) -> bool:
         return place_marks(self._skin, proposal.fiducials, LABELS).has_room
-
-    def _missed(self, proposals: list[Proposal]) -> np.ndarray:
-        """Return the fiducials (n, 3) that cannot be touched in poses other than those tried."""
-        fiducials = np.unique(np.concatenate([p.fiducials for p in proposals]), axis=0)
-        normals = np.array([outward_normal(self._bench.mesh, point) for point in fiducials])
-        can_be = self._bench.touchable(fiducials, normals, self._bench.poses(CHECK_SEEDS))
-        return fiducials[~can_be]
 
 
 def _plans(attempt: int) -> list[TaskPlan]:

@@ -65,9 +65,10 @@ class TouchPlanner:
             normal: (3,) float, outward unit normal there, World.
         """
         for leaning_deg, direction in tool_directions(normal):
-            touch = self._touch_along(position, leaning_deg, direction)
-            if touch is not None:
-                return touch
+            q = self._posture(position, direction)
+            if q is not None:
+                clearance = self._collision.check(self._kinematics.links(q))
+                return Touch(q, direction, leaning_deg, clearance)
         return None
 
     def working_direction(
@@ -80,25 +81,20 @@ class TouchPlanner:
         """
         directions = list(tool_directions(normal))
         for number in (likely, *(each for each in range(len(directions)) if each != likely)):
-            if self._touch_along(position, *directions[number]) is not None:
+            if self._posture(position, directions[number][1]) is not None:
                 return number
         return None
 
-    def _touch_along(
-        self, position: np.ndarray, leaning_deg: float, direction: np.ndarray
-    ) -> Touch | None:
+    def _posture(self, position: np.ndarray, direction: np.ndarray) -> tuple[float, ...] | None:
+        """Return joint angles that touch along a direction; None where there is no room."""
         for start in self._starts:
             solution = self._fabrik.solve(position, direction, q_start=start)
             if not solution.converged:
                 return None
-            clearance = self._collision.check(self._kinematics.links(solution.q))
-            if self._is_clear(clearance):
-                return Touch(solution.q, direction, leaning_deg, clearance)
+            links = self._kinematics.links(solution.q)
+            if self._collision.is_clear(links, self._clearance):
+                return solution.q
         return None
-
-    def _is_clear(self, clearance: Clearance) -> bool:
-        others = min(clearance.links_m, clearance.self_m, clearance.table_m)
-        return clearance.shaft_m > 0.0 and others >= self._clearance
 
 
 def tool_directions(normal: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:

@@ -217,6 +217,22 @@ def test_what_was_asked_before_changes_no_bit_of_an_answer(head, head_to_world, 
     assert {clearance.self_m < FAR for clearance in there} == {True, False}
 
 
+def test_the_quick_answer_whether_all_is_clear_is_that_of_the_clearances(
+    collision, head, head_to_world, postures
+):
+    quick = placed(head, head_to_world)
+    path = [*postures, *wander(300, seed=25, step=0.1)]
+    said = []
+    for links in map(KINEMATICS.links, path):
+        for clearance in (0.005, 0.05):
+            found = collision.check(links)
+            others = min(found.links_m, found.self_m, found.table_m)
+            is_clear = found.shaft_m > 0.0 and others >= clearance
+            assert quick.is_clear(links, clearance) == is_clear
+            said.append(is_clear)
+    assert 0.1 < np.mean(said) < 0.9
+
+
 def test_a_head_that_is_moved_is_measured_anew(head, head_to_world, collision):
     links = KINEMATICS.links(ROBOT.home)
     before = collision.check(links)

@@ -58,6 +58,23 @@ def test_where_it_is_wanted_the_first_task_is_the_easiest_of_many(proposer):
     assert easy.complexity.index < usual.complexity.index
 
 
+def test_places_that_turn_out_useless_are_replaced(mesh, places, proposer):
+    plan = PLANS[2]
+    useless = proposer.propose(plan, 5).fiducials[:4]
+    asked = []
+
+    def usable(positions):
+        asked.append(len(positions))
+        return ~(positions[:, None] == useless[None]).all(axis=2).any(axis=1)
+
+    picky = TaskProposer(mesh, places, EYE, TARGET, usable=usable)
+    found = picky.propose(plan, 5)
+    assert usable(found.fiducials).all()
+    assert found.complexity.hidden_points == plan.hidden
+    assert 2 < len(asked) < 8
+    assert np.array_equal(picky.propose(plan, 5).fiducials, found.fiducials)
+
+
 def test_the_same_seed_proposes_the_same_task(proposer):
     first, again = (proposer.propose(PLANS[2], 5) for _ in range(2))
     assert np.array_equal(first.fiducials, again.fiducials)
