@@ -104,6 +104,10 @@ class Flow:
             language=session.preferences.language,
         )
 
+    def _note_done(self) -> None:
+        training, scenario = self._session.training, self._session.scenario
+        self._session.progress.note(training.trainee, scenario.name, training.task)
+
     def _follow(self, before: tuple[str, Phase]) -> None:
         """Show what belongs to the trial's new phase."""
         session = self._session
@@ -115,14 +119,14 @@ class Flow:
             session.trainee = training.trainee
             session.mode = training.mode
             if training.task == TRIAL_RUN:
-                session.progress.note(training.trainee, training.task)
+                self._note_done()
         if training.phase in (Phase.RUNNING, Phase.COMPLETE):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
             is_over = self._working.is_practice_over
             session.pages.show((PracticePage if is_over else TrialPage)(session))
         elif training.phase is Phase.REGISTERED:
-            session.progress.note(training.trainee, training.task)
+            self._note_done()
             session.pages.show(WaitingPage(session))
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session))

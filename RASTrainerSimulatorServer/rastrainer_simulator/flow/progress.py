@@ -1,4 +1,4 @@
-"""Which tasks each trainee has done: told by the journals, and by the trials of this session."""
+"""Which tasks of which head each trainee has done: told by journals and this session's trials."""
 
 from __future__ import annotations
 
@@ -23,22 +23,24 @@ class Progress:
 
     def __init__(self, records: Path) -> None:
         """Look through the folder's journals: at the first line and the end of each."""
-        self._done: dict[str, set[str]] = defaultdict(set)
+        self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
         for path in sorted(records.glob("*.journal")):
             self._take(path)
 
-    def note(self, trainee: str, task: str) -> None:
-        """Take note of a task that was done."""
-        self._done[trainee].add(task)
+    def note(self, trainee: str, scenario: str, task: str) -> None:
+        """Take note of a scenario's task that was done."""
+        self._done[trainee, scenario].add(task)
 
-    def has_done(self, trainee: str, task: str) -> bool:
-        """Return whether a trainee has done a task."""
-        return task in self._done.get(trainee, ())
+    def has_done(self, trainee: str, scenario: str, task: str) -> bool:
+        """Return whether a trainee has done a scenario's task."""
+        return task in self._done.get((trainee, scenario), ())
 
-    def missing_before(self, trainee: str, task: str, order: Sequence[str]) -> str | None:
+    def missing_before(
+        self, trainee: str, scenario: str, task: str, order: Sequence[str]
+    ) -> str | None:
         """Return the first task that has to be done before another; None where none is missing."""
-        before = order[: order.index(task)]
-        return next((name for name in before if not self.has_done(trainee, name)), None)
+        done = self._done.get((trainee, scenario), ())
+        return next((name for name in order[: order.index(task)] if name not in done), None)
 
     def _take(self, path: Path) -> None:
         """Take note of a journal; one that cannot be read tells nothing."""
@@ -47,9 +49,9 @@ class Progress:
                 header = decode_line(file.readline(LONGEST_LINE).rstrip(b"\n"), 1, NO_LINE)
                 file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
                 is_registered = _REGISTERED in file.read(_TAIL_BYTES)
-            trainee, task = header["trainee"], header["task"]
-        except (OSError, KeyError, DamagedLineError):
+            what = header["trainee"], header["scenario"]["name"], header["task"]
+        except (OSError, KeyError, TypeError, DamagedLineError):
             return
-        is_told = isinstance(trainee, str) and isinstance(task, str)
-        if is_told and (is_registered or task == TRIAL_RUN):
-            self.note(trainee, task)
+        is_told = all(isinstance(word, str) for word in what)
+        if is_told and (is_registered or header["task"] == TRIAL_RUN):
+            self.note(*what)

@@ -122,9 +122,7 @@ def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
         (lambda desk: desk.on_silence(1), "the picture stood still"),
     ],
 )
-def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_goes_on(
-    trainee, lose, why
-):
+def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_goes_on(trainee, lose, why):
     trainee.start("task-1")
     lose(trainee.desk)
     trainee.until_menu("trial")

@@ -5,12 +5,14 @@ from __future__ import annotations
 from rastrainer.journal.journal_line import NO_LINE, encode_line
 from rastrainer_simulator.flow.progress import Progress
 
+HEAD = "colin27"
 ORDER = ("trial-run", "task-1", "task-2")
 
 
-def write_journal(folder, name, trainee, task, *kinds):
+def write_journal(folder, name, trainee, task, *kinds, scenario=HEAD):
     lines, previous = [], NO_LINE
-    entries = [{"kind": "header", "trainee": trainee, "task": task}]
+    head = {"name": scenario}
+    entries = [{"kind": "header", "trainee": trainee, "scenario": head, "task": task}]
     for number, entry in enumerate(entries + [{"kind": kind} for kind in kinds], 1):
         line, previous = encode_line(number, previous, entry)
         lines.append(line)
@@ -23,10 +25,18 @@ def test_a_task_counts_once_registered_and_the_trial_run_once_begun(tmp_path):
     write_journal(tmp_path, "3", "P01", "task-2", "aborted")
     write_journal(tmp_path, "4", "P02", "task-1", "registered")
     progress = Progress(tmp_path)
-    assert [progress.has_done("P01", task) for task in ORDER] == [True, True, False]
-    assert progress.missing_before("P01", "task-2", ORDER) is None
-    assert progress.missing_before("P02", "task-2", ORDER) == "trial-run"
-    assert progress.missing_before("nobody", "trial-run", ORDER) is None
+    assert [progress.has_done("P01", HEAD, task) for task in ORDER] == [True, True, False]
+    assert progress.missing_before("P01", HEAD, "task-2", ORDER) is None
+    assert progress.missing_before("P02", HEAD, "task-2", ORDER) == "trial-run"
+    assert progress.missing_before("nobody", HEAD, "trial-run", ORDER) is None
+
+
+def test_a_task_of_one_head_is_not_that_of_another(tmp_path):
+    write_journal(tmp_path, "1", "P01", "trial-run", "registered", scenario="other")
+    progress = Progress(tmp_path)
+    progress.note("P01", "other", "task-1")
+    assert progress.missing_before("P01", "other", "task-2", ORDER) is None
+    assert progress.missing_before("P01", HEAD, "task-2", ORDER) == "trial-run"
 
 
 def test_what_is_no_journal_tells_nothing(tmp_path):
@@ -39,9 +49,9 @@ def test_what_is_no_journal_tells_nothing(tmp_path):
     (tmp_path / "folder.journal").mkdir()
     write_journal(tmp_path, "odd", ["P03"], {"task": 1}, "registered")
     progress = Progress(tmp_path)
-    assert progress.has_done("P01", "task-1")
-    assert not progress.has_done("P02", "task-1")
+    assert progress.has_done("P01", HEAD, "task-1")
+    assert not progress.has_done("P02", HEAD, "task-1")
 
 
 def test_a_folder_that_is_not_there_yet_tells_nothing(tmp_path):
-    assert not Progress(tmp_path / "later").has_done("P01", "task-1")
+    assert not Progress(tmp_path / "later").has_done("P01", HEAD, "task-1")

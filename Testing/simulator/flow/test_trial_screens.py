@@ -88,10 +88,10 @@ def test_what_was_done_is_known_after_the_simulator_was_started_again(trainee, o
     trainee.until_menu("experiment")
     trainee.close()
     loop.stop()
-    progress = Progress(outside.surroundings.records)
-    assert progress.has_done("P07", "trial-run")
-    assert not progress.has_done("P07", "task-1")
-    assert not progress.has_done("P08", "trial-run")
+    progress, scenario = Progress(outside.surroundings.records), loop.setup.scenario.name
+    assert progress.has_done("P07", scenario, "trial-run")
+    assert not progress.has_done("P07", scenario, "task-1")
+    assert not progress.has_done("P08", scenario, "trial-run")
 
 
 def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monkeypatch):

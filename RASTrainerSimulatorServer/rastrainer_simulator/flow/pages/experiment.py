@@ -73,7 +73,7 @@ class ExperimentPage(Page):
         """Return a task's button: a disabled one says why."""
         session = self.session
         reason = self._obstacle(name)
-        is_done = session.progress.has_done(session.trainee.strip(), name)
+        is_done = session.progress.has_done(session.trainee.strip(), session.scenario.name, name)
         return Item(
             name,
             session.task_title(name),
@@ -91,8 +91,9 @@ class ExperimentPage(Page):
             return self.say("experiment.being set up")
         if session.preferences.order == "any":
             return ""
-        order = [task.name for task in session.scenario.tasks]
-        missing = session.progress.missing_before(trainee, name, order)
+        scenario = session.scenario
+        order = [task.name for task in scenario.tasks]
+        missing = session.progress.missing_before(trainee, scenario.name, name, order)
         return self.say("experiment.order", task=session.task_title(missing)) if missing else ""
 
     def _begin(self, task: str) -> None:
