@@ -98,6 +98,12 @@ def forward(page) -> np.ndarray:
     return -eyes(page)[0][:3, 2]
 
 
+def let_arm_rest(page, trainee) -> None:
+    """Wait until the arm stands, and is seen where it stands."""
+    trainee.until_still()
+    page.evaluate("frames_(3)")
+
+
 def halves(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     middle = picture.shape[1] // 2
     return picture[:, :middle], picture[:, middle : 2 * middle]
@@ -163,25 +169,28 @@ def test_the_table_is_raised_and_lowered_and_stays_so(place, worn):
     np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
 
 
-def test_the_tip_follows_the_hand_that_grabs_until_it_lets_go(place, trainee):
+def test_the_tip_follows_the_hand_that_grabs_until_it_lets_go(place, worn, trainee):
     hands = trainee.hands
+    let_arm_rest(worn, trainee)
     wanted = trainee.tip
     hands.grab(True)
     for _ in range(STEPS):
         wanted = wanted + hands.move(0.006, 0.008, 0.004)
         trainee.until(lambda w=wanted: np.linalg.norm(trainee.tip - w) < 0.006, "the tip there")
     hands.grab(False)
-    hands.move(-0.03, -0.04, -0.02)
+    let_arm_rest(worn, trainee)
     held = trainee.tip
+    hands.move(-0.03, -0.04, -0.02)
     for _ in range(30):
         place.view.next_state()
     assert np.linalg.norm(trainee.tip - held) < 0.002
 
 
-def test_grabbing_can_be_switched_off(place, trainee):
+def test_grabbing_can_be_switched_off(place, worn, trainee):
     trainee.press("menu", lambda: trainee.menu is not None, "the menu")
     trainee.hands.point_at("local grab")
     trainee.resume()
+    let_arm_rest(worn, trainee)
     start = trainee.tip
     trainee.hands.grab(True)
     trainee.hands.move(0.0, 0.05, 0.0)
