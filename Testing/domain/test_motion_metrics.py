@@ -14,16 +14,28 @@ RATE_HZ = 100.0
 BELL = np.exp(-5 * np.arange(-1, 1, 0.01) ** 2)
 
 
-def test_sparc_of_the_published_example():
-    """Balasubramanian et al. 2015: fc 10 Hz, threshold 0.05, pad level 4."""
+TAPS = """
+    218.5 263  529.5 268  195.0 248  533.5 234  209.8 251  607.0 253  231.3 283
+    540.8 215  231.9 301  560.5 267  207.5 259  524.5 259  239.1 248  515.0 243
+    180.0 242  501.0 253  215.5 244  572.0 256  215.4 252  521.5 210
+"""
+"""The example of MacKenzie's class Throughput (2013-2016): where each tap went, and its time in ms;
+from x = 540.2 to 227.8 and back."""
+
+
+def test_sparc_of_its_authors_own_example():
+    """Balasubramanian et al. 2015, their program's example: fc 10 Hz, threshold 0.05, padding 4."""
     assert sparc(BELL, RATE_HZ) == pytest.approx(-1.41403, abs=5e-6)
 
 
-def test_log_dimensionless_jerk_of_the_published_example():
+def test_log_dimensionless_jerk_of_its_authors_own_example():
+    """Balasubramanian et al. 2015, their program's examples, with and without the logarithm."""
     assert log_dimensionless_jerk(BELL, RATE_HZ) == pytest.approx(-5.81636, abs=5e-6)
+    assert np.exp(-log_dimensionless_jerk(BELL, RATE_HZ)) == pytest.approx(335.74684, abs=5e-6)
 
 
 def test_log_dimensionless_jerk_of_a_minimum_jerk_reach_is_the_analytical_one():
+    """By hand from Flash and Hogan 1985: 720 over the square of the peak speed 15/8, −ln 204.8."""
     t = np.linspace(0, 1, 20_001)
     speed = 30 * t**2 - 60 * t**3 + 30 * t**4
     assert log_dimensionless_jerk(speed, 20_000) == pytest.approx(-5.322, abs=1e-3)
@@ -77,6 +89,10 @@ def test_the_speed_of_uniform_motion_is_its_speed():
 
 
 def test_path_length_and_efficiency():
+    # A helix of radius r and pitch p is 2π√(r² + (p/2π)²) long a turn (do Carmo 1976, § 1-3).
+    turn = np.linspace(0.0, 2.0 * np.pi, 20_001)
+    helix = np.column_stack([40.0 * np.cos(turn), 40.0 * np.sin(turn), 30.0 * turn])
+    assert path_length(helix) == pytest.approx(2.0 * np.pi * 50.0, rel=1e-7)
     square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], dtype=float)
     assert path_length(square) == 30.0
     assert path_efficiency(30.0, 15.0) == 0.5
@@ -110,6 +126,25 @@ def test_throughput_follows_iso_9241_411_along_the_task_axis():
     assert result.effective_width_mm == pytest.approx(width)
     np.testing.assert_allclose(result.effective_distances_mm, distances)
     assert result.bits_per_s == pytest.approx(np.mean(difficulties / [2.0, 1.0, 2.0]))
+
+
+def test_throughput_of_mackenzies_own_example():
+    """MacKenzie, class Throughput: We 106.06, Ae 327.06, IDe 2.030 bits, MT 252.3 ms, 8.044 bits/s.
+
+    He divides the mean difficulty by the mean time; we take the mean of each movement's ratio.
+    """
+    taps = np.array(TAPS.split(), dtype=float).reshape(20, 2)
+    at_x = np.tile([540.2, 227.8], 11)[:21]
+    targets = np.column_stack([at_x, np.zeros((21, 2))])
+    touches = np.column_stack([[540.2, *taps[:, 0]], np.zeros((21, 2))])
+    result = effective_throughput(targets, touches, np.cumsum([0.0, *taps[:, 1] / 1000.0]))
+    assert result.effective_width_mm == pytest.approx(106.062885, rel=1e-3)
+    mean_distance = np.mean(result.effective_distances_mm)
+    assert mean_distance == pytest.approx(327.058351, rel=1e-3)
+    difficulty = np.log2(mean_distance / result.effective_width_mm + 1)
+    assert difficulty == pytest.approx(2.029851, rel=1e-3)
+    assert difficulty / np.mean(taps[:, 1]) * 1000.0 == pytest.approx(8.044111, rel=1e-3)
+    assert result.bits_per_s == pytest.approx(8.044111, rel=0.01)
 
 
 @pytest.mark.parametrize(

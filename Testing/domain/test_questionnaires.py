@@ -28,6 +28,26 @@ def test_raw_tlx_is_the_mean_of_the_six_scales():
     assert NASA_TLX.score([100] * 6)["tlx_raw"] == 100
 
 
+def test_raw_tlx_is_scored_as_by_another_program():
+    """Tests of colleyRstats (CRAN): marks 1, 11 and 21 of the sheet are 0, 50 and 100."""
+
+    def raw(*marks):
+        return NASA_TLX.score([5 * (mark - 1) for mark in marks])["tlx_raw"]
+
+    assert [raw(*[mark] * 6) for mark in (1, 11, 21)] == [0.0, 50.0, 100.0]
+    assert raw(21, 1, 21, 1, 21, 1) == 50.0
+
+
+def test_ssq_items_are_on_the_published_scales():
+    """Kennedy et al. 1993, table 3, by the items' numbers on the form."""
+    nausea, oculomotor = {1, 6, 7, 8, 9, 15, 16}, {1, 2, 3, 4, 5, 9, 11}
+    disorientation = {5, 8, 10, 11, 12, 13, 14}
+    for number in range(1, 17):
+        scores = SSQ.score([int(item == number) for item in range(1, 17)])
+        on = [scores[f"ssq_{n}"] > 0 for n in ("nausea", "oculomotor", "disorientation")]
+        assert on == [number in scale for scale in (nausea, oculomotor, disorientation)]
+
+
 def test_ssq_has_the_published_maxima():
     """Kennedy et al. 1993: 200.34, 159.18, 292.32 and 235.62 when all symptoms are severe."""
     assert SSQ.score([3] * 16) == {
