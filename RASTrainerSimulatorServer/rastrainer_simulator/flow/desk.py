@@ -68,6 +68,7 @@ class Desk:
         self._results: deque[StepResult] = deque()
         self._subscribers: Subscribers[News] = Subscribers()
         self._views: dict[int, Hello] = {}
+        self._silent: set[int] = set()
         self._lasting: dict[str, tuple[str, Mapping[str, object]]] = {}
         self._number = 0
         self._told_sticks = HANDS_OFF
@@ -107,6 +108,7 @@ class Desk:
         """Forget a view; nobody sees the trial any more if it was the trainee's."""
         self._lose_sight(view, "unseen.left")
         self._choose_mode(self._views.pop(view, None))
+        self._silent.discard(view)
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -161,6 +163,7 @@ class Desk:
 
     def on_frames(self, view: int, frames: Frames) -> None:
         """Take how smoothly a view draws; what the trainee looks at is recorded."""
+        self._silent.discard(view)
         hello = self._views.get(view)
         if hello is None or view != self._watched():
             return
@@ -178,6 +181,7 @@ class Desk:
     def on_silence(self, view: int) -> None:
         """Pause the trial when its picture stands still, and free the control."""
         self._lose_sight(view, "unseen.still")
+        self._silent.add(view)
         self._settle()
 
     def pressed(self, control: ControlName) -> None:
@@ -234,7 +238,9 @@ class Desk:
 
     def _watched(self) -> int | None:
         """Return the view that the trainee looks at: a headset, else the one that is operated."""
-        by_kind = {hello.kind: view for view, hello in reversed(self._views.items())}
+        # A headset whose network broke comes back as another view, long before the first has left.
+        heard = [each for each in reversed(self._views.items()) if each[0] not in self._silent]
+        by_kind = {hello.kind: view for view, hello in heard}
         holder = self.controls.holder
         operated = None if holder is None else holder.view
         choices = (by_kind.get("headset"), operated, by_kind.get("desktop"), by_kind.get("page"))

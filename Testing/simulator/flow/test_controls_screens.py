@@ -149,6 +149,19 @@ def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(t
     trainee.until_menu("trial")
 
 
+def test_a_headset_that_came_back_as_another_view_is_the_one_that_is_worn(trainee):
+    desk = trainee.desk
+    for view in (5, 6):
+        desk.view_joined(view, Hello("headset", "Quest 3", 90.0))
+        desk.on_silence(5)
+    trainee.start("task-1")
+    desk.view_left(5)
+    trainee.step(20)
+    assert trainee.menu is None
+    desk.on_visibility(6, False)
+    trainee.until_menu("trial")
+
+
 def test_a_control_is_given_a_free_key_and_keeps_it(trainee, outside):
     open_the_bindings(trainee)
     trainee.choose("touch")
