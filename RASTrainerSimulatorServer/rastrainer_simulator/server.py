@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.experiment.study_step import StudyStep
 from rastrainer.journal.journal_reader import JournalReading
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, FIDUCIAL_COUNT, CommandName
 from rastrainer_simulator.control_loop import ControlLoop
@@ -23,6 +24,7 @@ from rastrainer_simulator.controls.config_folder import config_folder
 from rastrainer_simulator.desktop_process import DesktopProcess
 from rastrainer_simulator.flow.preferences import FILE_NAME as PREFERENCES_FILE
 from rastrainer_simulator.flow.preferences import Preferences, read_preferences
+from rastrainer_simulator.flow.study_guide import StudyGuide
 from rastrainer_simulator.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.igtl.state_feed import StateFeed
 from rastrainer_simulator.limits_file import read_limits
@@ -99,6 +101,7 @@ class SimulatorServer:
         self._limits = read_limits(self._config)
         self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
+        self._study = StudyGuide()
         taken_up = self._take_up() if options.goes_on else None
         simulation, reading = taken_up or (self._make_simulation(options.scenario), None)
         self._goes_on = reading is not None
@@ -220,6 +223,7 @@ class SimulatorServer:
             use_scenario=self._scenarios.load,
             is_slicer_there=lambda: bool(link.server.clients),
             quit=stop.set,
+            study=self._study,
         )
         return RunningDesk(self._control_loop, surroundings, self._options.has_gamepad)
 
@@ -274,6 +278,11 @@ class SimulatorServer:
     def _submit(self, name: str, arguments: Mapping[str, Any], sender: str) -> Future[Answer]:
         if name == CommandName.LOAD_SCENARIO:
             return self._scenarios.load(arguments["folder"])
+        if name == CommandName.STUDY_STEP:
+            self._study.take(StudyStep.told(arguments))
+            taken: Future[Answer] = Future()
+            taken.set_result(Answer(0, True))
+            return taken
         return self._control_loop.submit(name, arguments, sender)
 
     def _health(self) -> dict[str, Any]:

@@ -15,7 +15,9 @@ from rastrainer.experiment.study_protocol import (
     read_study_protocol,
     study_protocol_from_json,
 )
+from rastrainer.experiment.study_step import StudyStep
 from rastrainer.experiment.williams import williams_design
+from rastrainer.protocol import ALL_DONE, CommandName, check_arguments
 from rastrainer.study import Study
 from Testing.domain.trial_records import make_record
 
@@ -139,6 +141,24 @@ def test_the_whole_way_ends_with_thanks_and_all_answers_scored(study):
     assert answers[0].scores["ssq_total"] == pytest.approx(235.62)
     with pytest.raises(InputError, match="nothing comes after"):
         progress.skip("T001", "x", "a good long reason")
+
+
+def test_every_step_can_be_told_to_the_simulator_and_comes_back_the_same(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol())
+    progress.enroll("T001")
+    kinds = set()
+    while True:
+        step = StudyStep.of("T001", progress.progress("T001"))
+        checked = check_arguments(CommandName.STUDY_STEP, json.loads(json.dumps(step.arguments())))
+        assert StudyStep.told(checked) == step
+        kinds.add(step.kind)
+        if step.kind == ALL_DONE:
+            break
+        progress.skip("T001", progress.progress("T001").next_step.name, "only told of in this test")
+    assert kinds == {*(kind.value for kind in StepKind), ALL_DONE}
+    free = StudyStep("T001")
+    assert StudyStep.told(check_arguments(CommandName.STUDY_STEP, free.arguments())) == free
 
 
 def test_nothing_is_skipped_silently(study):

@@ -23,7 +23,9 @@ class Lab:
         self.room, self.path = room, folder / "study.db"
         self.moment = datetime.now(timezone.utc)
         self.trainees = TraineeDesk(lambda: Study.open(self.path), folder / "journals")
-        self.desk = StudyDesk(self.trainees, room.desk, lambda: room.now, lambda: self.moment)
+        self.desk = StudyDesk(
+            self.trainees, room.desk, room.link, lambda: room.now, lambda: self.moment
+        )
 
     def close(self):
         self.desk.close()
@@ -177,3 +179,48 @@ def test_the_next_step_is_not_skipped_without_a_reason(enrolled):
     with pytest.raises(InputError, match="only with a reason"):
         enrolled.desk.skipStep("no")
     assert enrolled.next == "hmd/before/ssq"
+
+
+def told(lab):
+    """What the simulator was told last, once it has been."""
+    steps = lab.room.sent("StudyStep")
+    return steps[-1] if steps else {}
+
+
+def test_the_simulator_is_told_what_comes_next_whenever_that_changes(enrolled):
+    room = enrolled.room
+    room.run_until(lambda: told(enrolled).get("questionnaire") == "ssq")
+    enrolled.desk.answer([0] * 16)
+    room.run_until(lambda: told(enrolled)["kind"] == "trial-run")
+    assert told(enrolled) == {
+        "trainee": "T001",
+        "kind": "trial-run",
+        "number": 2,
+        "count": 19,
+        "task": "trial-run",
+        "mode": "hmd",
+        "minutes": 5.0,
+    }
+    count = len(room.sent("StudyStep"))
+    enrolled.trainees.changed.emit()
+    enrolled.desk.skipStep("has practiced in the pilot")
+    room.run_until(lambda: told(enrolled)["kind"] == "trial")
+    assert len(room.sent("StudyStep")) == count + 1
+
+
+def test_a_simulator_that_is_connected_again_is_told_of_everybody(enrolled):
+    room = enrolled.room
+    enrolled.trainees.create("T002", consent=True)
+    enrolled.desk.enroll()
+    room.run_until(lambda: told(enrolled).get("trainee") == "T002")
+    before = len(room.sent("StudyStep"))
+    room.link.disconnect()
+    room.link.connectTo(port=room.simulator.port)
+    room.run_until(lambda: len(room.sent("StudyStep")) == before + 2)
+    assert {step["trainee"] for step in room.sent("StudyStep")[before:]} == {"T001", "T002"}
+
+
+def test_who_is_deleted_is_led_no_more(enrolled):
+    enrolled.room.run_until(lambda: told(enrolled))
+    enrolled.trainees.delete()
+    enrolled.room.run_until(lambda: told(enrolled) == {"trainee": "T001", "kind": "free"})

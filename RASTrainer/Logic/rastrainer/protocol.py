@@ -62,6 +62,19 @@ class Mode(str, Enum):
     HMD = "hmd"
 
 
+class StepKind(str, Enum):
+    """What a study asks of a trainee in one step."""
+
+    QUESTIONNAIRE = "questionnaire"
+    TRIAL_RUN = "trial-run"
+    TRIAL = "trial"
+    BREAK = "break"
+
+
+ALL_DONE, FREE = "all-done", "free"
+"""In place of a step: none is left, or no study leads the trainee."""
+
+
 class Proximity(str, Enum):
     """How near the tool is to the head; `proximity` means within the 20 mm sphere."""
 
@@ -88,6 +101,7 @@ class CommandName:
     SET_CAMERA = "SetCamera"
     TRIAL_SCORED = "TrialScored"
     PLAN_TARGET = "PlanTarget"
+    STUDY_STEP = "StudyStep"
     GET_TRIAL = "GetTrial"
     ACKNOWLEDGE_TRIAL = "AcknowledgeTrial"
     TRIAL_COMPLETED = "TrialCompleted"
@@ -236,6 +250,16 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "positionMm": Argument(numbers(3, WORLD_LIMIT_MM, "mm")),
         "entryMm": Argument(numbers(3, WORLD_LIMIT_MM, "mm"), None),
         "name": Argument(text(), "target"),
+    },
+    CommandName.STUDY_STEP: {
+        "trainee": Argument(text()),
+        "kind": Argument(one_of(*(kind.value for kind in StepKind), ALL_DONE, FREE)),
+        "number": Argument(whole_number(1, 100_000), 0),
+        "count": Argument(whole_number(1, 100_000), 0),
+        "task": Argument(text(), ""),
+        "mode": Argument(one_of(*(mode.value for mode in Mode)), ""),
+        "questionnaire": Argument(text(), ""),
+        "minutes": Argument(number(0, 43_200, "min"), 0.0),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

@@ -127,6 +127,7 @@ class Flow:
             session.pages.show((PracticePage if is_over else TrialPage)(session))
         elif training.phase is Phase.REGISTERED:
             self._note_done()
+            session.study.note_registered(training.trainee, training.task, training.mode)
             session.pages.show(WaitingPage(session))
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session))

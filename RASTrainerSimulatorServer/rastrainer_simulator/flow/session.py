@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.experiment.study_step import StudyStep
 from rastrainer.protocol import CommandName, Mode, Phase
 from rastrainer.scenario import Scenario
 from rastrainer.scenario_library import ListedScenario
@@ -27,6 +28,7 @@ from rastrainer_simulator.flow.preferences import FILE_NAME as PREFERENCES_FILE
 from rastrainer_simulator.flow.preferences import Preferences, write_preferences
 from rastrainer_simulator.flow.progress import Progress
 from rastrainer_simulator.flow.screen import Message, Tone
+from rastrainer_simulator.flow.study_guide import StudyGuide, step_sentence
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
@@ -52,6 +54,7 @@ class Surroundings:
         use_scenario: has the simulation go on with another scenario, between two trials.
         is_slicer_there: tells whether a client is connected over OpenIGTLink.
         quit: ends the process.
+        study: knows what a study that Slicer leads asks of the trainees.
     """
 
     config: Path
@@ -61,6 +64,7 @@ class Surroundings:
     use_scenario: Callable[[str], Future[Answer]]
     is_slicer_there: Callable[[], bool]
     quit: Callable[[], None]
+    study: StudyGuide = field(default_factory=StudyGuide)
 
 
 class Session:
@@ -78,6 +82,7 @@ class Session:
         list_scenarios: lists the heads to train on.
         is_slicer_there: tells whether Slicer is connected.
         quit: ends the simulator.
+        study: knows what a study asks of each trainee next.
     """
 
     def __init__(
@@ -99,6 +104,7 @@ class Session:
         self.list_scenarios = surroundings.list_scenarios
         self.is_slicer_there = surroundings.is_slicer_there
         self.quit = surroundings.quit
+        self.study = surroundings.study
         self._surroundings = surroundings
         self._control_loop = control_loop
         self._controls = controls
@@ -227,6 +233,10 @@ class Session:
             return self.texts.say(key)
         titles = {task.name: task.title for task in self.scenario.tasks}
         return titles.get(name, name)
+
+    def step_sentence(self, step: StudyStep) -> str:
+        """Return what the trainee is told of a study's step."""
+        return step_sentence(self.texts, step, self.task_title(step.task))
 
     def label(self, control: ControlName) -> str:
         """Return the first input of a control on what the operator has in their hands."""

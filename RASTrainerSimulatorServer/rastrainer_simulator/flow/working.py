@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, Proximity
+from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, Proximity, StepKind
 from rastrainer_simulator.controls.control_name import ControlName
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
@@ -55,7 +55,14 @@ class Working:
     def is_practice_over(self) -> bool:
         """Whether the trial run's minutes have passed."""
         state = self._session.state
-        return state.training.task == TRIAL_RUN and state.elapsed >= TRIAL_RUN_S
+        return state.training.task == TRIAL_RUN and state.elapsed >= self._practice_s
+
+    @property
+    def _practice_s(self) -> float:
+        """How long the trial run is free: a study says that of its own."""
+        step = self._session.study.step_of(self._session.training.trainee)
+        is_asked = step is not None and step.kind == StepKind.TRIAL_RUN
+        return 60.0 * step.minutes if is_asked else TRIAL_RUN_S
 
     def end_of_practice_to_tell(self) -> bool:
         """Return whether the trial run's minutes have just passed; true once a trial."""
@@ -163,7 +170,7 @@ class Working:
         elapsed = session.state.elapsed
         if session.training.task != TRIAL_RUN:
             return session.duration(elapsed)
-        left = math.ceil(max(0.0, TRIAL_RUN_S - elapsed))
+        left = math.ceil(max(0.0, self._practice_s - elapsed))
         return session.texts.say("status.left", time=session.duration(left))
 
     def _toward(self, target: Vector) -> str:

@@ -108,6 +108,19 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.no trainee": "Enter your ID first.",
         "experiment.being set up": "The simulator takes on its new settings.",
         "experiment.order": "{task} comes first.",
+        "experiment.study": "Not now. {step} Only your instructor can leave a step out, in "
+        "3D Slicer and with a reason.",
+        # What a study that Slicer leads asks for next.
+        "study.questionnaire": "Step {number} of {count}: answer the questionnaire "
+        "{questionnaire}; your instructor gives it to you.",
+        "study.trial-run": "Step {number} of {count}: get to know the trial run {mode} for "
+        "{minutes:g} minutes.",
+        "study.trial": "Step {number} of {count}: play {task} {mode}.",
+        "study.break": "Step {number} of {count}: take a break of at least {minutes:g} minutes.",
+        "study.all-done": "All steps of the study are done. Thank you!",
+        "study.played": "{task} is done. 3D Slicer will say what comes next.",
+        "study.desktop": "on the desktop screen",
+        "study.hmd": "with the headset",
         "experiment.scenario": "Head",
         "experiment.back": "Back",
         "scenario.title": "Heads",
@@ -141,7 +154,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "abort.text": "{trainee}, your {kept} touched points would not be registered.",
         "abort.keep": "Keep going",
         "abort.abort": "Abort",
-        "practice.title": "Five minutes have passed",
+        "practice.title": "The time to practice is over",
         "practice.text": "{trainee}, you can go on to Task 1 now, or practice as long as you like.",
         "practice.finish": "End the trial run",
         "practice.resume": "Practice on",

@@ -115,6 +115,18 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "experiment.no trainee": "Gib zuerst deine ID ein.",
         "experiment.being set up": "Der Simulator übernimmt seine neuen Einstellungen.",
         "experiment.order": "{task} kommt zuerst.",
+        "experiment.study": "Jetzt nicht. {step} Nur die Kursleitung kann einen Schritt auslassen, "
+        "in 3D Slicer und mit einem Grund.",
+        "study.questionnaire": "Schritt {number} von {count}: Beantworte den Fragebogen "
+        "{questionnaire}; die Kursleitung gibt ihn dir.",
+        "study.trial-run": "Schritt {number} von {count}: Lerne {mode} {minutes:g} Minuten lang "
+        "den Probelauf kennen.",
+        "study.trial": "Schritt {number} von {count}: Spiele {task} {mode}.",
+        "study.break": "Schritt {number} von {count}: Mach mindestens {minutes:g} Minuten Pause.",
+        "study.all-done": "Alle Schritte der Studie sind getan. Danke!",
+        "study.played": "{task} ist erledigt. 3D Slicer wird sagen, was als Nächstes kommt.",
+        "study.desktop": "am Bildschirm",
+        "study.hmd": "mit dem Headset",
         "experiment.scenario": "Kopf",
         "experiment.back": "Zurück",
         "scenario.title": "Köpfe",
@@ -148,7 +160,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "abort.text": "{trainee}, deine {kept} berührten Punkte würden nicht registriert.",
         "abort.keep": "Weitermachen",
         "abort.abort": "Abbrechen",
-        "practice.title": "Fünf Minuten sind vorbei",
+        "practice.title": "Die Zeit zum Üben ist vorbei",
         "practice.text": "{trainee}, du kannst jetzt zu Aufgabe 1 übergehen oder so lange üben, "
         "wie du magst.",
         "practice.finish": "Probelauf beenden",

@@ -33,6 +33,7 @@ ARGUMENTS = {
         "score": 80,
     },
     "PlanTarget": {"positionMm": [0, 0, 0]},
+    "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},
     "GetTrial": {"trialId": TRIAL},
     "AcknowledgeTrial": {"trialId": TRIAL},
 }

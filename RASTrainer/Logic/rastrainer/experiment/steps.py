@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum
 
 from rastrainer.experiment.study_protocol import (
     AFTER_ALL,
@@ -16,19 +15,10 @@ from rastrainer.experiment.study_protocol import (
     StudyProtocol,
 )
 from rastrainer.experiment.williams import williams_design
-from rastrainer.protocol import TRIAL_RUN, Mode
+from rastrainer.protocol import TRIAL_RUN, Mode, StepKind
 from rastrainer.questionnaires.catalog import QUESTIONNAIRES
 
 MODE_TITLES = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
-
-
-class StepKind(str, Enum):
-    """What is done in a step."""
-
-    QUESTIONNAIRE = "questionnaire"
-    TRIAL_RUN = "trial-run"
-    TRIAL = "trial"
-    BREAK = "break"
 
 
 @dataclass(frozen=True)

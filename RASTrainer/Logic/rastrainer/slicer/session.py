@@ -93,7 +93,7 @@ class Session:
         self.scenario = ScenarioDesk(scene, shelf, places.assets / ROBOT)
         self.scenarioMaker = ScenarioMaker(scene, self.simulator, shelf, places.library)
         self.training = TrainingDesk(scene, self.link, shelf.find)
-        self.study = StudyDesk(self.trainees, self.training)
+        self.study = StudyDesk(self.trainees, self.training, self.link)
         self.trials = TrialDesk(
             scene, self.link, shelf.find, self.openStudy, self.cohort, places.records
         )

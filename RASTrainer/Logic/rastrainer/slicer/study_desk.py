@@ -13,11 +13,14 @@ from rastrainer.experiment.progress import Progress
 from rastrainer.experiment.steps import Step, StepKind
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import StudyProtocol, read_study_protocol
-from rastrainer.protocol import TRIAL_RUN, Phase
+from rastrainer.experiment.study_step import StudyStep
+from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
+from rastrainer.slicer.link import Link
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.slicer.training_desk import TrainingDesk
 from rastrainer.slicer.translation import _
+from rastrainer.study import Study
 
 TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
 KEPT_EVERY_S = 5.0
@@ -28,7 +31,8 @@ class StudyDesk:
     """What the Study panel does, for the trainee who is chosen.
 
     All that is done stands in the study's file before anyone is told, so that whoever opens it
-    again goes on where the trainee was.
+    again goes on where the trainee was. The simulator is told what comes next for each trainee, so
+    that its own menu begins nothing else.
 
     Attributes:
         changed: emits nothing, whenever a step may have been done.
@@ -38,23 +42,30 @@ class StudyDesk:
         self,
         trainees: TraineeDesk,
         training: TrainingDesk,
+        link: Link,
         clock: Callable[[], float] = time.monotonic,
         now: Callable[[], datetime] = lambda: datetime.now(timezone.utc),
     ) -> None:
         self.changed = Signal()
         self._trainees = trainees
         self._training = training
+        self._link = link
         self._clock = clock
         self._now = now
         self._practicing: tuple[str, str] | None = None
         self._since = 0.0
+        self._told: dict[str, StudyStep] = {}
+        self._toldStudy: Study | None = None
         trainees.changed.connect(self._count)
         training.changed.connect(self._practice)
+        link.opened.connect(self._tellAll)
+        self.changed.connect(self._tellNews)
 
     def close(self) -> None:
         """Listen no more, and keep what was practiced last."""
         self._trainees.changed.disconnect(self._count)
         self._training.changed.disconnect(self._practice)
+        self._link.opened.disconnect(self._tellAll)
         self._keep()
 
     def protocol(self) -> StudyProtocol | None:
@@ -193,6 +204,36 @@ class StudyDesk:
             if self.progress() is not None:
                 StudyProgress(self._trainees.study).count_played(self._trainees.chosen)
         self.changed.emit()
+
+    def _tellAll(self) -> None:
+        """Tell the simulator, which may know nothing yet, what comes next for everybody."""
+        self._told.clear()
+        with contextlib.suppress(InputError):
+            self._toldStudy = self._trainees.study
+            for name in StudyProgress(self._toldStudy).enrolled():
+                self._tell(name)
+
+    def _tellNews(self) -> None:
+        """Tell the simulator what is new of the chosen trainee, and who is led no more."""
+        with contextlib.suppress(InputError):
+            enrolled = StudyProgress(self._trainees.study).enrolled()
+            for name in [name for name in self._told if name not in enrolled]:
+                self._send(StudyStep(name))
+                del self._told[name]
+            if self._trainees.study is not self._toldStudy:
+                self._tellAll()
+            elif self._trainees.chosen in enrolled:
+                self._tell(self._trainees.chosen)
+
+    def _tell(self, name: str) -> None:
+        step = StudyStep.of(name, StudyProgress(self._trainees.study).progress(name))
+        if self._told.get(name) != step:
+            self._told[name] = step
+            self._send(step)
+
+    def _send(self, step: StudyStep) -> None:
+        # Without a connection nothing is sent; whoever connects is told everything.
+        self._link.send(CommandName.STUDY_STEP, step.arguments())
 
     def _practice(self) -> None:
         """Take the time while the trial run that comes next is being practiced."""

@@ -37,9 +37,11 @@ class ExperimentPage(Page):
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
         scenario = self.button("scenario", value=session.scenario.title)
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
+        step = session.study.step_of(session.trainee.strip())
         return Menu(
             self.name,
             self.say("experiment.title"),
+            () if step is None else (session.step_sentence(step),),
             items=(trainee, mode, scenario, *tasks, self.button("back")),
         )
 
@@ -89,6 +91,11 @@ class ExperimentPage(Page):
             return self.say("experiment.no trainee")
         if session.is_being_set_up:
             return self.say("experiment.being set up")
+        step = session.study.step_of(trainee)
+        if step is not None:
+            is_asked = step.is_played and (step.task, step.mode) == (name, session.mode)
+            sentence = session.step_sentence(step)
+            return "" if is_asked else self.say("experiment.study", step=sentence)
         if session.preferences.order == "any":
             return ""
         scenario = session.scenario

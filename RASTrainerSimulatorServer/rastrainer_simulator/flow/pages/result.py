@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from rastrainer.experiment.study_step import StudyStep
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.screen import Fact, Item, Menu, Tone
@@ -28,11 +29,9 @@ class FinishedPage(Page):
         label = self.say("result.next", task=self.session.task_title(following))
         again = self.say("result.again", task=self.session.task_title(self.session.training.task))
         buttons = [self.button("next", label)] if following else []
-        return (
-            *buttons,
-            self.button("again", again),
-            self.button("menu", self.say("result.menu")),
-        )
+        if self._step() is None:
+            buttons.append(self.button("again", again))
+        return (*buttons, self.button("menu", self.say("result.menu")))
 
     def accept(self, item: str) -> None:
         """Go to the experiment menu, where the next task has the focus."""
@@ -45,7 +44,13 @@ class FinishedPage(Page):
         """Go to the experiment menu."""
         self.accept("next")
 
+    def _step(self) -> StudyStep | None:
+        return self.session.study.step_of(self.session.training.trainee)
+
     def _following(self) -> str:
+        step = self._step()
+        if step is not None:
+            return step.task if step.is_played else ""
         order = [task.name for task in self.session.scenario.tasks]
         task = self.session.training.task
         place = order.index(task) + 1 if task in order else len(order)

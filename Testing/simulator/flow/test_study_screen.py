@@ -1,0 +1,118 @@
+"""A study that Slicer leads: the trainee's own menu begins what comes next, and nothing else."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.experiment.study_step import StudyStep
+from rastrainer_simulator.flow.study_guide import MOST_TRAINEES, StudyGuide
+
+TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
+
+
+@pytest.fixture
+def guide(outside):
+    return outside.surroundings.study
+
+
+@pytest.fixture
+def menu(trainee):
+    """The trainee at the experiment menu, with the ID P07."""
+    trainee.choose("train")
+    trainee.until_menu("introduction")
+    trainee.choose("skip")
+    trainee.until_menu("controls")
+    trainee.choose("next")
+    trainee.until_menu("experiment")
+    trainee.desk.on_text(1, "trainee", "P07")
+    trainee.step()
+    return trainee
+
+
+def enabled(menu):
+    names = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
+    return [name for name in names if menu.item(name).is_enabled]
+
+
+def tell(menu, guide, step):
+    """Take what Slicer tells, and wait until the menu can show it."""
+    guide.take(step)
+    menu.step(20)
+
+
+def test_only_what_comes_next_can_be_begun_and_the_menu_says_what_that_is(menu, guide):
+    assert (enabled(menu), menu.menu.paragraphs) == (["trial-run"], ())
+    tell(menu, guide, TASK_2)
+    assert enabled(menu) == ["task-2"]
+    assert menu.menu.paragraphs == ("Step 3 of 19: play Task 2 on the desktop screen.",)
+    assert menu.item("task-1").help == (
+        "Not now. Step 3 of 19: play Task 2 on the desktop screen. Only your instructor can leave "
+        "a step out, in 3D Slicer and with a reason."
+    )
+    menu.focus("task-3")
+    menu.tap("accept")
+    menu.step()
+    assert (menu.watcher.kinds[-1], menu.state.training.phase) == ("error", "idle")
+    menu.choose("task-2")
+    menu.until_menu(None)
+    assert (menu.state.training.task, menu.state.training.mode) == ("task-2", "desktop")
+
+
+def test_in_another_mode_nothing_can_be_begun(menu, guide):
+    tell(menu, guide, TASK_2)
+    menu.focus("mode")
+    menu.tap("right")
+    menu.step(20)
+    assert enabled(menu) == []
+    assert "on the desktop screen" in menu.item("task-2").help
+
+
+@pytest.mark.parametrize(
+    ("step", "sentence"),
+    [
+        (
+            StudyStep("P07", "questionnaire", 1, 19, mode="hmd", questionnaire="nasa-tlx"),
+            "Step 1 of 19: answer the questionnaire NASA-TLX (raw)",
+        ),
+        (StudyStep("P07", "break", 4, 9, minutes=10.0), "take a break of at least 10 minutes"),
+        (StudyStep("P07", "all-done", 9, 9), "All steps of the study are done"),
+    ],
+)
+def test_what_is_no_trial_is_said_and_nothing_can_be_begun(menu, guide, step, sentence):
+    tell(menu, guide, step)
+    assert enabled(menu) == []
+    assert sentence in menu.menu.paragraphs[0]
+
+
+def test_other_trainees_and_those_who_are_led_no_more_practice_freely(menu, guide):
+    tell(menu, guide, StudyStep("P08", "all-done", 9, 9))
+    assert enabled(menu) == ["trial-run"]
+    tell(menu, guide, TASK_2)
+    tell(menu, guide, StudyStep("P07"))
+    assert enabled(menu) == ["trial-run"]
+
+
+def test_the_trial_run_is_as_long_as_the_study_says(menu, guide):
+    tell(menu, guide, StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0))
+    menu.choose("trial-run")
+    menu.until_menu(None)
+    assert menu.desk.screen.status[2] in ("08:00 left", "07:59 left")
+
+
+def test_a_trial_that_was_asked_for_is_not_begun_twice_before_slicer_says_what_follows(menu, guide):
+    tell(menu, guide, TASK_2)
+    guide.note_registered("P07", "task-1", "desktop")
+    menu.step(20)
+    assert enabled(menu) == ["task-2"]
+    guide.note_registered("P07", "task-2", "desktop")
+    menu.step(20)
+    assert enabled(menu) == []
+    assert menu.menu.paragraphs == ("Task 2 is done. 3D Slicer will say what comes next.",)
+
+
+def test_the_guide_forgets_the_oldest_news_and_keeps_no_more_than_it_may():
+    guide = StudyGuide()
+    for number in range(MOST_TRAINEES + 5):
+        guide.take(StudyStep(f"P{number}", "all-done", 1, 1))
+    assert guide.step_of("P4") is None
+    assert guide.step_of("P5") is not None
