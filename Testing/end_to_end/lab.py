@@ -11,6 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.limits_file import FILE_NAME as LIMITS_FILE
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
@@ -20,6 +21,8 @@ from Testing.simulator.view_server.served import ViewClient
 
 SLICER = (sys.executable, "-m", "rastrainer.slicer.headless")
 PATIENCE_S = 600
+PATIENT = {"views": {"lost_s": PATIENCE_S}}
+"""A machine that is too busy to draw does not pause the trial."""
 VIEWS = "RASTrainer simulator serves views on "
 
 
@@ -37,23 +40,28 @@ class Lab:
     def __init__(self, folder: Path, *arguments: str):
         self._folder = folder
         self.records = folder / "records"
-        self._stack = ExitStack()
         self.key = secrets.token_urlsafe(32)
+        with ExitStack() as stack:
+            self.simulator = stack.enter_context(self._start(*arguments))
+            self.url = self.simulator.next_line().removeprefix(VIEWS).partition(",")[0]
+            thread = LoopThread()
+            stack.callback(thread.stop)
+            client = stack.enter_context(ViewClient(thread, self.url, self.key))
+            self.view = WatchingView(client)
+            self.display = stack.enter_context(VirtualDisplay())
+            self.keyboard = VirtualKeyboard(self.display)
+            stack.callback(self.keyboard.close)
+            self._stack = stack.pop_all()
+
+    def _start(self, *arguments: str) -> SimulatorWithGamepad:
+        config = self._folder / "records-config"
+        config.mkdir(parents=True)
+        (config / LIMITS_FILE).write_text(json.dumps(PATIENT))
         os.environ["RASTRAINER_VIEW_KEY"] = self.key
         try:
-            self.simulator = self._stack.enter_context(
-                SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)
-            )
+            return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)
         finally:
             del os.environ["RASTRAINER_VIEW_KEY"]
-        line = self.simulator.next_line()
-        self.url = line.removeprefix(VIEWS).partition(",")[0]
-        thread = LoopThread()
-        self._stack.callback(thread.stop)
-        self.view = WatchingView(self._stack.enter_context(ViewClient(thread, self.url, self.key)))
-        self.display = self._stack.enter_context(VirtualDisplay())
-        self.keyboard = VirtualKeyboard(self.display)
-        self._stack.callback(self.keyboard.close)
 
     def __enter__(self) -> Lab:
         return self

@@ -19,7 +19,6 @@ from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.view_server.served import ViewClient
 
 PATIENCE_S = 120.0
-AGAIN_S = 1.5
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
 COARSE_M, FINE_M = 0.03, 0.01
@@ -27,9 +26,10 @@ COARSE_M, FINE_M = 0.03, 0.01
 LEAST_PUSH, LEAST_FINE_PUSH = 0.35, 0.7
 """Beyond the sticks' dead zone."""
 LONGEST_WAY_S = 4.0
-NEAR_M = 0.008
+ON_POINT_M, NEAR_M = 0.002, 0.008
+"""Where the tip is stopped, and how far from there it may come to stand."""
 MOST_ATTEMPTS = 15
-STILL_STATES = 20
+STILL_STATES = 10
 """So many states in a row that are the same: the arm stands."""
 
 
@@ -91,7 +91,11 @@ class StreamTrainee:
     Attributes:
         view: what is told.
         hands: what the simulator is worked with.
+        again_s: after which a press without an effect is made again, for hands whose presses may
+            be missed. A press that is only slow would count twice.
     """
+
+    again_s = PATIENCE_S
 
     def __init__(self, view: WatchingView, hands: Hands):
         self.view = view
@@ -104,6 +108,10 @@ class StreamTrainee:
     @property
     def touched(self) -> int:
         return len(self.view.state["touched"])
+
+    @property
+    def refused(self) -> int:
+        return sum(event["kind"] == "error" for event in self.view.events)
 
     @property
     def warnings(self) -> list[str]:
@@ -147,13 +155,13 @@ class StreamTrainee:
         self.until(lambda: (self.menu and self.menu.name) == name, f"the menu {name}")
 
     def press(self, control: str, is_done: Callable[[], bool], what: str) -> None:
-        """Press a control, again where a busy machine has missed it, until it has an effect."""
+        """Press a control, and wait until it has an effect."""
         give_up = time.monotonic() + PATIENCE_S
         while not is_done():
             assert time.monotonic() < give_up, f"{what} never came; the screen: {self.view.screen}"
             self.hands.tap(control)
             with suppress(AssertionError):
-                wait_until(is_done, what, AGAIN_S)
+                wait_until(is_done, what, self.again_s)
 
     def choose(self, item: str) -> None:
         """Move the focus to an item and accept it; it leads to another menu."""
@@ -230,16 +238,26 @@ class StreamTrainee:
         kept = self.touched
         for _attempt in range(MOST_ATTEMPTS):
             self.steer_to(point + 0.012 * outward, 0.008)
-            self.steer_to(point, 0.003, fine=True)
+            self.steer_to(point, ON_POINT_M, fine=True)
             self.hands.push(0.0, 0.0, 0.0, False)
+            self.until_still()
             if np.linalg.norm(point - self.tip) < NEAR_M:
-                self.hands.tap("touch")
-                with suppress(AssertionError):
-                    wait_until(lambda: self.touched > kept, f"touch {label}", AGAIN_S)
+                self._tap_touch(label)
             if self.touched > kept:
                 return
             self.approach(label, 0.02)
         raise AssertionError(f"touch {label} never came; the screen: {self.view.screen}")
+
+    def _tap_touch(self, label: str) -> None:
+        """Press "touch" and wait until it counts or is refused."""
+        kept, refused = self.touched, self.refused
+        self.hands.tap("touch")
+        with suppress(AssertionError):
+            wait_until(
+                lambda: self.touched > kept or self.refused > refused,
+                f"touch {label}",
+                self.again_s,
+            )
 
     def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
         """Push the sticks toward a place (3,) World, m, until the tip is near it."""

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -26,6 +27,8 @@ class WindowProcess:
         self.folder = folder
         self.folder.mkdir(parents=True, exist_ok=True)
         self._log = folder / "frames.jsonl"
+        # A pipe that nobody reads would be full after some minutes.
+        self._said = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self._process = subprocess.Popen(
             [
                 *(*COMMAND, "--connect", url, "--pictures", str(folder)),
@@ -38,9 +41,8 @@ class WindowProcess:
                 "SDL_AUDIODRIVER": "disk",
                 "SDL_DISKAUDIOFILE": str(self.heard),
             },
-            stdout=subprocess.PIPE,
+            stdout=self._said,
             stderr=subprocess.STDOUT,
-            text=True,
         )
 
     def __enter__(self) -> WindowProcess:
@@ -67,21 +69,22 @@ class WindowProcess:
         """Wait until a picture of that tick, or of a later one, has been shown."""
         wait_until(lambda: json.loads(self.frames()[-1])["tick"] >= tick, "a picture of the tick")
 
-    def next_picture(self, known: set[Path]) -> Path:
+    def next_picture(self, known: set[Path], patience_s: float) -> Path:
         """Wait for a picture that is not among those known, and return its path."""
-        wait_until(lambda: set(self.folder.glob("*.png")) - known, "a kept picture")
+        wait_until(lambda: set(self.folder.glob("*.png")) - known, "a kept picture", patience_s)
         return (set(self.folder.glob("*.png")) - known).pop()
 
     def kill(self) -> None:
         """End it as a crash would; a second time changes nothing."""
         if self._process.poll() is None:
             self._process.kill()
-            self._process.communicate()
+            self._process.wait()
 
     def stop(self) -> tuple[int, str]:
         """Wait for its end; return its exit status and what it has said."""
-        said = self._process.communicate(timeout=PATIENCE_S)[0]
-        return self._process.returncode, said
+        status = self._process.wait(PATIENCE_S)
+        self._said.seek(0)
+        return status, self._said.read()
 
 
 def wait_until(condition, what: str, patience_s: float = PATIENCE_S) -> None:
