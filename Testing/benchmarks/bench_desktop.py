@@ -50,7 +50,6 @@ def rows(quick: bool) -> list[dict]:
         alone, _ = _swing(lab, slicer, seconds)
         window = lab.open_window("window", "--size", "{}x{}".format(*SIZE))
         random = np.random.default_rng(SEED)
-        _resume(lab, slicer)
         delays = [_delay(lab, window, random) for _ in range(pushes)]
         beside, rate = _swing(lab, slicer, seconds, window)
     told, shown = 1e3 * np.array(delays).T
@@ -70,13 +69,6 @@ def _start_trial(lab: Lab, slicer: Client) -> None:
         assert reply.ok, reply.error
     wait_until(lambda: lab.view.screen.menu is None, "the task")
     wait_until(lambda: lab.view.scene["fiducials"], "its scene")
-
-
-def _resume(lab: Lab, slicer: Client) -> None:
-    """Go on where a busy machine has kept the window from drawing, which pauses the trial."""
-    if lab.view.screen.menu is not None:
-        slicer.send_command(CommandName.RESUME, {}, timeout=20)
-        wait_until(lambda: lab.view.screen.menu is None, "the trial")
 
 
 def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Delay:
@@ -134,14 +126,5 @@ def _pixel(lab: Lab, place: np.ndarray) -> float:
 
 def _on_time_row(beside: Punctuality, alone: Punctuality) -> dict:
     """Return a row like `loop.on_time`: p99 is the share that 99 of 100 seconds exceed."""
-    (median, p99), (peer_median, peer_p99) = (
-        np.percentile(told.shares, [50, 1]) for told in (beside, alone)
-    )
-    return row("loop.on_time.window", beside.shares, "%", "no window", alone.shares) | {
-        "median": float(median),
-        "p99": float(p99),
-        "peer_median": float(peer_median),
-        "peer_p99": float(peer_p99),
-        "success": beside.on_time,
-        "n": beside.ticks,
-    }
+    others = {"success": beside.on_time, "n": beside.ticks, "worst": 1}
+    return row("loop.on_time.window", beside.shares, "%", "no window", alone.shares, **others)
