@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import random
 import sys
@@ -58,15 +59,20 @@ class Run:
 
 def train(folder: Path, seconds: float) -> Run:
     """Play trial after trial, each in a connection of its own, a view and Slicer's side beside."""
-    thread = LoopThread()
     records = folder / "records"
     simulators, slicers = [], []
     player = SurvivingPlayer(load_scenario(COLIN), random.Random(1))
-    with ViewedSimulator(records, "--speed", "4", "--view-port", "0", key=KEY) as simulator:
+    with contextlib.ExitStack() as stack:
+        thread = LoopThread()
+        stack.callback(thread.stop)
+        simulator = stack.enter_context(
+            ViewedSimulator(records, "--speed", "4", "--view-port", "0", key=KEY)
+        )
         slicer = SlicerProcess(
             *("--port", str(simulator.port), "--trials", "1000000", "--timeout", "100000"),
             *("--scenario", str(COLIN), "--output", str(folder / "slicer")),
         )
+        stack.callback(slicer.kill)
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             with ViewClient(thread, simulator.url, KEY) as view:
@@ -77,7 +83,6 @@ def train(folder: Path, seconds: float) -> Run:
                 slicers.append(Usage.of(slicer.pid))
         slicer.kill()
         status, _said = simulator.stop()
-    thread.stop()
     assert status == 0
     check_nothing_lost(folder, player.registered)
     log = folder.glob("records-config/logs/*.log*")
