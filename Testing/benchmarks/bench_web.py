@@ -15,14 +15,17 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from Testing.benchmarks.row import row
 from Testing.web.chromium import enter_headset, launch, open_page
-from Testing.web.place import Place
+from Testing.web.place import WITHOUT_GRAPHICS, Place
 
 DIST = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web" / "dist"
 PAGE_FILES = ("index.html", "page.css", "page.js")
 HEADSET = "metaQuest2"
 KB = 1024.0
-SETTLING_S = 5
+WARM_UP_S = 60
 LONG_S = 600
+# The browser goes on compiling what runs often for minutes, and what it compiles is in the heap,
+# too; without that, what grows is the page's own.
+UNCOMPILED = "--js-flags=--no-sparkplug --no-maglev --no-opt"
 SAMPLES = 11
 # The state is drawn one and a half periods of the stream after it has come, to be smooth.
 WAIT_FOR_CAMERA = """(camera) => new Promise((done) => {
@@ -64,29 +67,29 @@ def rows(quick: bool) -> list[dict]:
             found += _picture(page, "page")
             found.append(_bytes(page, 3 if quick else 10))
             found.append(_delay(place, page, 5 if quick else 40))
-            found += _heaps({"page": page}, 5 if quick else 60)
         with _page(playwright, HEADSET) as (_place, page):
             found += _picture(page, "headset")
-            found += _heaps({"headset": page}, 5 if quick else 60)
+        found += _heaps(playwright, 5 if quick else 60)
     return found
 
 
 def long_rows() -> list[dict]:
     """Return what takes minutes to find out: whether the heap grows."""
-    with (
-        sync_playwright() as playwright,
-        _page(playwright) as (_place, page),
-        _page(playwright, HEADSET) as (_other, headset),
-    ):
-        return _heaps({"page": page, "headset": headset}, LONG_S)
+    with sync_playwright() as playwright:
+        return _heaps(playwright, LONG_S)
 
 
 @contextmanager
-def _page(playwright: Playwright, headset: str = "") -> Iterator[tuple[Place, Page]]:
+def _page(
+    playwright: Playwright, headset: str = "", *arguments: str
+) -> Iterator[tuple[Place, Page]]:
     """Open the page in a browser and at a simulator of its own, in a trial."""
     with tempfile.TemporaryDirectory() as folder:
-        browser = launch(playwright)
-        with Place(Path(folder)) as place, Client(port=place.simulator.port) as client:
+        browser = launch(playwright, *arguments)
+        with (
+            Place(Path(folder), limits=WITHOUT_GRAPHICS) as place,
+            Client(port=place.simulator.port) as client,
+        ):
             page = open_page(browser, place.simulator.url, place.simulator.code, headset)
             hello = {"protocolVersion": PROTOCOL_VERSION, "client": "bench"}
             client.send_command("Hello", hello)
@@ -139,18 +142,28 @@ def _delay(place: Place, page: Page, count: int) -> dict:
     return row("web.change to pixel", delays, "ms")
 
 
-def _heaps(pages: Mapping[str, Page], seconds: int) -> list[dict]:
+def _heaps(playwright: Playwright, seconds: int) -> list[dict]:
     """Return by how much heaps grow: the trend of what is left after each collection."""
-    sessions = {name: page.context.new_cdp_session(page) for name, page in pages.items()}
-    sizes: dict[str, list[float]] = {name: [] for name in pages}
-    time.sleep(SETTLING_S)
-    for _ in range(SAMPLES):
-        for name, session in sessions.items():
-            session.send("HeapProfiler.collectGarbage")
-            sizes[name].append(session.send("Runtime.getHeapUsage")["usedSize"] / KB)
-        time.sleep(seconds / (SAMPLES - 1))
+    with (
+        _page(playwright, "", UNCOMPILED) as (_place, page),
+        _page(playwright, HEADSET, UNCOMPILED) as (_other, headset),
+    ):
+        sizes = _heap_sizes({"page": page, "headset": headset}, seconds)
     shares = np.linspace(0.0, 1.0, SAMPLES)
     return [
         row(f"web.{name} heap in {seconds} s", [np.polyfit(shares, kept, 1)[0]], "kB")
         for name, kept in sizes.items()
     ]
+
+
+def _heap_sizes(pages: Mapping[str, Page], seconds: int) -> dict[str, list[float]]:
+    """Return what is left after each of `SAMPLES` collections, kB."""
+    sessions = {name: page.context.new_cdp_session(page) for name, page in pages.items()}
+    sizes: dict[str, list[float]] = {name: [] for name in pages}
+    pages["page"].wait_for_timeout(1000 * WARM_UP_S)
+    for _ in range(SAMPLES):
+        for name, session in sessions.items():
+            session.send("HeapProfiler.collectGarbage")
+            sizes[name].append(session.send("Runtime.getHeapUsage")["usedSize"] / KB)
+        pages["page"].wait_for_timeout(1000 * seconds / (SAMPLES - 1))
+    return sizes

@@ -29,7 +29,7 @@ SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
 TRAINEE = "P7"
 PATIENCE_S = 60
 MM = 1000.0
-WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 60}
+WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
 LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}
 """Which item of a menu leads toward the start."""

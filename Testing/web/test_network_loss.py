@@ -7,7 +7,7 @@ import pytest
 
 from Testing.web.chromium import enter_headset, open_page, wait_for
 from Testing.web.hands import Controllers, PageKeys
-from Testing.web.place import Place
+from Testing.web.place import WITHOUT_GRAPHICS, Place
 from Testing.web.relay import Relay
 
 LOST = "#warnings li[data-tone=error]:has-text('connection to the simulator is lost')"
@@ -16,7 +16,7 @@ TOUCHED = 2
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    with Place(tmp_path_factory.mktemp("network"), "--speed", "4") as place:
+    with Place(tmp_path_factory.mktemp("network"), limits=WITHOUT_GRAPHICS) as place:
         yield place
 
 

@@ -8,6 +8,8 @@ const ALIVE_MS = 150;
 const LOOK_MS = 50;
 /** The simulator says something 60 times a second: after so long it cannot be heard any more. */
 const SILENCE_MS = 3000;
+/** So many looks without a word between: what came while the page itself stood still is read by then. */
+const SILENT_LOOKS = 5;
 
 export interface ConnectionListener {
   /** A message has come. */
@@ -22,8 +24,8 @@ export class Connection {
   private socket: WebSocket | null = null;
   private isWanted = false;
   private lastSent = 0;
-  private lastLook = 0;
-  private silence = 0;
+  private lastHeard = 0;
+  private silentLooks = 0;
 
   constructor(
     private hello: Hello,
@@ -63,21 +65,26 @@ export class Connection {
     const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/stream`;
     const socket = new WebSocket(url, SUBPROTOCOL);
     this.socket = socket;
-    this.silence = 0;
     let wasOpen = false;
     socket.onopen = () => {
       wasOpen = true;
+      this.hear();
       socket.send(JSON.stringify({ type: "hello", ...this.hello }));
       this.listener.onConnected(true);
     };
     socket.onmessage = (event) => {
       if (socket !== this.socket) return;
-      this.silence = 0;
+      this.hear();
       this.listener.onNews(JSON.parse(event.data) as News);
     };
     socket.onclose = () => {
       if (socket === this.socket) this.lose(wasOpen);
     };
+  }
+
+  private hear(): void {
+    this.lastHeard = performance.now();
+    this.silentLooks = 0;
   }
 
   private lose(wasOpen: boolean): void {
@@ -99,11 +106,10 @@ export class Connection {
 
   private look(): void {
     const now = performance.now();
-    // What passes while the page itself stands still is no silence of the simulator.
-    this.silence += Math.min(2 * LOOK_MS, now - this.lastLook);
-    this.lastLook = now;
+    this.silentLooks++;
+    const isSilent = this.silentLooks >= SILENT_LOOKS && now - this.lastHeard > SILENCE_MS;
     const { socket } = this;
-    if (socket !== null && this.isConnected && this.silence > SILENCE_MS) {
+    if (socket !== null && this.isConnected && isSilent) {
       // A network that is gone says no farewell, and waits long for the other side's.
       this.lose(true);
       socket.close();
