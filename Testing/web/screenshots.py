@@ -11,7 +11,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from Testing.web.chromium import enter_headset, launch, open_page
 from Testing.web.hands import Controllers, PageKeys
-from Testing.web.place import Place
+from Testing.web.place import WITHOUT_GRAPHICS, Place
 
 FOLDER = Path(__file__).parents[2] / "Screenshots"
 DESKTOP = {"width": 1600, "height": 900}
@@ -32,7 +32,7 @@ def main() -> None:
     """Make all of them."""
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = launch(playwright)
-        with Place(Path(folder), "--speed", "4") as place:
+        with Place(Path(folder), limits=WITHOUT_GRAPHICS) as place:
             url, code = place.simulator.url, place.simulator.code
             page = open_page(browser, url, code, size=DESKTOP)
             trainee = place.carried_trainee(PageKeys(page))
