@@ -13,7 +13,7 @@ from pathlib import Path
 from Testing.end_to_end.virtual_display import VirtualDisplay
 
 COMMAND = (sys.executable, "-m", "rastrainer_simulator.cli", "window")
-PATIENCE_S = 90.0
+PATIENCE_S = 300.0
 
 
 class WindowProcess:

@@ -13,7 +13,7 @@ from rastrainer_simulator.desktop.flight import Flight, Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.quality import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
-from rastrainer_simulator.views.lighting import light_room
+from rastrainer_simulator.views.lighting import Shadows, light_room
 
 BACKGROUND = (0.62, 0.65, 0.68)
 KEY_LIGHT = ((-0.25, -0.55, 0.80), 0.86)
@@ -133,8 +133,9 @@ class Stage:
                 for direction, intensity in (KEY_LIGHT, FILL_LIGHT):
                     renderer.AddLight(_plain_light(direction, intensity))
             return
-        light_room(self.main, has_shadows=self.quality is Quality.HIGH)
-        light_room(self._inset, has_shadows=False)
+        has_shadows = self.quality is Quality.HIGH
+        light_room(self.main, Shadows.FULL if has_shadows else Shadows.NONE)
+        light_room(self._inset, Shadows.SMALL if has_shadows else Shadows.NONE)
 
 
 def _plain_light(direction: tuple[float, float, float], intensity: float) -> vtkLight:

@@ -30,7 +30,10 @@ TOLD = 2
 
 @dataclass(frozen=True)
 class Still:
-    """Everything that the picture is made of; the members of the inbox are as there."""
+    """Everything that the picture is made of; the members of the inbox are as there.
+
+    The pairing code is left out: a picture is shown to others.
+    """
 
     path: Path
     size: tuple[int, int]
@@ -39,18 +42,19 @@ class Still:
     state: Mapping[str, Any] | None
     screen: Screen | None
     problem: str
+    holder: str
 
     @classmethod
     def of(cls, inbox: Inbox, path: Path, size: tuple[int, int], quality: Quality) -> Still:
         """Return what the inbox says now; `size` is in pixels."""
-        news = (inbox.scene, inbox.state, inbox.screen, inbox.problem)
+        news = (inbox.scene, inbox.state, inbox.screen, inbox.problem, inbox.holder)
         return cls(path, size, quality, *news)
 
     def inbox(self) -> Inbox:
         """Return an inbox that says the same again."""
         inbox = Inbox()
         inbox.scene, inbox.state = self.scene, self.state
-        inbox.screen, inbox.problem = self.screen, self.problem
+        inbox.screen, inbox.problem, inbox.holder = self.screen, self.problem, self.holder
         return inbox
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from enum import Enum
+
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -19,23 +21,44 @@ AMBIENT = 0.55
 # Windows and ceiling lights that glossy parts mirror: azimuth, elevation, half widths (rad), glow.
 PANELS = ((-1.6, 0.75, 0.45, 0.22, 4.0), (0.4, 1.0, 0.3, 0.2, 3.0), (2.8, 0.7, 0.4, 0.25, 2.5))
 
-# The lamp is far: its light is parallel, so that its shadows cover the whole room alike.
-LAMP_DIRECTION = (0.22, 0.45, -0.87)
-LAMP_SPREAD = 0.02
+# The lamp shines past the arm onto the face. Its cone holds what is seen from the cameras and no
+# more, for the pixels of the shadows are spread over it.
+LAMP_AT = (0.35, 0.0, 0.2)
+LAMP_PLACE = (1.70, -1.65, 2.45)
+LAMP_CONE_DEG = 33.0
+LAMP_RADIUS = 0.06
 LAMP_CORNERS = ((0.0, 1.0), (-0.87, -0.5), (0.87, -0.5))
-LAMP_INTENSITY = 2.5
-SHADOW_PIXELS = 2048
+LAMP_INTENSITY = 2.3
+
+# Without shadows the lamp has no edge and is dimmer: nothing keeps its light from the walls.
+OPEN_CONE_DEG = 80.0
+OPEN_INTENSITY = 1.3
 
 
-def light_room(renderer: vtkRenderer, has_shadows: bool = True) -> None:
+class Shadows(Enum):
+    """How much is shaded: nothing, what a small picture needs, or all; pixels of each lamp's map.
+
+    Corners are shaded only in a picture that fills its window.
+    """
+
+    NONE = 0
+    SMALL = 1024
+    FULL = 3072
+
+
+def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
     """Give a renderer its surroundings, lamps and smooth edges, and shadows where wanted."""
     _surround(renderer)
     for x, y in LAMP_CORNERS:
-        renderer.AddLight(_lamp(x * LAMP_SPREAD, y * LAMP_SPREAD))
-    if has_shadows:
-        renderer.SetPass(_passes())
-    else:
+        lamp = _lamp(x * LAMP_RADIUS, y * LAMP_RADIUS)
+        is_open = shadows is Shadows.NONE
+        lamp.SetConeAngle(OPEN_CONE_DEG if is_open else LAMP_CONE_DEG)
+        lamp.SetIntensity((OPEN_INTENSITY if is_open else LAMP_INTENSITY) / len(LAMP_CORNERS))
+        renderer.AddLight(lamp)
+    if shadows is Shadows.NONE:
         renderer.UseFXAAOn()
+    else:
+        renderer.SetPass(_passes(shadows))
 
 
 def _surround(renderer: vtkRenderer) -> None:
@@ -70,34 +93,37 @@ def _environment(width: int = 128) -> vtkTexture:
 
 def _lamp(aside: float, above: float) -> vtkLight:
     """Return one of the lights that together cast the soft shadows of one wide lamp."""
-    x, y, z = LAMP_DIRECTION
+    x, y, z = LAMP_PLACE
     lamp = vtkLight()
     lamp.SetLightTypeToSceneLight()
-    lamp.PositionalOff()
-    lamp.SetPosition(-x + aside, -y, -z + above)
-    lamp.SetFocalPoint(0.0, 0.0, 0.0)
-    lamp.SetIntensity(LAMP_INTENSITY / len(LAMP_CORNERS))
+    lamp.PositionalOn()
+    lamp.SetPosition(x + aside, y, z + above)
+    lamp.SetFocalPoint(*LAMP_AT)
     lamp.SetColor(1.0, 0.97, 0.93)
     return lamp
 
 
-def _passes() -> vtkRenderPass:
+def _passes(shadows: Shadows) -> vtkRenderPass:
     """Return the steps of a picture: shadows, within shaded corners, within smoothed edges."""
-    shadows = vtkShadowMapPass()
-    shadows.GetShadowMapBakerPass().SetResolution(SHADOW_PIXELS)
+    cast = vtkShadowMapPass()
+    cast.GetShadowMapBakerPass().SetResolution(shadows.value)
     steps = vtkRenderPassCollection()
-    steps.AddItem(shadows.GetShadowMapBakerPass())
-    steps.AddItem(shadows)
+    steps.AddItem(cast.GetShadowMapBakerPass())
+    steps.AddItem(cast)
     sequence = vtkSequencePass()
     sequence.SetPasses(steps)
     camera = vtkCameraPass()
     camera.SetDelegatePass(sequence)
+    smooth = vtkOpenGLFXAAPass()
+    smooth.SetDelegatePass(_with_shaded_corners(camera) if shadows is Shadows.FULL else camera)
+    return smooth
+
+
+def _with_shaded_corners(picture: vtkRenderPass) -> vtkRenderPass:
     corners = vtkSSAOPass()
     corners.SetRadius(0.10)
     corners.SetBias(0.004)
-    corners.SetKernelSize(64)
+    corners.SetKernelSize(32)
     corners.BlurOn()
-    corners.SetDelegatePass(camera)
-    smooth = vtkOpenGLFXAAPass()
-    smooth.SetDelegatePass(corners)
-    return smooth
+    corners.SetDelegatePass(picture)
+    return corners
