@@ -93,7 +93,9 @@ class Overlay:
         room = min(brush.px(theme.INSTRUCTION_WIDTH), self._size[0] - 2 * margin)
         aside = (self._size[0] - room) // 2 - 2 * margin
         if self._paint("status", screen.status, strips.status, brush, aside):
-            self._place("status", margin, margin)
+            # A menu is on the left, where the status is else, and there is no inset then.
+            right = self._size[0] - margin - self._slots["status"].sprite.size[0]
+            self._place("status", margin if screen.menu is None else right, margin)
         top = margin
         message = screen.instruction if screen.instruction.text else None
         if self._paint("instruction", message, strips.instruction, brush, room):
