@@ -30,7 +30,7 @@ RISE = 1.1
 """Each task's complexity index is at least so many times that of the task before."""
 
 ATTEMPTS = 20
-ROUGHLY = 0.9
+ROUGHLY = 0.8
 """A draw whose index is by a quick estimate below so much of what it must be is not measured."""
 
 
