@@ -8,7 +8,7 @@ import pytest
 
 from Testing.web.chromium import open_page, pixels
 from Testing.web.hands import BrowserPad, PageKeys
-from Testing.web.place import Place, scored_trial
+from Testing.web.place import WITHOUT_GRAPHICS, Place, scored_trial
 
 LARGEST_PAGE = 1_000_000
 LARGEST_SCENE = 5_000_000
@@ -17,7 +17,8 @@ ACCENT = "#1f74e8"
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    with Place(tmp_path_factory.mktemp("page"), "--speed", "4") as place:
+    folder = tmp_path_factory.mktemp("page")
+    with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS) as place:
         yield place
 
 
@@ -33,7 +34,7 @@ def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
     trainee.begin("task-1", page)
     page.wait_for_selector("body[data-scene=task-1]")
     assert pixels(page).std() > 20.0
-    assert "You drive: keyboard" in page.inner_text("#control")
+    page.wait_for_selector("#control:has-text('You drive: keyboard')")
     trainee.touch_all(1)
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
     trainee.have_touched(15)
@@ -52,7 +53,7 @@ def test_a_gamepad_of_the_browser_begins_a_task_and_steers(place, page):
     trainee.hands.push(1.0, 0.0, 0.0)
     trainee.until(lambda: trainee.tip[0] > before[0] + 0.01, "a step to the right")
     trainee.hands.push(0.0, 0.0, 0.0)
-    assert "You drive: browser's gamepad" in page.inner_text("#control")
+    page.wait_for_selector("""#control:has-text("You drive: browser's gamepad")""")
 
 
 def test_a_click_chooses_and_the_text_is_what_the_simulator_says(place, page):

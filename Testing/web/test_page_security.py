@@ -15,7 +15,7 @@ from rastrainer.igtl.command import Command
 from rastrainer.igtl.message import Message, pack
 from Testing.web.chromium import PATIENCE_MS, SMALL, open_page
 from Testing.web.hands import PageKeys
-from Testing.web.place import Place
+from Testing.web.place import WITHOUT_GRAPHICS, Place
 
 NETWORK = re.compile(r"serves the local network on (https://\S+?:\d+)")
 TRY_TO_COMMAND = """([url, bytes]) =>
@@ -31,7 +31,8 @@ TRY_TO_JOIN = """(url) => new Promise((done) => {
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    with Place(tmp_path_factory.mktemp("security"), "--lan") as place:
+    folder = tmp_path_factory.mktemp("security")
+    with Place(folder, "--lan", limits=WITHOUT_GRAPHICS) as place:
         place.network = NETWORK.search(place.simulator.next_line())[1]
         place.cable = place.simulator.next_line()
         yield place
