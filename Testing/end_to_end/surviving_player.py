@@ -162,13 +162,14 @@ class SurvivingPlayer:
         self.kept[trial_id] = []
 
     def _go_to(self, client: Client, number: int) -> None:
+        """Lift off from wherever the tip is, and come down on the point `number`."""
         head_to_world = self._scenario.perturbed_head_to_world(self._seed)
-        fiducial = self._scenario.task(TASK).fiducials[number]
-        place, center = transforms.apply(
-            head_to_world, np.array([fiducial, self._scenario.target_position])
-        )
-        outward = (place - center) / np.linalg.norm(place - center)
-        for goal in (place + ABOVE_MM * outward, place):
+        points = [*self._scenario.task(TASK).fiducials, self._scenario.target_position]
+        *places, center = transforms.apply(head_to_world, np.array(points))
+        place = places[number]
+        tip = client.wait_for(Device.TOOL_TIP_TO_WORLD, timeout=PATIENCE_S)
+        lifted = _above(np.array(tip.content.matrix)[:3, 3], center)
+        for goal in (lifted, _above(place, center), place):
             self._send(
                 client, CommandName.MOVE_TIP_TO, None, positionMm=goal.tolist(), speedMmS=500
             )
@@ -194,3 +195,7 @@ class SurvivingPlayer:
     def _state(self, client: Client) -> dict:
         message = client.wait_for(Device.SIM_STATE, timeout=PATIENCE_S)
         return json.loads(message.content.text)
+
+
+def _above(place: np.ndarray, center: np.ndarray) -> np.ndarray:
+    return place + ABOVE_MM * (place - center) / np.linalg.norm(place - center)

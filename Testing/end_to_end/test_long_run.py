@@ -66,7 +66,7 @@ def train(folder: Path, seconds: float) -> Run:
         thread = LoopThread()
         stack.callback(thread.stop)
         simulator = stack.enter_context(
-            ViewedSimulator(records, "--speed", "4", "--view-port", "0", key=KEY)
+            ViewedSimulator(records, "--speed", "2", "--view-port", "0", key=KEY)
         )
         slicer = SlicerProcess(
             *("--port", str(simulator.port), "--trials", "1000000", "--timeout", "100000"),

@@ -145,6 +145,15 @@ def test_a_view_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.fixture
+def terminal():
+    """What is started hears of the terminal's end, even where these tests run under nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.usefixtures("terminal")
 def test_an_interrupted_trial_is_told_on_the_terminal_and_left_alone_where_that_is_wanted(tmp_path):
     records = tmp_path / "records"
     with (

@@ -2,7 +2,8 @@
 
     python assets/scenarios/make_tasks.py
 
-Takes about two minutes. The same head, robot and seed give the same tasks.
+Takes about two minutes. The same head, robot, seed and program give the same tasks. Those that are
+shipped stay as they are though the proposer has changed since: recorded trials refer to them.
 """
 
 from __future__ import annotations
