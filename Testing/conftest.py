@@ -1,12 +1,32 @@
-"""What is promised of the whole takes longest: it is checked first, so that no worker waits."""
+"""How the tests are run: in which order, and when what they leave is collected."""
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
+
+import pytest
 
 HERE = Path(__file__).parent
 LONGEST = ("end_to_end", "web", "security")
-"""Folders whose tests start processes, browsers and attacks."""
+"""Folders whose tests start processes, browsers and attacks. They are checked first, so that no
+worker waits for one of them in the end."""
+TESTS_PER_FULL_COLLECTION = 100
+
+_tests_done = 0
+
+
+def pytest_configure():
+    # Collected wherever Python happens to be, Qt's and VTK's objects would also die in a thread
+    # that answers a socket, which ends the process.
+    gc.disable()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_logfinish():
+    global _tests_done
+    _tests_done += 1
+    gc.collect(2 if _tests_done % TESTS_PER_FULL_COLLECTION == 0 else 1)
 
 
 def pytest_collection_modifyitems(items):

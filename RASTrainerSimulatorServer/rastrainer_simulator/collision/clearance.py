@@ -9,10 +9,13 @@ from rastrainer_simulator.vectors import Vector
 FAR = 0.1
 """Clearances of links, self and table are exact up to here, m; what is farther counts as FAR."""
 
-
 LOOK = 0.2
 """What is nearer than this, m, by a rough bound is looked at exactly: then it is known to be far
 for as long as the arm has not moved much."""
+
+CLOSE = 0.105
+"""What is nearer than this, m, is looked at in every tick, all else when the arm has moved:
+a folded arm has a pair or two that stay close."""
 
 
 class Nearest(NamedTuple):

@@ -50,9 +50,9 @@ class Collision:
         self.table_height = surroundings.table_height
         self._table = TableClearance(self._arm, surroundings)
         # For the head, the arm itself and the table: where the arm was when last asked about, and
-        # how far each capsule may have moved since without coming near.
+        # how far each capsule may have moved since, along each axis, without coming near.
         self._far_at = np.zeros((3, len(self._arm.capsules), 2, 3))
-        self._room = np.zeros((3, len(self._arm.capsules)))
+        self._room = np.zeros((3, len(self._arm.capsules), 1, 1))
         self.set_head_pose(np.eye(4))
 
     def set_head_pose(self, head_to_world: np.ndarray) -> None:
@@ -86,6 +86,7 @@ class Collision:
         first that is too near no other is asked.
         """
         posed = self._arm.pose(link_to_world)
+        self._look_around(posed)
         return (
             self._table.nearest(posed)[0] >= clearance
             and self._head.nearest_to_shaft(posed).distance_m > 0.0
@@ -95,25 +96,31 @@ class Collision:
 
     def _links(self, posed: PosedArm) -> tuple[float, str, float, tuple[str, ...], float, str]:
         """Return what is nearest to the links of the head, of the arm, and of table and stand."""
-        moved = _SPACE_DIAGONAL * np.abs(posed.ends - self._far_at).max(axis=(2, 3))
-        of_head, of_itself, of_table = (moved >= self._room).any(axis=1).tolist()
-        links, itself, table = (FAR, ""), (FAR, ()), (FAR, "")
-        if of_head:
+        links = FAR, ""
+        if self._look_around(posed):
             *links, bounds = self._head.nearest_to_links(posed)
             self._keep(0, posed, bounds - FAR)
+        return (*links, *self._self.nearest(posed), *self._table.nearest(posed))
+
+    def _look_around(self, posed: PosedArm) -> bool:
+        """Find what is close to arm and table where the arm has moved; tell if it has at the head.
+
+        What was found stays what is close for as long as nothing else can have come near.
+        """
+        has_moved = np.abs(posed.ends - self._far_at) >= self._room
+        if not has_moved.any():
+            return False
+        of_head, of_itself, of_table = has_moved.any(axis=(1, 2, 3)).tolist()
         if of_itself:
-            *itself, bounds = self._self.nearest(posed)
             # Two parts of the arm may move toward each other.
-            self._keep(1, posed, (bounds - FAR) / 2.0)
-        # The tip is no part of a capsule.
-        if of_table or posed.tip[2] - self.table_height < FAR:
-            *table, bounds = self._table.nearest(posed)
-            self._keep(2, posed, bounds - FAR)
-        return (*links, *itself, *table)
+            self._keep(1, posed, (self._self.look(posed) - FAR) / 2.0)
+        if of_table:
+            self._keep(2, posed, self._table.look(posed) - FAR)
+        return of_head
 
     def _keep(self, part: int, posed: PosedArm, room: np.ndarray) -> None:
         self._far_at[part] = posed.ends
-        self._room[part] = room
+        self._room[part, :, 0, 0] = room / _SPACE_DIAGONAL
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""

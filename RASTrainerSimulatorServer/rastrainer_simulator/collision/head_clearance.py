@@ -8,7 +8,7 @@ from math import dist
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.collision.clearance import FAR, LOOK, Nearest
+from rastrainer_simulator.collision.clearance import FAR, Nearest
 from rastrainer_simulator.collision.head_surface import HeadSurface
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.thin_segment import thin_segment
@@ -74,10 +74,10 @@ class HeadClearance:
         the clearance of each of the arm's capsules is at least; they are infinite for the tool's.
         """
         rows = range(self._arm.link_count)
-        found, row = self._nearest(posed, rows, self._bounds(posed, rows), LOOK)
+        found, row = self._nearest(posed, rows, self._bounds(posed, rows), FAR)
         bounds = np.full(len(self._known), math.inf)
         bounds[: len(rows)] = self._bounds(posed, rows)
-        if found is None or found.distance_m >= FAR:
+        if found is None:
             return FAR, "", bounds
         return found.distance_m, self._arm.names[row], bounds
 

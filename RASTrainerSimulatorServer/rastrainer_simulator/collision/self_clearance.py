@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR, LOOK
+from rastrainer_simulator.collision.clearance import CLOSE, FAR, LOOK
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -26,24 +26,36 @@ class SelfClearance:
         self._reaches = arm.reach[self._first] + arm.reach[self._second]
         self._radii = (arm.radii[self._first] + arm.radii[self._second]).tolist()
         self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
+        self._close: list[int] = []
+        self._apart = np.full((len(arm.capsules), len(arm.capsules)), math.inf)
 
-    def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...], np.ndarray]:
-        """Return the least signed distance, m, the two links, and a bound for each capsule.
+    def look(self, posed: PosedArm) -> np.ndarray:
+        """Find the pairs that are close; return a bound for each of the arm's capsules, (n,) float.
 
-        The distance is at most FAR, and then no links are named. The bounds, (n,) float, are what
-        each of the arm's capsules is at least away from the others.
+        It is at least so far away, m, from those with which it is in no close pair.
         """
         middles = posed.middles
         between = middles.take(self._first, 0) - middles.take(self._second, 0)
         bounds = np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
         for pair in np.flatnonzero(bounds < LOOK).tolist():
-            first, second = self._pairs[pair]
-            axes = segment_distance(*posed.axis(first), *posed.axis(second))
-            bounds[pair] = axes - self._radii[pair]
-        of_capsules = np.full(len(posed.ends), math.inf)
-        np.minimum.at(of_capsules, self._first, bounds)
-        np.minimum.at(of_capsules, self._second, bounds)
-        if bounds.min(initial=math.inf) >= FAR:
-            return FAR, (), of_capsules
-        best = int(bounds.argmin())
-        return float(bounds[best]), self._names[best], of_capsules
+            bounds[pair] = self._distance(posed, pair)
+        close = bounds < CLOSE
+        self._close = np.flatnonzero(close).tolist()
+        self._apart[self._first, self._second] = np.where(close, math.inf, bounds)
+        return np.minimum(self._apart.min(axis=0), self._apart.min(axis=1))
+
+    def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...]]:
+        """Return the least signed distance of the close pairs, m, and the two links.
+
+        The distance is at most FAR, and then no links are named.
+        """
+        best, names = FAR, ()
+        for pair in self._close:
+            distance = self._distance(posed, pair)
+            if distance < best:
+                best, names = distance, self._names[pair]
+        return best, names
+
+    def _distance(self, posed: PosedArm, pair: int) -> float:
+        first, second = self._pairs[pair]
+        return segment_distance(*posed.axis(first), *posed.axis(second)) - self._radii[pair]

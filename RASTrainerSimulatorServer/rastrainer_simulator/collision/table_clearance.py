@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR, LOOK
+from rastrainer_simulator.collision.clearance import CLOSE, FAR, LOOK
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -33,6 +33,7 @@ class TableClearance:
         self._table = surroundings.table_height
         self._stand_radius = surroundings.stand_radius
         self._stand: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+        self._close: list[int] = []
         fixed = np.where(arm.joints > 0, 0.0, -math.inf)
         self._below = arm.radii + surroundings.table_height + fixed
         self._around = arm.reach + surroundings.stand_radius + fixed
@@ -44,29 +45,38 @@ class TableClearance:
         upright = self._stand_radius > 0.0 and top > self._table
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
 
-    def nearest(self, posed: PosedArm) -> tuple[float, str, np.ndarray]:
-        """Return the least signed distance, m, the link that is nearest, and a bound for each.
-
-        The distance is at most FAR, and then no link is named. The bounds, (n,) float, are what
-        each of the arm's capsules is at least away.
-        """
+    def look(self, posed: PosedArm) -> np.ndarray:
+        """Find what is close; return how far each other capsule is at least away, (n,) float, m."""
         bounds = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
-        # The tip is the tool's, which is last.
-        bounds[-1] = min(bounds[-1], posed.tip[2] - self._table)
         if self._stand is not None:
-            bounds = np.minimum(bounds, self._to_stand(posed))
-        best = int(bounds.argmin())
-        if bounds[best] >= FAR:
-            return FAR, "", bounds
-        return float(bounds[best]), self._arm.names[best], bounds
-
-    def _to_stand(self, posed: PosedArm) -> np.ndarray:
-        """Return the distance of each capsule to the stand, (n,) float; of far ones a bound."""
-        start, end = self._stand
-        away = posed.middles - end
-        np.maximum(away[:, 2], 0.0, out=away[:, 2])
-        bounds = np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around
+            away = posed.middles - self._stand[1]
+            np.maximum(away[:, 2], 0.0, out=away[:, 2])
+            rough = np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around
+            bounds = np.minimum(bounds, rough)
         for row in np.flatnonzero(bounds < LOOK).tolist():
-            axes = segment_distance(*posed.axis(row), start, end)
-            bounds[row] = axes - self._arm.capsules[row].radius - self._stand_radius
+            bounds[row] = self._distance(posed, row)
+        self._close = np.flatnonzero(bounds < CLOSE).tolist()
+        bounds[self._close] = math.inf
         return bounds
+
+    def nearest(self, posed: PosedArm) -> tuple[float, str]:
+        """Return the least signed distance of what is close and of the tip, m, and the link.
+
+        The distance is at most FAR, and then no link is named.
+        """
+        best, name = FAR, ""
+        for row in self._close:
+            distance = self._distance(posed, row)
+            if distance < best:
+                best, name = distance, self._arm.names[row]
+        # The tip is no part of a capsule; it is the tool's, which is last.
+        above = posed.tip[2] - self._table
+        return (above, self._arm.names[-1]) if above < best else (best, name)
+
+    def _distance(self, posed: PosedArm, row: int) -> float:
+        start, end = posed.axis(row)
+        distance = min(start[2], end[2]) - self._below[row]
+        if self._stand is None:
+            return distance
+        radii = self._arm.capsules[row].radius + self._stand_radius
+        return min(distance, segment_distance(start, end, *self._stand) - radii)

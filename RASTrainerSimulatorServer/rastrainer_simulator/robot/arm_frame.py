@@ -8,7 +8,7 @@ from math import isfinite, sqrt
 from rastrainer.errors import InputError
 from rastrainer_simulator.robot.canonical_arm import clamped, inside
 from rastrainer_simulator.robot.srs_geometry import SrsGeometry
-from rastrainer_simulator.vectors import Vector, cross, reject, unit
+from rastrainer_simulator.vectors import Vector
 
 # A rotation whose columns are not perpendicular unit vectors to this is no rotation.
 _SKEW = 1e-6
@@ -22,7 +22,7 @@ class ArmFrame:
         self._shoulder = tuple(geometry.shoulder.tolist())
         # The canonical tool's x and z axes in the tip's frame.
         self._tip = tuple(map(tuple, geometry.tip_rotation[[0, 2]].tolist()))
-        self._turns = tuple(zip(geometry.signs, geometry.offsets, strict=True))
+        self._signs, self._offsets = tuple(geometry.signs), tuple(geometry.offsets)
         self._limits = geometry.canonical_limits
         self._q_limits = tuple(zip(geometry.q_lower, geometry.q_upper, strict=True))
 
@@ -30,11 +30,17 @@ class ArmFrame:
         """Return θ of q (rad), moved into the limits where it is outside."""
         if len(q) != 7:
             raise InputError(f"A posture has seven joint angles, not {len(q)}.")
-        theta = tuple(
-            [
-                sign * float(angle) + offset
-                for angle, (sign, offset) in zip(q, self._turns, strict=True)
-            ]
+        q1, q2, q3, q4, q5, q6, q7 = map(float, q)
+        s1, s2, s3, s4, s5, s6, s7 = self._signs
+        o1, o2, o3, o4, o5, o6, o7 = self._offsets
+        theta = (
+            s1 * q1 + o1,
+            s2 * q2 + o2,
+            s3 * q3 + o3,
+            s4 * q4 + o4,
+            s5 * q5 + o5,
+            s6 * q6 + o6,
+            s7 * q7 + o7,
         )
         if inside(theta, self._limits):
             return theta
@@ -44,11 +50,17 @@ class ArmFrame:
 
     def q(self, theta: Sequence[float]) -> tuple[float, ...]:
         """Return q (rad) of θ, inside the limits to the last bit."""
-        q = tuple(
-            [
-                sign * (angle - offset)
-                for angle, (sign, offset) in zip(theta, self._turns, strict=True)
-            ]
+        t1, t2, t3, t4, t5, t6, t7 = theta
+        s1, s2, s3, s4, s5, s6, s7 = self._signs
+        o1, o2, o3, o4, o5, o6, o7 = self._offsets
+        q = (
+            s1 * (t1 - o1),
+            s2 * (t2 - o2),
+            s3 * (t3 - o3),
+            s4 * (t4 - o4),
+            s5 * (t5 - o5),
+            s6 * (t6 - o6),
+            s7 * (t7 - o7),
         )
         return q if inside(q, self._q_limits) else clamped(q, self._q_limits)
 
@@ -69,10 +81,14 @@ class ArmFrame:
     def rotation(self, world: Sequence[Sequence[float]]) -> tuple[Vector, Vector, Vector]:
         """Return the tool's x, y and z axes in the arm's frame for a rotation (3, 3) of the tip."""
         try:
-            rows = [_three(row, "rows of the tool rotation") for row in world]
-            (ax, bx, cx), (ay, by, cy), (az, bz, cz) = rows
+            (ax, bx, cx), (ay, by, cy), (az, bz, cz) = world
+            ax, bx, cx = float(ax), float(bx), float(cx)
+            ay, by, cy = float(ay), float(by), float(cy)
+            az, bz, cz = float(az), float(bz), float(cz)
         except (TypeError, ValueError) as error:
             raise InputError("The tool rotation must be three rows of three numbers.") from error
+        if not isfinite(ax + bx + cx + ay + by + cy + az + bz + cz):
+            raise InputError("The rows of the tool rotation must be three finite numbers.")
         skew = (
             abs(ax * ax + ay * ay + az * az - 1.0)
             + abs(bx * bx + by * by + bz * bz - 1.0)
@@ -87,15 +103,20 @@ class ArmFrame:
                 "the third being the first cross the second."
             )
         (fx, fy, fz), (gx, gy, gz) = self._tip
-        x = self._turned(
-            (fx * ax + fy * bx + fz * cx, fx * ay + fy * by + fz * cy, fx * az + fy * bz + fz * cz)
-        )
-        z = self._turned(
+        x, y, z = self._turned(
             (gx * ax + gy * bx + gz * cx, gx * ay + gy * by + gz * cy, gx * az + gy * bz + gz * cz)
         )
-        tool = unit(z)
-        x = unit(reject(x, tool))
-        return x, cross(tool, x), tool
+        size = sqrt(x * x + y * y + z * z)
+        tx, ty, tz = x / size, y / size, z / size
+        x, y, z = self._turned(
+            (fx * ax + fy * bx + fz * cx, fx * ay + fy * by + fz * cy, fx * az + fy * bz + fz * cz)
+        )
+        # Perpendicular and of unit length to the last bit: the rows are so to `_SKEW` only.
+        part = x * tx + y * ty + z * tz
+        x, y, z = x - part * tx, y - part * ty, z - part * tz
+        size = sqrt(x * x + y * y + z * z)
+        x, y, z = x / size, y / size, z / size
+        return (x, y, z), (ty * z - tz * y, tz * x - tx * z, tx * y - ty * x), (tx, ty, tz)
 
     def _turned(self, vector: Vector) -> Vector:
         x, y, z = vector

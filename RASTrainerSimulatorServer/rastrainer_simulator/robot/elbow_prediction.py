@@ -81,7 +81,7 @@ def _elbow(
 
 def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vector:
     """Return the turns of joints 5 to 7 (rad) that the goal's tool asks of a `turned` forearm."""
-    _, fore, (tx, ty, tz), _, _, (wx, wy, wz) = links
+    _, (fx, fy, fz), (tx, ty, tz), _, _, (wx, wy, wz) = links
     ox, oy, oz = turned
     gx, gy, gz = goal.tool
     # What the tool's tip, a unit vector, still has to move: along joint 6's axis and across it.
@@ -92,6 +92,6 @@ def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vec
     d6 = mx * (wy * tz - wz * ty) + my * (wz * tx - wx * tz) + mz * (wx * ty - wy * tx)
     if goal.roll is None:
         return d5, d6, 0.0
-    _, y = tool_axes(theta, links)
-    asked = dot(goal.roll[0], y)
-    return d5, d6, asked - (dot(turned, links[2]) + d5 * dot(fore, links[2]))
+    asked = dot(goal.roll[0], tool_axes(theta, links)[1])
+    made = ox * tx + oy * ty + oz * tz + d5 * (fx * tx + fy * ty + fz * tz)
+    return d5, d6, asked - made

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import Roll
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, tip
-from rastrainer_simulator.vectors import Vector, add, dot, length, scale, subtract
+from rastrainer_simulator.vectors import Vector, add, dot, length, scale
 
 _TINY = 1e-12
 _NEAR_M = 0.03
@@ -23,7 +23,8 @@ class Goal(NamedTuple):
 
     def wrist(self, arm: CanonicalArm) -> Vector:
         """Return where a wrist has to be that holds the tool's direction, m."""
-        return subtract(self.position, scale(self.tool, arm.tool))
+        (x, y, z), (tx, ty, tz), size = self.position, self.tool, arm.tool
+        return x - size * tx, y - size * ty, z - size * tz
 
     def is_near(self, arm: CanonicalArm, links: Chain) -> bool:
         """Tell whether the goal continues a motion: the tool is already almost there."""
@@ -68,10 +69,12 @@ class Goal(NamedTuple):
         if self.roll is None:
             return (x, y, z), cosine
         # From the skew part and the trace: exact for small angles too.
-        trace = cosine
-        for (ax, ay, az), (bx, by, bz) in zip(tool_axes(theta, links), self.roll, strict=True):
-            x, y, z = x + ay * bz - az * by, y + az * bx - ax * bz, z + ax * by - ay * bx
-            trace += ax * bx + ay * by + az * bz
+        (ax, ay, az), (cx, cy, cz) = tool_axes(theta, links)
+        (bx, by, bz), (dx, dy, dz) = self.roll
+        x += ay * bz - az * by + cy * dz - cz * dy
+        y += az * bx - ax * bz + cz * dx - cx * dz
+        z += ax * by - ay * bx + cx * dy - cy * dx
+        trace = cosine + ax * bx + ay * by + az * bz + cx * dx + cy * dy + cz * dz
         return (0.5 * x, 0.5 * y, 0.5 * z), 0.5 * (trace - 1.0)
 
 
