@@ -87,6 +87,8 @@ class Listener:
     async def _welcome(self, peer: socket.socket) -> None:
         loop = asyncio.get_running_loop()
         try:
+            # Else a small message waits for 40 ms until the peer has acknowledged the one before.
+            peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             await loop.connect_accepted_socket(self._make_protocol, peer, **self._tls)
         except OSError:
             # It left, or could not agree on a key in time.

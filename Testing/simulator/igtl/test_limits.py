@@ -132,6 +132,14 @@ def test_the_system_is_asked_to_notice_a_machine_that_has_gone(plain_server):
         assert timeout_ms == 1000 * seconds
 
 
+def test_small_messages_are_sent_at_once(plain_server):
+    with socket.create_connection((HOST, plain_server.port), 10):
+        plain_server.handler.wait_until(lambda: plain_server.handler.connections)
+        (connection,) = plain_server.server.clients
+        peer = connection._transport.get_extra_info("socket")
+        assert peer.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+
+
 def test_connections_are_taken_in_turn_however_many_want_one(monkeypatch):
     waits = []
 
