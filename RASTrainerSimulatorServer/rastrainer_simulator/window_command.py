@@ -100,4 +100,7 @@ def _size(text: str) -> tuple[int, int]:
         size = int(width), int(height)
         if min(size) >= LEAST_SIDE and max(size) <= MOST_SIDE:
             return size
-    raise InputError("--size must be WIDTHxHEIGHT in pixels, such as 1280x720.")
+    raise InputError(
+        "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, "
+        f"each from {LEAST_SIDE} to {MOST_SIDE}."
+    )

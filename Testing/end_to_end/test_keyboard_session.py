@@ -13,7 +13,7 @@ from Testing.end_to_end.stream_trainee import StreamTrainee
 pytestmark = pytest.mark.soak
 
 SPEED = "1.5"
-SMALL = ("--size", "320x180", "--quality", "low")
+SMALL = ("--size", "640x360", "--quality", "low")
 TRAINEE = "p07"
 KILLED_AFTER = 5
 

@@ -63,7 +63,8 @@ class WindowProcess:
     def wait_for_frames(self, count: int = 1) -> None:
         """Wait until so many more pictures have been shown."""
         wanted = len(self.frames()) + count
-        wait_until(lambda: len(self.frames()) >= wanted, "a picture")
+        wait_until(lambda: self._has_ended or len(self.frames()) >= wanted, "a picture")
+        assert len(self.frames()) >= wanted, f"The window has ended: {self.stop()}"
 
     def wait_for_tick(self, tick: int) -> None:
         """Wait until a picture of that tick, or of a later one, has been shown."""
@@ -74,9 +75,13 @@ class WindowProcess:
         wait_until(lambda: set(self.folder.glob("*.png")) - known, "a kept picture", patience_s)
         return (set(self.folder.glob("*.png")) - known).pop()
 
+    @property
+    def _has_ended(self) -> bool:
+        return self._process.poll() is not None
+
     def kill(self) -> None:
         """End it as a crash would; a second time changes nothing."""
-        if self._process.poll() is None:
+        if not self._has_ended:
             self._process.kill()
             self._process.wait()
 
