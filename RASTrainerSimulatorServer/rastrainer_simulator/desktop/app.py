@@ -34,7 +34,7 @@ LEAST_REFRESH_HZ = 60.0
 LEAST_REST_S = 0.002
 """Between two pictures, however slowly they are drawn: what has arrived is taken in by then."""
 TRIED_FRAMES = 12
-POLITENESS = 3
+POLITENESS = 10
 LEFT_BUTTON = 1
 OWN_KEYS = (pygame.K_F11, pygame.K_F12)
 """Full screen, and keep a picture: these the simulator is not told."""
@@ -81,9 +81,9 @@ class DesktopWindow:
         self._sounds = Sounds()
         self._inbox = Inbox()
         quality = options.quality or first_quality(self._window.renderer_name)
-        if quality is Quality.LOW and hasattr(os, "nice"):
+        if quality is Quality.LOW:
             # It draws with the processor that the control loop needs on time.
-            os.nice(POLITENESS)
+            _be_polite()
         self._picture = Picture(self._window, self._inbox, quality)
         self._trial: list[float] | None = [] if options.quality is None else None
         self._connection = Connection(
@@ -221,3 +221,14 @@ class DesktopWindow:
         line = {"shown": time.monotonic(), "tick": self._inbox.state["tick"]}
         log.write(json.dumps(line) + "\n")
         log.flush()
+
+
+def _be_polite() -> None:
+    """Give way to the simulator: on Linux each thread has a priority of its own."""
+    if not hasattr(os, "setpriority"):
+        return
+    tasks = Path("/proc/self/task")
+    threads = [int(task.name) for task in tasks.iterdir()] if tasks.exists() else [0]
+    for thread in threads:
+        with contextlib.suppress(OSError):  # SDL's own may be gone, or be above this.
+            os.setpriority(os.PRIO_PROCESS, thread, POLITENESS)
