@@ -16,16 +16,19 @@ simulator: .venv/installed page
 	$(BIN)/python tools/system_packages.py simulator
 	$(BIN)/rastrainer simulator $(if $(or $(DISPLAY),$(filter Windows_NT,$(OS)),$(filter Darwin,$(UNAME))),--desktop)
 
-# Where a worker crashes, xdist would wait for its file for ever; the run ends instead.
+# A test that hangs says where and ends the run, and so does a worker that crashes: xdist would wait
+# for the rest of its file for ever.
+ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exit_on_timeout=true
+
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder --max-worker-restart=0 -q
+	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ENDING) -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page
 	$(BIN)/python tools/system_packages.py test
 	$(BIN)/python tools/system_packages.py soak
-	$(BIN)/python -m pytest -m soak -o faulthandler_timeout=0 -q
+	$(BIN)/python -m pytest -m soak -q
 
 bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test

@@ -12,6 +12,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 SCRIPT = """
@@ -101,13 +102,21 @@ class Forked:
         self._nursery = nursery
         self.pid = pid
         self._output = pipe.open(encoding="utf-8")
+        self._reader: threading.Thread | None = None
 
     def next_line(self) -> str:
         """Return the next line that it prints; "" once it has ended."""
         return self._output.readline().strip()
 
+    def let_print(self) -> None:
+        """Read what it prints from now on: with its pipe full it would wait for a reader."""
+        self._reader = threading.Thread(target=self._output.read, daemon=True)
+        self._reader.start()
+
     def end(self, number: int = signal.SIGKILL) -> int:
         """End it and return its exit status."""
         status = self._nursery.end(self.pid, number)
+        if self._reader is not None:
+            self._reader.join()
         self._output.close()
         return status

@@ -167,6 +167,7 @@ def kill_slicer(lab, kills, seed, trials, also_server):
             end_simulator(signal.SIGKILL)
             end_simulator = lab.start_simulator()
         slicer = lab.start_slicer()
+    slicer.let_print()
     give_up = time.monotonic() + PATIENCE_S + trials
     while lab.stored() != (trials, trials) or find_unacknowledged(lab.records):
         assert time.monotonic() < give_up, lab.stored()
