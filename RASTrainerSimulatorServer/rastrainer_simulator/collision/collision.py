@@ -86,12 +86,11 @@ class Collision:
         first that is too near no other is asked.
         """
         posed = self._arm.pose(link_to_world)
-        self._look_around(posed)
         return (
-            self._table.nearest(posed)[0] >= clearance
+            self._look_at_table(posed) >= clearance
             and self._head.nearest_to_shaft(posed).distance_m > 0.0
             and self._head.are_links_off(posed, clearance)
-            and self._self.nearest(posed)[0] >= clearance
+            and self._look_at_itself(posed) >= clearance
         )
 
     def _links(self, posed: PosedArm) -> tuple[float, str, float, tuple[str, ...], float, str]:
@@ -112,11 +111,19 @@ class Collision:
             return False
         of_head, of_itself, of_table = has_moved.any(axis=(1, 2, 3)).tolist()
         if of_itself:
-            # Two parts of the arm may move toward each other.
-            self._keep(1, posed, (self._self.look(posed) - FAR) / 2.0)
+            self._look_at_itself(posed)
         if of_table:
-            self._keep(2, posed, self._table.look(posed) - FAR)
+            self._look_at_table(posed)
         return of_head
+
+    def _look_at_itself(self, posed: PosedArm) -> float:
+        # Two parts of the arm may move toward each other.
+        self._keep(1, posed, (self._self.look(posed) - FAR) / 2.0)
+        return self._self.nearest(posed)[0]
+
+    def _look_at_table(self, posed: PosedArm) -> float:
+        self._keep(2, posed, self._table.look(posed) - FAR)
+        return self._table.nearest(posed)[0]
 
     def _keep(self, part: int, posed: PosedArm, room: np.ndarray) -> None:
         self._far_at[part] = posed.ends
