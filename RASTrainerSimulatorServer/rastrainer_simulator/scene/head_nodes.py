@@ -6,15 +6,18 @@ from rastrainer.head_mesh import HeadMesh
 from rastrainer.tasks import Task
 from rastrainer_simulator.scene.materials import ARROW, MARK_RIM, NUMBER, SKIN, WAITING, Material
 from rastrainer_simulator.scene.nodes import Node, Surface, merged
+from rastrainer_simulator.scene.shading import shaded
 from rastrainer_simulator.scene.skin import Shape
 from rastrainer_simulator.scene.skin_marks import SkinMark, skin_marks
 
 MM_IN_M = 1000.0
+BASE_CREASE_DEG = 60.0
+"""The rim of the flat base is sharper than this; nothing of a face is."""
 
 
 def head_node(mesh: HeadMesh, task: Task | None) -> Node:
     """Return the head in its own frame: RAS, but in m; without a task, its skin alone."""
-    skin = Surface(mesh.vertices / MM_IN_M, mesh.vertex_normals, mesh.triangles, SKIN)
+    skin = shaded(mesh.vertices / MM_IN_M, mesh.triangles, SKIN, BASE_CREASE_DEG)
     marks = skin_marks(mesh, task.fiducials, task.labels) if task else []
     rims = Node("rims", merged([_surface(mark.rim, MARK_RIM) for mark in marks]))
     children = [Node("skin", (skin,)), *([rims] if marks else [])]
