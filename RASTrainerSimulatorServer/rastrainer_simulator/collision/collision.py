@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from rastrainer_simulator.vectors import Vector
 
 _SPACE_DIAGONAL = 1.7320509
 """Of a cube of edge 1, rounded up: a vector is at most so much longer than its longest part."""
+_NOTHING = (False, False, False)
 
 
 class Collision:
@@ -87,43 +88,37 @@ class Collision:
         """
         posed = self._arm.pose(link_to_world)
         return (
-            self._look_at_table(posed) >= clearance
+            self._of_table(posed, is_due=True)[0] >= clearance
             and self._head.nearest_to_shaft(posed).distance_m > 0.0
             and self._head.are_links_off(posed, clearance)
-            and self._look_at_itself(posed) >= clearance
+            and self._of_itself(posed, is_due=True)[0] >= clearance
         )
 
     def _links(self, posed: PosedArm) -> tuple[float, str, float, tuple[str, ...], float, str]:
         """Return what is nearest to the links of the head, of the arm, and of table and stand."""
+        near_head, near_itself, near_table = self._may_be_near(posed)
         links = FAR, ""
-        if self._look_around(posed):
+        if near_head:
             *links, bounds = self._head.nearest_to_links(posed)
             self._keep(0, posed, bounds - FAR)
-        return (*links, *self._self.nearest(posed), *self._table.nearest(posed))
+        return (*links, *self._of_itself(posed, near_itself), *self._of_table(posed, near_table))
 
-    def _look_around(self, posed: PosedArm) -> bool:
-        """Find what is close to arm and table where the arm has moved; tell if it has at the head.
-
-        What was found stays what is close for as long as nothing else can have come near.
-        """
+    def _may_be_near(self, posed: PosedArm) -> Sequence[bool]:
+        """Tell of head, arm and table whether something that was far may have come near."""
         has_moved = np.abs(posed.ends - self._far_at) >= self._room
-        if not has_moved.any():
-            return False
-        of_head, of_itself, of_table = has_moved.any(axis=(1, 2, 3)).tolist()
-        if of_itself:
-            self._look_at_itself(posed)
-        if of_table:
-            self._look_at_table(posed)
-        return of_head
+        # In most ticks nothing has: one question is quicker than three.
+        return has_moved.any(axis=(1, 2, 3)).tolist() if has_moved.any() else _NOTHING
 
-    def _look_at_itself(self, posed: PosedArm) -> float:
-        # Two parts of the arm may move toward each other.
-        self._keep(1, posed, (self._self.look(posed) - FAR) / 2.0)
-        return self._self.nearest(posed)[0]
+    def _of_itself(self, posed: PosedArm, is_due: bool) -> tuple[float, tuple[str, ...]]:
+        if is_due:
+            # Two parts of the arm may move toward each other.
+            self._keep(1, posed, (self._self.look(posed) - FAR) / 2.0)
+        return self._self.nearest(posed)
 
-    def _look_at_table(self, posed: PosedArm) -> float:
-        self._keep(2, posed, self._table.look(posed) - FAR)
-        return self._table.nearest(posed)[0]
+    def _of_table(self, posed: PosedArm, is_due: bool) -> tuple[float, str]:
+        if is_due:
+            self._keep(2, posed, self._table.look(posed) - FAR)
+        return self._table.nearest(posed)
 
     def _keep(self, part: int, posed: PosedArm, room: np.ndarray) -> None:
         self._far_at[part] = posed.ends

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import CLOSE, FAR, LOOK
+from rastrainer_simulator.collision.clearance import FAR, take_close
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -27,7 +28,6 @@ class SelfClearance:
         self._radii = (arm.radii[self._first] + arm.radii[self._second]).tolist()
         self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
         self._close: list[int] = []
-        self._apart = np.full((len(arm.capsules), len(arm.capsules)), math.inf)
 
     def look(self, posed: PosedArm) -> np.ndarray:
         """Find the pairs that are close; return a bound for each of the arm's capsules, (n,) float.
@@ -37,12 +37,11 @@ class SelfClearance:
         middles = posed.middles
         between = middles.take(self._first, 0) - middles.take(self._second, 0)
         bounds = np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
-        for pair in np.flatnonzero(bounds < LOOK).tolist():
-            bounds[pair] = self._distance(posed, pair)
-        close = bounds < CLOSE
-        self._close = np.flatnonzero(close).tolist()
-        self._apart[self._first, self._second] = np.where(close, math.inf, bounds)
-        return np.minimum(self._apart.min(axis=0), self._apart.min(axis=1))
+        self._close = take_close(bounds, partial(self._distance, posed))
+        of_capsules = np.full(len(posed.ends), math.inf)
+        np.minimum.at(of_capsules, self._first, bounds)
+        np.minimum.at(of_capsules, self._second, bounds)
+        return of_capsules
 
     def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...]]:
         """Return the least signed distance of the close pairs, m, and the two links.

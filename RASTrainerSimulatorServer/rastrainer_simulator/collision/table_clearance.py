@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import CLOSE, FAR, LOOK
+from rastrainer_simulator.collision.clearance import FAR, take_close
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -53,10 +54,7 @@ class TableClearance:
             np.maximum(away[:, 2], 0.0, out=away[:, 2])
             rough = np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around
             bounds = np.minimum(bounds, rough)
-        for row in np.flatnonzero(bounds < LOOK).tolist():
-            bounds[row] = self._distance(posed, row)
-        self._close = np.flatnonzero(bounds < CLOSE).tolist()
-        bounds[self._close] = math.inf
+        self._close = take_close(bounds, partial(self._distance, posed))
         return bounds
 
     def nearest(self, posed: PosedArm) -> tuple[float, str]:

@@ -229,6 +229,9 @@ def _be_polite() -> None:
         return
     tasks = Path("/proc/self/task")
     threads = [int(task.name) for task in tasks.iterdir()] if tasks.exists() else [0]
+    ordinary = os.getpriority(os.PRIO_PROCESS, 0)
     for thread in threads:
-        with contextlib.suppress(OSError):  # SDL's own may be gone, or be above this.
-            os.setpriority(os.PRIO_PROCESS, thread, POLITENESS)
+        with contextlib.suppress(OSError):  # It may have ended.
+            # What has a place of its own, such as SDL's sound, keeps it.
+            if os.getpriority(os.PRIO_PROCESS, thread) == ordinary:
+                os.setpriority(os.PRIO_PROCESS, thread, max(ordinary, POLITENESS))

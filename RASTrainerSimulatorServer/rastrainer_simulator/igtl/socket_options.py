@@ -9,7 +9,7 @@ from rastrainer_simulator.igtl.limits import Limits
 
 
 def set_up_socket(peer: socket.socket, limits: Limits) -> None:
-    """Send at once, queue little in the kernel, and notice a machine that has gone."""
+    """Queue little in the kernel, and notice a machine that has gone."""
     peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.buffer_bytes)
     peer.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     probe_s = max(1, int(limits.silent_peer_s / 6))

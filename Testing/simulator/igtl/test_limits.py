@@ -116,11 +116,17 @@ def test_commands_wait_only_up_to_so_many_bytes(start):
     assert replies == [(4, sentence), (5, sentence)]
 
 
-def test_the_system_is_asked_to_notice_a_machine_that_has_gone(plain_server):
+@contextlib.contextmanager
+def served_socket(plain_server):
+    """Connect a client; the server's socket of that connection."""
     with socket.create_connection((HOST, plain_server.port), 10):
         plain_server.handler.wait_until(lambda: plain_server.handler.connections)
         (connection,) = plain_server.server.clients
-        peer = connection._transport.get_extra_info("socket")
+        yield connection._transport.get_extra_info("socket")
+
+
+def test_the_system_is_asked_to_notice_a_machine_that_has_gone(plain_server):
+    with served_socket(plain_server) as peer:
         assert peer.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
         seconds = plain_server.server.limits.silent_peer_s
         idle, between, tries = (
@@ -133,10 +139,7 @@ def test_the_system_is_asked_to_notice_a_machine_that_has_gone(plain_server):
 
 
 def test_small_messages_are_sent_at_once(plain_server):
-    with socket.create_connection((HOST, plain_server.port), 10):
-        plain_server.handler.wait_until(lambda: plain_server.handler.connections)
-        (connection,) = plain_server.server.clients
-        peer = connection._transport.get_extra_info("socket")
+    with served_socket(plain_server) as peer:
         assert peer.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
 
 
