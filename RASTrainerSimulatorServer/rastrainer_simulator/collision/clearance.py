@@ -2,37 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from typing import NamedTuple
-
-import numpy as np
 
 from rastrainer_simulator.vectors import Vector
 
 FAR = 0.1
 """Clearances of links, self and table are exact up to here, m; what is farther counts as FAR."""
-
-LOOK = 0.2
-"""What is nearer than this, m, by a rough bound is looked at exactly: then it is known to be far
-for as long as the arm has not moved much."""
-
-CLOSE = 0.105
-"""What is nearer than this, m, is looked at in every tick, all else when the arm has moved:
-a folded arm has a pair or two that stay close."""
-
-
-def take_close(bounds: np.ndarray, distance: Callable[[int], float]) -> list[int]:
-    """Return the rows that are close, and leave in `bounds`, (n,) float, m, what the others are.
-
-    What `bounds` has below LOOK becomes the exact `distance` of its row, m; what is close becomes
-    infinite.
-    """
-    for row in np.flatnonzero(bounds < LOOK).tolist():
-        bounds[row] = distance(row)
-    close = np.flatnonzero(bounds < CLOSE).tolist()
-    bounds[close] = math.inf
-    return close
 
 
 class Nearest(NamedTuple):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR, Clearance, Nearest
+from rastrainer_simulator.collision.clearance import Clearance, Nearest
 from rastrainer_simulator.collision.head_clearance import HeadClearance
 from rastrainer_simulator.collision.head_surface import HeadSurface
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
@@ -14,10 +15,6 @@ from rastrainer_simulator.collision.robot_shape import RobotShape
 from rastrainer_simulator.collision.self_clearance import SelfClearance
 from rastrainer_simulator.collision.table_clearance import Surroundings, TableClearance
 from rastrainer_simulator.vectors import Vector
-
-_SPACE_DIAGONAL = 1.7320509
-"""Of a cube of edge 1, rounded up: a vector is at most so much longer than its longest part."""
-_NOTHING = (False, False, False)
 
 
 class Collision:
@@ -50,10 +47,8 @@ class Collision:
         surroundings = surroundings or Surroundings()
         self.table_height = surroundings.table_height
         self._table = TableClearance(self._arm, surroundings)
-        # For the head, the arm itself and the table: where the arm was when last asked about, and
-        # how far each capsule may have moved since, along each axis, without coming near.
-        self._far_at = np.zeros((3, len(self._arm.capsules), 2, 3))
-        self._room = np.zeros((3, len(self._arm.capsules), 1, 1))
+        self._ends = np.zeros((len(self._arm.capsules), 2, 3))
+        self._travelled = 0.0
         self.set_head_pose(np.eye(4))
 
     def set_head_pose(self, head_to_world: np.ndarray) -> None:
@@ -64,7 +59,6 @@ class Collision:
         """
         self._head.set_pose(head_to_world)
         self._table.put_stand_under(self._head.base)
-        self._room[:] = 0.0
 
     def check(self, link_to_world: Mapping[str, np.ndarray]) -> Clearance:
         """Return the clearances of a posture.
@@ -73,10 +67,13 @@ class Collision:
         them, as `Kinematics.links` gives them.
         """
         posed = self._arm.pose(link_to_world)
+        travelled = self._travel(posed)
         return Clearance(
             self._head.nearest_to_point(posed.tip),
             self._head.nearest_to_shaft(posed),
-            *self._links(posed),
+            *self._head.nearest_to_links(posed, travelled),
+            *self._self.nearest(posed, travelled),
+            *self._table.nearest(posed, travelled),
         )
 
     def is_clear(self, link_to_world: Mapping[str, np.ndarray], clearance: float) -> bool:
@@ -87,42 +84,20 @@ class Collision:
         first that is too near no other is asked.
         """
         posed = self._arm.pose(link_to_world)
+        travelled = self._travel(posed)
         return (
-            self._of_table(posed, is_due=True)[0] >= clearance
+            self._table.nearest(posed, travelled)[0] >= clearance
             and self._head.nearest_to_shaft(posed).distance_m > 0.0
             and self._head.are_links_off(posed, clearance)
-            and self._of_itself(posed, is_due=True)[0] >= clearance
+            and self._self.nearest(posed, travelled)[0] >= clearance
         )
 
-    def _links(self, posed: PosedArm) -> tuple[float, str, float, tuple[str, ...], float, str]:
-        """Return what is nearest to the links of the head, of the arm, and of table and stand."""
-        near_head, near_itself, near_table = self._may_be_near(posed)
-        links = FAR, ""
-        if near_head:
-            *links, bounds = self._head.nearest_to_links(posed)
-            self._keep(0, posed, bounds - FAR)
-        return (*links, *self._of_itself(posed, near_itself), *self._of_table(posed, near_table))
-
-    def _may_be_near(self, posed: PosedArm) -> Sequence[bool]:
-        """Tell of head, arm and table whether something that was far may have come near."""
-        has_moved = np.abs(posed.ends - self._far_at) >= self._room
-        # In most ticks nothing has: one question is quicker than three.
-        return has_moved.any(axis=(1, 2, 3)).tolist() if has_moved.any() else _NOTHING
-
-    def _of_itself(self, posed: PosedArm, is_due: bool) -> tuple[float, tuple[str, ...]]:
-        if is_due:
-            # Two parts of the arm may move toward each other.
-            self._keep(1, posed, (self._self.look(posed) - FAR) / 2.0)
-        return self._self.nearest(posed)
-
-    def _of_table(self, posed: PosedArm, is_due: bool) -> tuple[float, str]:
-        if is_due:
-            self._keep(2, posed, self._table.look(posed) - FAR)
-        return self._table.nearest(posed)
-
-    def _keep(self, part: int, posed: PosedArm, room: np.ndarray) -> None:
-        self._far_at[part] = posed.ends
-        self._room[part, :, 0, 0] = room / _SPACE_DIAGONAL
+    def _travel(self, posed: PosedArm) -> float:
+        """Return how far the arm has moved since ever, m: in each tick its fastest point counts."""
+        moved = posed.ends - self._ends
+        self._ends = posed.ends
+        self._travelled += math.sqrt(np.einsum("ijk,ijk->ij", moved, moved).max())
+        return self._travelled
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from math import dist
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer_simulator.collision.clearance import FAR, Nearest
 from rastrainer_simulator.collision.head_surface import HeadSurface
+from rastrainer_simulator.collision.lookout import Lookout
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.thin_segment import thin_segment
 from rastrainer_simulator.vectors import ZERO, Vector
@@ -31,6 +33,7 @@ class HeadClearance:
         self._arm = arm
         self._segments = [thin_segment(c.start, c.end) for c in arm.capsules]
         self._bodies = arm.body.tolist()
+        self._lookout = Lookout(arm.link_count)
         self.set_pose(np.eye(4))
 
     def set_pose(self, head_to_world: np.ndarray) -> None:
@@ -56,6 +59,7 @@ class HeadClearance:
         self._world_to_head_rows = self._world_to_head[:3].tolist()
         # What each capsule's clearance was when it was last queried, and where its axis was then.
         self._known = [(-math.inf, ZERO, ZERO)] * len(self._arm.capsules)
+        self._lookout.forget()
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""
@@ -67,19 +71,19 @@ class HeadClearance:
         found, _ = self._nearest(posed, rows, self._bounds(posed, rows), math.inf)
         return self._in_world(found)
 
-    def nearest_to_links(self, posed: PosedArm) -> tuple[float, str, np.ndarray]:
-        """Return the clearance of the links, m, the nearest of them, and a bound for each capsule.
+    def nearest_to_links(self, posed: PosedArm, travelled: float) -> tuple[float, str]:
+        """Return the clearance of the links, m, and the nearest of them.
 
-        The clearance is at most FAR, and then no link is named. The bounds, (n,) float, are what
-        the clearance of each of the arm's capsules is at least; they are infinite for the tool's.
+        The clearance is at most FAR, and then no link is named. `travelled` is how far the arm has
+        moved since ever, m.
         """
-        rows = range(self._arm.link_count)
-        found, row = self._nearest(posed, rows, self._bounds(posed, rows), FAR)
-        bounds = np.full(len(self._known), math.inf)
-        bounds[: len(rows)] = self._bounds(posed, rows)
-        if found is None:
-            return FAR, "", bounds
-        return found.distance_m, self._arm.names[row], bounds
+        rows = self._lookout.due(travelled)
+        if not rows:
+            return FAR, ""
+        found, nearest = self._nearest(posed, rows, self._bounds(posed, rows), FAR)
+        for row, bound in zip(rows, self._bounds(posed, rows), strict=True):
+            self._lookout.put_off(row, bound, travelled)
+        return (FAR, "") if found is None else (found.distance_m, self._arm.names[nearest])
 
     def are_links_off(self, posed: PosedArm, clearance: float) -> bool:
         """Tell whether every link is at least so far, m, from the head."""
@@ -89,19 +93,17 @@ class HeadClearance:
         bounds = list(map(max, rough, self._bounds(posed, rows)))
         return self._nearest(posed, rows, bounds, clearance)[0] is None
 
-    def _bounds(self, posed: PosedArm, rows: range) -> list[float]:
-        """Return below what the clearance of each capsule cannot be, m."""
-        part = slice(rows.start, rows.stop)
-        ends = posed.ends[part].tolist()
-        return [
-            known - max(dist(start, start_then), dist(end, end_then))
-            for (start, end), (known, start_then, end_then) in zip(
-                ends, self._known[part], strict=True
-            )
-        ]
+    def _bounds(self, posed: PosedArm, rows: Sequence[int]) -> list[float]:
+        """Return below what the clearance of each of these capsules cannot be, m."""
+        bounds = []
+        for row in rows:
+            start, end = posed.axis(row)
+            known, start_then, end_then = self._known[row]
+            bounds.append(known - max(dist(start, start_then), dist(end, end_then)))
+        return bounds
 
     def _nearest(
-        self, posed: PosedArm, rows: range, bounds: list[float], limit: float
+        self, posed: PosedArm, rows: Sequence[int], bounds: list[float], limit: float
     ) -> tuple[Nearest | None, int]:
         """Return what is nearest to some of the capsules, and to which, if nearer than `limit`."""
         best, best_row = None, -1

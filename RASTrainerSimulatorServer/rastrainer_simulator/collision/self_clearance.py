@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR, take_close
+from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.lookout import Lookout
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -27,33 +27,28 @@ class SelfClearance:
         self._reaches = arm.reach[self._first] + arm.reach[self._second]
         self._radii = (arm.radii[self._first] + arm.radii[self._second]).tolist()
         self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
-        self._close: list[int] = []
+        # Both of a pair may move toward each other.
+        self._lookout = Lookout(len(self._pairs), closing=2.0)
 
-    def look(self, posed: PosedArm) -> np.ndarray:
-        """Find the pairs that are close; return a bound for each of the arm's capsules, (n,) float.
+    def nearest(self, posed: PosedArm, travelled: float) -> tuple[float, tuple[str, ...]]:
+        """Return the least signed distance of two links, m, and the two.
 
-        It is at least so far away, m, from those with which it is in no close pair.
-        """
-        middles = posed.middles
-        between = middles.take(self._first, 0) - middles.take(self._second, 0)
-        bounds = np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
-        self._close = take_close(bounds, partial(self._distance, posed))
-        of_capsules = np.full(len(posed.ends), math.inf)
-        np.minimum.at(of_capsules, self._first, bounds)
-        np.minimum.at(of_capsules, self._second, bounds)
-        return of_capsules
-
-    def nearest(self, posed: PosedArm) -> tuple[float, tuple[str, ...]]:
-        """Return the least signed distance of the close pairs, m, and the two links.
-
-        The distance is at most FAR, and then no links are named.
+        The distance is at most FAR, and then no links are named. `travelled` is how far the arm has
+        moved since ever, m.
         """
         best, names = FAR, ()
-        for pair in self._close:
+        for pair in self._lookout.due(travelled, partial(self._bounds, posed)):
             distance = self._distance(posed, pair)
+            self._lookout.put_off(pair, distance, travelled)
             if distance < best:
                 best, names = distance, self._names[pair]
         return best, names
+
+    def _bounds(self, posed: PosedArm) -> np.ndarray:
+        """Return below what the distance of no pair can be, (pairs,) float, m."""
+        middles = posed.middles
+        between = middles.take(self._first, 0) - middles.take(self._second, 0)
+        return np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
 
     def _distance(self, posed: PosedArm, pair: int) -> float:
         first, second = self._pairs[pair]

@@ -8,7 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR, take_close
+from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.lookout import Lookout
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
 
@@ -34,7 +35,7 @@ class TableClearance:
         self._table = surroundings.table_height
         self._stand_radius = surroundings.stand_radius
         self._stand: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
-        self._close: list[int] = []
+        self._lookout = Lookout(len(arm.capsules))
         fixed = np.where(arm.joints > 0, 0.0, -math.inf)
         self._below = arm.radii + surroundings.table_height + fixed
         self._around = arm.reach + surroundings.stand_radius + fixed
@@ -45,31 +46,32 @@ class TableClearance:
         top -= self._stand_radius  # The column is a capsule: its round end fills up to the base.
         upright = self._stand_radius > 0.0 and top > self._table
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
+        self._lookout.forget()
 
-    def look(self, posed: PosedArm) -> np.ndarray:
-        """Find what is close; return how far each other capsule is at least away, (n,) float, m."""
-        bounds = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
-        if self._stand is not None:
-            away = posed.middles - self._stand[1]
-            np.maximum(away[:, 2], 0.0, out=away[:, 2])
-            rough = np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around
-            bounds = np.minimum(bounds, rough)
-        self._close = take_close(bounds, partial(self._distance, posed))
-        return bounds
+    def nearest(self, posed: PosedArm, travelled: float) -> tuple[float, str]:
+        """Return the least signed distance to table and stand, m, and the link.
 
-    def nearest(self, posed: PosedArm) -> tuple[float, str]:
-        """Return the least signed distance of what is close and of the tip, m, and the link.
-
-        The distance is at most FAR, and then no link is named.
+        The distance is at most FAR, and then no link is named. `travelled` is how far the arm has
+        moved since ever, m.
         """
         best, name = FAR, ""
-        for row in self._close:
+        for row in self._lookout.due(travelled, partial(self._bounds, posed)):
             distance = self._distance(posed, row)
+            self._lookout.put_off(row, distance, travelled)
             if distance < best:
                 best, name = distance, self._arm.names[row]
         # The tip is no part of a capsule; it is the tool's, which is last.
         above = posed.tip[2] - self._table
         return (above, self._arm.names[-1]) if above < best else (best, name)
+
+    def _bounds(self, posed: PosedArm) -> np.ndarray:
+        """Return below what the distance of no capsule can be, (n,) float, m."""
+        bounds = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
+        if self._stand is None:
+            return bounds
+        away = posed.middles - self._stand[1]
+        np.maximum(away[:, 2], 0.0, out=away[:, 2])
+        return np.minimum(bounds, np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around)
 
     def _distance(self, posed: PosedArm, row: int) -> float:
         start, end = posed.axis(row)

@@ -1,0 +1,55 @@
+"""Nothing comes near unnoticed, and nothing is looked at for no reason."""
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.lookout import Lookout
+
+COUNT, TICKS = 40, 3000
+
+
+def walk(rough):
+    """A point among others: in each tick its distances, and which of them were looked at."""
+    random = np.random.default_rng(26)
+    others, point, travelled = random.uniform(-0.3, 0.3, (COUNT, 3)), np.zeros(3), 0.0
+    lookout = Lookout(COUNT)
+    for _ in range(TICKS):
+        step = random.normal(size=3) * 0.002 - 0.0002 * point
+        point, travelled = point + step, travelled + np.linalg.norm(step)
+        distances = np.linalg.norm(others - point, axis=1)
+        rows = lookout.due(travelled, (lambda found=distances: found - 0.01) if rough else None)
+        for row in rows:
+            lookout.put_off(row, distances[row], travelled)
+        yield distances, rows
+
+
+@pytest.mark.parametrize("rough", [False, True])
+def test_whatever_is_near_is_looked_at_in_every_tick(rough):
+    near = 0
+    for distances, rows in walk(rough):
+        assert set(np.flatnonzero(distances < FAR)) <= set(rows)
+        near += (distances < FAR).sum()
+    assert near > TICKS / 10
+
+
+def test_what_is_far_is_hardly_ever_looked_at():
+    far = sum((distances[rows] >= FAR).sum() for distances, rows in walk(rough=False))
+    assert far < 0.05 * COUNT * TICKS
+
+
+def test_all_are_due_once_something_else_has_moved():
+    lookout = Lookout(3)
+    for row in lookout.due(0.0):
+        lookout.put_off(row, 9.0, 0.0)
+    assert lookout.due(1.0) == []
+    lookout.forget()
+    assert lookout.due(1.0) == [0, 1, 2]
+
+
+def test_what_two_parts_may_close_in_on_is_due_after_half_the_way():
+    lookout = Lookout(1, closing=2.0)
+    lookout.due(0.0)
+    lookout.put_off(0, FAR + 1.0, 0.0)
+    assert lookout.due(0.499) == []
+    assert lookout.due(0.501) == [0]
