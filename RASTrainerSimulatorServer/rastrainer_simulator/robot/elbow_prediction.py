@@ -13,8 +13,8 @@ from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain
 from rastrainer_simulator.robot.closure import close_at
 from rastrainer_simulator.robot.elbow_circle import elbow_circle
 from rastrainer_simulator.robot.elbow_slide import LEAP, self_motion, squared_motion
-from rastrainer_simulator.robot.goal import Goal, tool_axes
-from rastrainer_simulator.vectors import Vector, dot, unit
+from rastrainer_simulator.robot.goal import Goal
+from rastrainer_simulator.vectors import Vector, unit
 
 _FLAT = 1e-6
 # A tilt (rad) below this has no first order to speak of.
@@ -92,6 +92,11 @@ def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vec
     d6 = mx * (wy * tz - wz * ty) + my * (wz * tx - wx * tz) + mz * (wx * ty - wy * tx)
     if goal.roll is None:
         return d5, d6, 0.0
-    asked = dot(goal.roll[0], tool_axes(theta, links)[1])
+    # The goal's x axis along the tool's y axis, which is joint 6's axis turned about the tool.
+    ux, uy, uz = goal.roll[0]
+    c, s = cos(theta[6]), sin(theta[6])
+    asked = c * (ux * wx + uy * wy + uz * wz) - s * (
+        ux * (wy * tz - wz * ty) + uy * (wz * tx - wx * tz) + uz * (wx * ty - wy * tx)
+    )
     made = ox * tx + oy * ty + oz * tz + d5 * (fx * tx + fy * ty + fz * tz)
     return d5, d6, asked - made

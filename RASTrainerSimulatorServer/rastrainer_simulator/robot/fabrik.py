@@ -96,9 +96,9 @@ class Fabrik:
             else:
                 followed = follow(self._arm, start, links, aim)
                 if followed is not None:
-                    return self._solution(goal, Reached(followed, 1))
+                    return self._solution(goal, followed, 1)
             reached = self._reach(goal, aim, start, links, _JUMP)
-        return self._solution(goal, reached)
+        return self._solution(goal, *reached)
 
     def _goal(
         self,
@@ -116,8 +116,7 @@ class Fabrik:
         x, y, tool = self._frame.rotation(rotation)
         return Goal(target, tool, (x, y))
 
-    def _solution(self, goal: Goal, reached: Reached) -> Solution:
-        theta, passes, blocked = reached
+    def _solution(self, goal: Goal, theta: Angles, passes: int, blocked: bool = False) -> Solution:
         off, turned = goal.errors(self._arm, theta, chain(theta))
         converged = self.settings.met(off, turned)
         if converged:

@@ -28,10 +28,7 @@ class Goal(NamedTuple):
 
     def is_near(self, arm: CanonicalArm, links: Chain) -> bool:
         """Tell whether the goal continues a motion: the tool is already almost there."""
-        tx, ty, tz = tip(arm, links)
-        x, y, z = self.position
-        tx, ty, tz = x - tx, y - ty, z - tz
-        if tx * tx + ty * ty + tz * tz > _NEAR_M * _NEAR_M:
+        if dist(self.position, tip(arm, links)) > _NEAR_M:
             return False
         return self.tool is None or dot(links[2], self.tool) > _NEAR_COSINE
 
