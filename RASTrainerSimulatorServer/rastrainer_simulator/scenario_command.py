@@ -101,18 +101,23 @@ def _add_wishes(parser: argparse.ArgumentParser) -> None:
 
 
 def _build(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.scenarios.head_process import head_of
+    from rastrainer_simulator.scenarios.head_process import head_process
     from rastrainer_simulator.scenarios.make import make_scenario
     from rastrainer_simulator.scenarios.wishes import wishes_of
 
+    _clear_away_when_terminated()
     wishes = wishes_of(arguments, arguments.volume.name)
     if arguments.output.exists() and any(arguments.output.iterdir()):
         raise InputError(f"{arguments.output} is there already; name a folder that is new.")
     options = [*_head_options(arguments), *(["--no-skull"] if arguments.no_skull else [])]
-    draft = head_of(arguments.volume, options, lambda step, share: _tell(step, 0.5 * share), _warn)
-    scenario = make_scenario(
-        draft, wishes, arguments.output, lambda step, share: _tell(step, 0.5 + 0.5 * share)
-    )
+    with head_process(arguments.volume, options) as process:
+        scenario = make_scenario(
+            process.head(lambda step, share: _tell(step, 0.5 * share), _warn),
+            wishes,
+            arguments.output,
+            lambda step, share: _tell(step, 0.5 + 0.5 * share),
+            None if arguments.no_skull else process.whole,
+        )
     print(
         f"{scenario.title} is in {arguments.output}; load it with: rastrainer simulator "
         f"--scenario {arguments.output}"
@@ -125,20 +130,20 @@ def _tasks(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.scenarios.make import make_scenario
     from rastrainer_simulator.scenarios.wishes import wishes_of
 
-    # Slicer cancels so: what is half made is to be cleared away.
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    _clear_away_when_terminated()
     wishes = wishes_of(arguments, "unknown")
     make_scenario(read_draft(arguments.draft), wishes, arguments.output, _tell)
     return 0
 
 
 def _preview(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.scenarios.head_process import head_of
+    from rastrainer_simulator.scenarios.head_process import head_process
     from rastrainer_simulator.scenarios.make import Wishes, without_tasks
     from rastrainer_simulator.scenarios.picture import draw_preview
 
     options = [*_head_options(arguments), "--no-skull"]
-    draft = head_of(arguments.volume, options, _tell, _warn)
+    with head_process(arguments.volume, options) as process:
+        draft = process.head(_tell, _warn)
     scenario = without_tasks(draft, Wishes("Preview", "none", "none"))
     draw_preview(arguments.picture, scenario, draft.head)
     print(draft.method)
@@ -174,6 +179,11 @@ def _list(arguments: argparse.Namespace) -> int:
     for entry in list_scenarios([asset_path("scenarios"), arguments.library]):
         print(f"{entry.name:<24}{entry.problem or entry.title}  ({entry.folder})")
     return 0
+
+
+def _clear_away_when_terminated() -> None:
+    """End as an error does, for Slicer cancels so: what is half made and what runs goes too."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
 
 
 def _head_options(arguments: argparse.Namespace) -> list[str]:

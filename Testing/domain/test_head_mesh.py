@@ -35,6 +35,11 @@ def test_topology_and_center_agree_with_trimesh():
     assert np.allclose(mesh.centroid, torus.center_mass)
 
 
+def test_every_edge_is_there_once_the_lower_vertex_first():
+    tetrahedron = HeadMesh(np.eye(4, 3), np.array([[2, 1, 0], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    assert tetrahedron.edges.tolist() == [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
+
+
 def test_normals_of_a_sphere_point_away_from_its_center():
     mesh = sphere_mesh()
     outward = mesh.vertices / np.linalg.norm(mesh.vertices, axis=1, keepdims=True)

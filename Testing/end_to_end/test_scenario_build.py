@@ -1,18 +1,103 @@
 """Building scenarios through the real processes: what is broken or cancelled leaves nothing."""
 
+import os
+import signal
 import subprocess
 import sys
+import tempfile
 
 import numpy as np
 import pytest
 
+from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.scenario_draft import HeadDraft
 from rastrainer.slicer.head.scenario_build import BuildRequest, finish_scenario
 from rastrainer.slicer.head.volume import Volume
+from rastrainer_simulator.scenarios.head_process import head_process
 from Testing.domain.spheres import sphere_mesh
+from Testing.slicer.head.phantoms import CT, phantom
+from Testing.slicer.head.volume_file import write_nrrd
 
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli"]
+
+
+class CancelledError(Exception):
+    """Nobody wants the scenario any more."""
+
+
+@pytest.fixture(scope="module")
+def ct(tmp_path_factory):
+    """A CT of a head, as a file."""
+    scan = phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
+    return write_nrrd(tmp_path_factory.mktemp("ct") / "ct.nrrd", scan)
+
+
+@pytest.fixture
+def temporary(tmp_path, monkeypatch):
+    """The folder in which temporary files are made, here and in the processes."""
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    monkeypatch.setenv("TMPDIR", str(folder))
+    return folder
+
+
+def wait_for_head(process):
+    return process.head(lambda _step, _share: None, lambda _warning: None)
+
+
+def test_a_head_is_worked_with_before_its_skull_is_made(ct):
+    with head_process(ct, []) as process:
+        first = wait_for_head(process)
+        assert first.skull is None
+        assert "Skull" not in first.method
+        whole = process.whole()
+    assert np.array_equal(whole.head.vertices, first.head.vertices)
+    assert np.array_equal(whole.head.triangles, first.head.triangles)
+    assert len(whole.skull.triangles) > 1000
+    assert not whole.is_skull_approximate
+    assert whole.method == f"{first.method} Skull: bone of the CT."
+
+
+def test_a_ct_without_bone_ends_with_a_sentence_once_its_skull_is_asked_for(tmp_path):
+    soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
+    with head_process(write_nrrd(tmp_path / "soft.nrrd", soft), []) as process:
+        assert wait_for_head(process).head.is_closed
+        with pytest.raises(InputError, match="The CT shows no bone"):
+            process.whole()
+
+
+def test_whoever_cancels_ends_the_process_of_the_head_too(ct, temporary, monkeypatch):
+    started = []
+
+    class Recorded(subprocess.Popen):
+        def __init__(self, *words, **options):
+            super().__init__(*words, **options)
+            started.append(self)
+
+    def progress(_step, _share):
+        raise CancelledError
+
+    monkeypatch.setattr(subprocess, "Popen", Recorded)
+    with pytest.raises(CancelledError), head_process(ct, []) as process:
+        process.head(progress, lambda _warning: None)
+    assert [process.returncode in (None, 0) for process in started] == [False]
+    assert not list(temporary.iterdir())
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows ends a process without asking it")
+def test_a_build_that_is_terminated_leaves_nothing(ct, tmp_path, temporary):
+    words = ["scenario", "build", str(ct), "-o", str(tmp_path / "made")]
+    build = subprocess.Popen([*RASTRAINER, *words], stdout=subprocess.PIPE, text=True)
+    with build:
+        assert "Reading the volume" in build.stdout.readline()
+        assert list(temporary.iterdir())
+        build.terminate()
+    assert build.returncode == 128 + signal.SIGTERM
+    # It goes only after the process that works in it.
+    assert not list(temporary.iterdir())
+    assert [path.name for path in tmp_path.iterdir()] == ["temporary"]
 
 
 def test_a_file_that_is_no_volume_ends_the_build_with_one_sentence(tmp_path):
@@ -25,9 +110,6 @@ def test_a_file_that_is_no_volume_ends_the_build_with_one_sentence(tmp_path):
 
 
 def test_a_build_that_is_cancelled_leaves_nothing(tmp_path):
-    class CancelledError(Exception):
-        pass
-
     def progress(step, _share):
         if step == "Finding what the robot can touch":
             raise CancelledError

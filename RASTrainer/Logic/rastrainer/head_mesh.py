@@ -50,7 +50,11 @@ class HeadMesh:
     @cached_property
     def edges(self) -> np.ndarray:
         """(e, 2) int: every edge once, the lower vertex first."""
-        return np.unique(np.sort(self.sides, axis=1), axis=0)
+        low, high = np.sort(self.sides, axis=1).T.astype(np.int64)
+        # As one number an edge, which sorts many times faster than a row.
+        keys = np.unique(low * len(self.vertices) + high)
+        edges = np.stack(np.divmod(keys, len(self.vertices)), axis=1)
+        return edges.astype(self.triangles.dtype)
 
     @cached_property
     def base(self) -> np.ndarray:

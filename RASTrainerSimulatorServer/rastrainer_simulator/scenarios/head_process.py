@@ -6,32 +6,71 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TextIO
 
 from rastrainer.errors import InputError
 from rastrainer.scenario_draft import HeadDraft, read_draft
 
 _PROGRESS = re.compile(r"\s*(\d+)%  (.+)")
 _WARNING = "Warning: "
+_HEAD_MADE = "The head is made."
 
 
-def head_of(
-    volume: Path,
-    options: list[str],
-    progress: Callable[[str, float], None],
-    warn: Callable[[str], None],
-) -> HeadDraft:
-    """Return the head in a volume's file or in a folder of DICOM files.
+class HeadProcess:
+    """The process at work: on the head first, then on its skull while others use the head."""
+
+    def __init__(self, process: subprocess.Popen[str], errors: TextIO, folder: Path) -> None:
+        """Keep the process, the file of its standard error and the folder of its draft."""
+        self._process = process
+        self._errors = errors
+        self._folder = folder
+
+    def head(
+        self, progress: Callable[[str, float], None], warn: Callable[[str], None]
+    ) -> HeadDraft:
+        """Wait for the head and return its draft without a skull.
+
+        Args:
+            progress: told each step's name and the share of the work done; may raise to cancel.
+            warn: told each warning.
+
+        Raises:
+            InputError: there is no head in the volume; the sentence says why.
+        """
+        for line in self._process.stdout:
+            if line.rstrip() == _HEAD_MADE:
+                return read_draft(self._folder)
+            _tell(line.rstrip(), progress, warn)
+        raise self._failure()
+
+    def whole(self) -> HeadDraft:
+        """Wait for the skull too, where one is wanted, and return the whole draft.
+
+        Raises:
+            InputError: there is no skull in the volume; the sentence says why.
+        """
+        self._process.stdout.read()
+        if self._process.wait() != 0:
+            raise self._failure()
+        return read_draft(self._folder)
+
+    def _failure(self) -> InputError:
+        status = self._process.wait()
+        self._errors.seek(0)
+        told = self._errors.read().strip().splitlines()
+        return InputError(told[-1] if told else f"The head's process ended with {status}.")
+
+
+@contextmanager
+def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
+    """Yield a process that makes the head in a volume; it ends with the context, done or not.
 
     Args:
-        volume: NRRD, NIfTI, or a folder.
+        volume: NRRD, NIfTI, or a folder of DICOM files.
         options: further arguments of `python -m rastrainer.slicer.head`.
-        progress: told each step's name and the share of the work done; may raise to cancel.
-        warn: told each warning.
-
-    Raises:
-        InputError: there is no head in it; the sentence says why.
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "draft"
@@ -43,17 +82,9 @@ def head_of(
             ) as process,
         ):
             try:
-                for line in process.stdout:
-                    _tell(line.rstrip(), progress, warn)
-            except BaseException:
+                yield HeadProcess(process, errors, folder)
+            finally:
                 process.kill()
-                raise
-            status = process.wait()
-            errors.seek(0)
-            told = errors.read().strip().splitlines()
-        if status != 0:
-            raise InputError(told[-1] if told else f"The head's process ended with {status}.")
-        return read_draft(folder)
 
 
 def _tell(line: str, progress: Callable[[str, float], None], warn: Callable[[str], None]) -> None:

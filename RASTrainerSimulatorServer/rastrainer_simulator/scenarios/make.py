@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -56,8 +57,17 @@ def make_scenario(
     wishes: Wishes,
     folder: Path,
     progress: Progress = lambda _step, _share: None,
+    wait_for_skull: Callable[[], HeadDraft] | None = None,
 ) -> Scenario:
     """Write the scenario of a head into a new folder and return it.
+
+    Args:
+        draft: of the head; all but its skull is worked with.
+        wishes: what else is wanted.
+        folder: to be made.
+        progress: told each step's name and the share of the work done; may raise to cancel.
+        wait_for_skull: returns the same draft with the skull, which is made meanwhile; None where
+            `draft` is whole.
 
     Raises:
         InputError: the wishes cannot be met; the sentence says which. Nothing is written then.
@@ -72,10 +82,13 @@ def make_scenario(
             tasks = _placed_tasks(bench, wishes.task_files, progress)
         else:
             tasks = TaskSetProposer(bench, progress).propose(wishes.seed)
-        scenario = replace(scenario, tasks=tasks)
-        write_scenario(made, scenario, draft.head, draft.skull)
         progress("Drawing the picture", 0.95)
-        draw_preview(made / PREVIEW_NAME, scenario, draft.head)
+        draw_preview(made / PREVIEW_NAME, replace(scenario, tasks=tasks), draft.head)
+        if wait_for_skull is not None:
+            progress("Making the skull", 0.98)
+            draft = wait_for_skull()
+        scenario = replace(without_tasks(draft, wishes), tasks=tasks)
+        write_scenario(made, scenario, draft.head, draft.skull)
         load_scenario(made)
         progress("Done", 1.0)
     return load_scenario(folder)

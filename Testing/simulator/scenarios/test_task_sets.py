@@ -8,6 +8,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.face_removal import face_vertices
+from rastrainer.head_mesh import HeadMesh, read_head_mesh
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
 from rastrainer.scenario_draft import HeadDraft
@@ -107,13 +108,38 @@ def test_a_head_that_stands_too_far_away_is_refused_and_leaves_nothing(tmp_path)
     assert not list(tmp_path.iterdir())
 
 
-def test_fiducials_placed_by_hand_become_tasks(tmp_path, tasks):
+@pytest.fixture
+def placed(tmp_path, tasks):
+    """Wishes with fiducials that are placed by hand."""
     path = tmp_path / "mine.mrk.json"
     write_markups(path, PointList(LABELS, tasks[0].fiducials))
-    wishes = replace(WISHES, task_files=(path,))
-    scenario = make_scenario(HeadDraft(egg(), "made up"), wishes, tmp_path / "egg")
+    return replace(WISHES, task_files=(path,))
+
+
+def test_fiducials_placed_by_hand_become_tasks(tmp_path, tasks, placed):
+    scenario = make_scenario(HeadDraft(egg(), "made up"), placed, tmp_path / "egg")
     assert [task.title for task in scenario.tasks] == ["Trial run"]
     assert scenario.tasks[0].complexity == pytest.approx(tasks[0].complexity, abs=0.02)
     assert scenario.preview is not None
-    again = read_task(path, "trial-run", "Trial run", 0.0)
+    again = read_task(placed.task_files[0], "trial-run", "Trial run", 0.0)
     assert np.array_equal(scenario.tasks[0].fiducials, again.fiducials)
+
+
+def test_a_skull_that_is_made_meanwhile_goes_into_the_scenario(tmp_path, placed):
+    skull = HeadMesh(0.9 * egg().vertices, egg().triangles)
+    first, whole = HeadDraft(egg(), "made up"), HeadDraft(egg(), "with skull", skull, True)
+    scenario = make_scenario(first, placed, tmp_path / "egg", wait_for_skull=lambda: whole)
+    assert scenario.provenance.method == "with skull"
+    assert scenario.is_skull_approximate
+    assert len(read_head_mesh(scenario.skull_mesh).triangles) == len(skull.triangles)
+
+
+def test_a_skull_that_cannot_be_made_leaves_nothing_of_the_scenario(tmp_path, placed):
+    def fails():
+        raise InputError("The CT shows no bone.")
+
+    with pytest.raises(InputError, match="no bone"):
+        make_scenario(
+            HeadDraft(egg(), "made up"), placed, tmp_path / "made" / "egg", wait_for_skull=fails
+        )
+    assert not list((tmp_path / "made").iterdir())

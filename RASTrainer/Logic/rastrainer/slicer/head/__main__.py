@@ -2,7 +2,8 @@
 
     python -m rastrainer.slicer.head VOLUME -o DIR [--threshold T] [--cut S] [--no-skull]
 
-Standard output has a line such as ` 30%  Filling cavities` a step, and `Warning: …` lines. Exit
+Standard output has a line such as ` 30%  Filling cavities` a step, and `Warning: …` lines. At the
+line `The head is made.` DIR holds the draft without its skull, which is put there at the end. Exit
 status: 0 made, 2 the volume cannot be used (standard error has the sentence).
 """
 
@@ -14,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.scenario_draft import write_draft
+from rastrainer.scenario_draft import HeadDraft, write_draft
 from rastrainer.scenario_writer import new_folder
 
 
@@ -33,11 +34,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         volume = read_any_volume(arguments.volume)
         settings = HeadSettings(threshold=arguments.threshold, base_mm=arguments.cut)
-        draft, warnings = make_draft(volume, settings, not arguments.no_skull, _tell)
-        for warning in warnings:
-            print(f"Warning: {warning}", flush=True)
-        with new_folder(arguments.output) as folder:
-            write_draft(folder, draft)
+
+        def head_made(head: HeadDraft, warnings: list[str]) -> None:
+            for warning in warnings:
+                print(f"Warning: {warning}", flush=True)
+            with new_folder(arguments.output) as folder:
+                write_draft(folder, head)
+            print("The head is made.", flush=True)
+
+        draft, _ = make_draft(volume, settings, not arguments.no_skull, _tell, head_made=head_made)
+        if draft.skull is not None:
+            write_draft(arguments.output, draft)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

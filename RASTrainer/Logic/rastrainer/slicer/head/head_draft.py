@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,6 +31,7 @@ def make_draft(
     has_skull: bool = True,
     progress: Progress = lambda _step, _share: None,
     segment: Volume | None = None,
+    head_made: Callable[[HeadDraft, list[str]], None] = lambda _draft, _warnings: None,
 ) -> tuple[HeadDraft, list[str]]:
     """Return a head and warnings, one sentence each.
 
@@ -39,9 +41,10 @@ def make_draft(
         has_skull: whether the skull is wanted too.
         progress: told each step's name and the share of the work done; may raise to cancel.
         segment: the head as `volume_of_segment` returns it; None finds it in the volume.
+        head_made: given the draft without its skull and the warnings, before the skull is made.
 
     Raises:
-        InputError: the volume cannot be used, or there is no head in it.
+        InputError: the volume cannot be used, or there is no head in it or no bone in a CT.
     """
     settings = settings or HeadSettings()
     warnings = check_volume(volume)
@@ -53,26 +56,26 @@ def make_draft(
         found = replace(found, is_ct=is_hounsfield(volume.values))
     mesh = skin_of(found, settings, lambda step, share: progress(step, 0.8 * share))
     check_head(mesh)
-    skull = None
+    draft = HeadDraft(mesh, _head_method(found, segment is not None))
+    head_made(draft, warnings)
     if has_skull:
         progress("Making the skull", 0.85)
-        skull = skull_of(volume, found)
+        method = f"{draft.method} {_skull_method(found)}"
+        draft = HeadDraft(mesh, method, skull_of(volume, found), not found.is_ct)
     progress("Done", 1.0)
-    method = _method(found, has_skull, segment is not None)
-    return HeadDraft(mesh, method, skull, has_skull and not found.is_ct), warnings
+    return draft, warnings
 
 
-def _method(found: HeadBody, has_skull: bool, is_segment: bool) -> str:
+def _head_method(found: HeadBody, is_segment: bool) -> str:
     kind = "CT" if found.is_ct else "MRI"
     how = "segment edited by hand" if is_segment else f"threshold {found.threshold:.5g}"
-    sentences = [
+    return (
         f"Surface of the skin from {kind} by rastrainer, {how}, cavities filled, cut flat at "
         f"{found.base_mm:.1f} mm (S)."
-    ]
-    if has_skull and found.is_ct:
-        sentences.append("Skull: bone of the CT.")
-    elif has_skull:
-        sentences.append(
-            f"Skull: an approximation, the skin moved inward by {SCALP_MM:g} mm; MRI shows no bone."
-        )
-    return " ".join(sentences)
+    )
+
+
+def _skull_method(found: HeadBody) -> str:
+    if found.is_ct:
+        return "Skull: bone of the CT."
+    return f"Skull: an approximation, the skin moved inward by {SCALP_MM:g} mm; MRI shows no bone."

@@ -81,13 +81,13 @@ def _squared_distances(mask: np.ndarray, most: float) -> np.ndarray:
     `ndimage.distance_transform_edt`, whose result is exact however far a voxel is.
     """
     reach = int(most)
-    squared = np.where(mask, 0, (reach + 1) ** 2).astype(np.uint16)
+    squared = np.where(mask, np.uint16(0), np.uint16((reach + 1) ** 2))
     for axis in range(mask.ndim):
-        along = np.moveaxis(squared, axis, 0)
-        nearest = along.copy()
-        for step in range(1, min(reach + 1, len(along))):
-            cost = np.uint16(step**2)
-            np.minimum(nearest[step:], along[:-step] + cost, out=nearest[step:])
-            np.minimum(nearest[:-step], along[step:] + cost, out=nearest[:-step])
-        squared = np.moveaxis(nearest, 0, axis)
+        # Sheet by sheet: one fits into the processor's cache, the whole image does not.
+        for sheet in np.moveaxis(squared, axis, 0).swapaxes(0, 1):
+            before = sheet.copy(order="K")
+            for step in range(1, min(reach + 1, len(sheet))):
+                farther = before + np.uint16(step**2)
+                np.minimum(sheet[step:], farther[:-step], out=sheet[step:])
+                np.minimum(sheet[:-step], farther[step:], out=sheet[:-step])
     return squared
