@@ -224,6 +224,7 @@ class SimulatorServer:
             is_slicer_there=lambda: bool(link.server.clients),
             quit=stop.set,
             study=self._study,
+            robot_meshes=self._options.robot_meshes,
         )
         return RunningDesk(self._control_loop, surroundings, self._options.has_gamepad)
 
@@ -241,7 +242,7 @@ class SimulatorServer:
         from rastrainer_simulator.view_server.open_views import open_views
 
         return lambda tell: open_views(
-            self._control_loop,
+            desk.desk.projector,
             desk.desk,
             tell,
             self._options.view_port,

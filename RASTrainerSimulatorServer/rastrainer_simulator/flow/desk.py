@@ -20,6 +20,7 @@ from rastrainer_simulator.flow.screen import Message, Screen, Tone
 from rastrainer_simulator.flow.session import Session, Surroundings
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.display_use import DisplayReport
+from rastrainer_simulator.replaying.projector import Projector
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.subscribers import Subscribers
 from rastrainer_simulator.view_server.operator_desk import (
@@ -49,6 +50,13 @@ class Desk:
 
     Everything but what the control loop calls belongs to one thread. `advance` is to be called
     some hundred times a second; nothing here waits.
+
+    Attributes:
+        controls: what the operator holds.
+        projector: what the views show.
+        rumble: lets the simulator's gamepads vibrate.
+        screen: what is read.
+        control: who holds the control.
     """
 
     def __init__(
@@ -59,6 +67,7 @@ class Desk:
         preferences: Preferences,
     ) -> None:
         self._control_loop = control_loop
+        self.projector = Projector(control_loop)
         self.controls = Controls(bindings, self)
         self._session = Session(
             control_loop, self.controls, surroundings, preferences, self.happened
@@ -81,6 +90,8 @@ class Desk:
     def close(self) -> None:
         """Let go of the sticks and of the control loop."""
         self._unsubscribe()
+        self._flow.close()
+        self.projector.close()
         self._control_loop.hold_sticks(HANDS_OFF)
 
     def advance(self, dt: float) -> None:
@@ -283,7 +294,8 @@ class Desk:
         return True
 
     def _settle(self) -> None:
-        """Pass on what follows at once: the situation, the sticks, who holds the control."""
+        """Pass on what follows at once: what is shown, the situation, the sticks, the control."""
+        self.projector.show(self._flow.replay)
         self.controls.enter(self._flow.situation)
         sticks = self.controls.sticks
         if sticks != self._told_sticks:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rastrainer.protocol import TRIAL_RUN, Phase
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.control_name import ControlName, Situation
 from rastrainer_simulator.flow.feedback import happening
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.screen import Hint, Message, Screen, Tone
 from rastrainer_simulator.flow.session import OPEN, Session
 from rastrainer_simulator.flow.working import Working, points_in_world
+from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.state import EventKind, SimulationState, StepResult
 from rastrainer_simulator.texts.texts import Said
 
@@ -41,6 +45,12 @@ class Flow:
     def situation(self) -> Situation:
         """Whether the trainee drives the arm or is in a menu."""
         return Situation.WORK if self._session.pages.top is None else Situation.MENU
+
+    @property
+    def replay(self) -> ReplayLoop | None:
+        """What is shown in place of the arm: the trial, while it is shown again."""
+        page = self._session.pages.top
+        return page.replay if isinstance(page, ReplayPage) else None
 
     def take(self, result: StepResult) -> None:
         """Take a tick in which something happened."""
@@ -78,7 +88,9 @@ class Flow:
             self._working.open_menu()
 
     def pause(self, why: str) -> None:
-        """Pause a trial that runs, since nobody can see it; `why` is the key of a sentence."""
+        """Pause what runs, since nobody can see it; `why` is the key of a sentence."""
+        if self.replay is not None:
+            self.replay.pause(True)
         if self._session.training.phase is Phase.RUNNING and self._session.pages.top is None:
             self._unseen = why
             self._working.open_menu()
@@ -86,8 +98,11 @@ class Flow:
     def screen(self, more_warnings: tuple[Message, ...] = ()) -> Screen:
         """Return what the trainee reads now."""
         session = self._session
-        menu = session.pages.menu()
+        page, menu = session.pages.top, session.pages.menu()
         warnings = (*more_warnings, *self._link_warnings(), *session.notices())
+        shown = None if page is None else page.screen()
+        if shown is not None:
+            return replace(shown, warnings=(*shown.warnings, *warnings))
         if menu is not None:
             return Screen(
                 menu=menu,
@@ -103,6 +118,10 @@ class Flow:
             hints=self._working.hints(),
             language=session.preferences.language,
         )
+
+    def close(self) -> None:
+        """Let go of what the open pages have begun."""
+        self._session.pages.show(None)
 
     def _note_done(self) -> None:
         training, scenario = self._session.training, self._session.scenario
@@ -131,7 +150,7 @@ class Flow:
             session.pages.show(WaitingPage(session))
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session))
-        elif before[1] in OPEN or isinstance(session.pages.top, FinishedPage):
+        elif before[1] in OPEN or isinstance(session.pages.top, FinishedPage | ReplayPage):
             # Another simulation may follow a trial while other pages are open: they stay.
             session.pages.show_start()
             session.pages.open(ExperimentPage(session))

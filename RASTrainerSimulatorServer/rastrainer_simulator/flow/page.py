@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from rastrainer_simulator.flow.screen import Item, ItemKind, Menu
+from rastrainer_simulator.flow.screen import Item, ItemKind, Menu, Screen
 
 if TYPE_CHECKING:
     from rastrainer_simulator.controls.control_name import ControlName
@@ -31,6 +31,10 @@ class Page:
     def menu(self) -> Menu:
         """Return what is shown, without a focus."""
         raise NotImplementedError
+
+    def screen(self) -> Screen | None:
+        """Return what is read in place of a menu; None where the menu is."""
+        return None
 
     def accept(self, item: str) -> None:
         """An item that can be chosen was."""
@@ -59,6 +63,9 @@ class Page:
 
     def advance(self, dt: float) -> None:
         """Go on for `dt` seconds."""
+
+    def closed(self) -> None:
+        """It is not open any more."""
 
     def say(self, key: str, **values: object) -> str:
         """Return a sentence in the chosen language."""

@@ -34,7 +34,8 @@ class OpenPages:
 
     def show(self, page: Page | None) -> None:
         """Close all pages and open one, or none."""
-        self._open, self._focus = [], []
+        while self._open:
+            self.close()
         if page is not None:
             self.open(page)
 
@@ -50,8 +51,8 @@ class OpenPages:
     def close(self) -> None:
         """Close the page that is shown."""
         if self._open:
-            self._open.pop()
             self._focus.pop()
+            self._open.pop().closed()
 
     def replace(self, page: Page) -> None:
         """Show a page in place of the one that is shown."""

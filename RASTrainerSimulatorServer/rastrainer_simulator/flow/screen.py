@@ -112,6 +112,8 @@ class Screen:
         status: short facts for the edge of the picture, such as "Task 2", "7 of 15", "03:21".
         hints: the controls that matter just now, for the lower edge.
         language: BCP 47 tag of all texts.
+        is_stepped: whether a headset's sticks step as in a menu, though none is open: while a trial
+            is shown again.
     """
 
     menu: Menu | None = None
@@ -120,6 +122,7 @@ class Screen:
     status: tuple[str, ...] = ()
     hints: tuple[Hint, ...] = ()
     language: str = "en"
+    is_stepped: bool = False
 
 
 def focused_picture(menu: Menu | None) -> str:

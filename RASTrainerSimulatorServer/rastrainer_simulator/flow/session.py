@@ -10,6 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_step import StudyStep
+from rastrainer.journal.folder import journals_of
 from rastrainer.protocol import CommandName, Mode, Phase
 from rastrainer.scenario import Scenario
 from rastrainer.scenario_library import ListedScenario
@@ -30,9 +31,11 @@ from rastrainer_simulator.flow.progress import Progress
 from rastrainer_simulator.flow.screen import Message, Tone
 from rastrainer_simulator.flow.study_guide import StudyGuide, step_sentence
 from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.replaying.film_making import FilmMaking
 from rastrainer_simulator.settings import SimulationSettings
+from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label
 from rastrainer_simulator.vectors import Vector
 
 NOTICE_S = 5.0
@@ -55,6 +58,7 @@ class Surroundings:
         is_slicer_there: tells whether a client is connected over OpenIGTLink.
         quit: ends the process.
         study: knows what a study that Slicer leads asks of the trainees.
+        robot_meshes: folder of the robot's official meshes; None is our own.
     """
 
     config: Path
@@ -65,6 +69,7 @@ class Surroundings:
     is_slicer_there: Callable[[], bool]
     quit: Callable[[], None]
     study: StudyGuide = field(default_factory=StudyGuide)
+    robot_meshes: Path | None = None
 
 
 class Session:
@@ -132,9 +137,14 @@ class Session:
         return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
 
     @property
+    def setup(self) -> SimulationSetup:
+        """What the present simulation was made from."""
+        return self._control_loop.setup
+
+    @property
     def scenario(self) -> Scenario:
         """The head and the tasks."""
-        return self._control_loop.setup.scenario
+        return self.setup.scenario
 
     @property
     def bindings(self) -> Bindings:
@@ -205,6 +215,17 @@ class Session:
         if not self.is_being_set_up:
             self._setting_up = self._surroundings.use_scenario(name)
 
+    def make_film(self) -> FilmMaking:
+        """Have a film made of the present trial, from its journal.
+
+        Raises:
+            InputError: the journal is not there any more.
+        """
+        found = journals_of(self._surroundings.records, self.training.trial_id)
+        if not found:
+            raise InputError(self.texts.say("replay.no journal"))
+        return FilmMaking(found[0], self.scenario.folder, self._surroundings.robot_meshes)
+
     def rebind(self, bindings: Bindings) -> None:
         """Take on other bindings and save them."""
         self._controls.bindings = bindings
@@ -253,10 +274,7 @@ class Session:
 
     def input_label(self, device: Device, name: str) -> str:
         """Return what an input is called."""
-        key = f"{device.value}.{name}"
-        if key in self.texts:
-            return self.texts.say(key)
-        return name.removeprefix("Key").removeprefix("Digit")
+        return input_label(self.texts, device.value, name)
 
     def duration(self, seconds: float) -> str:
         """Return minutes and seconds, such as 03:21."""

@@ -76,13 +76,28 @@ def replay(
         ) from None
 
 
+def tick_span(reading: JournalReading) -> tuple[int, int]:
+    """Return the tick before a trial and its last one.
+
+    Raises:
+        InputError: the journal's entries are not those of a trial.
+    """
+    try:
+        first = StartingPoint(**reading.header["before"]).tick
+        simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
+        return first, max((entry["tick"] for entry in simulated), default=first)
+    except (KeyError, TypeError) as error:
+        raise InputError(
+            f"{reading.path} cannot be replayed: it does not tell its ticks ({error!r})."
+        ) from None
+
+
 def _replay(
     reading: JournalReading, setup: SimulationSetup, watch: Callable[[StepResult], None]
 ) -> ReplayReport:
     header = reading.header
     start = StartingPoint(**header["before"])
-    simulated = [entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED]
-    last = max((entry["tick"] for entry in simulated), default=start.tick)
+    _, last = tick_span(reading)
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
         raise InputError(f"{reading.path} claims {last - start.tick} ticks: no trial is so long.")
     if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:

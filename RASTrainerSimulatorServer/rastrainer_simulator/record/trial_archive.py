@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import SUFFIX
+from rastrainer.journal.folder import SUFFIX, journals_of
 from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName
 from rastrainer.trial_record import TrialRecord
@@ -117,7 +117,7 @@ class TrialArchive:
 
     def _found(self, trial_id: str) -> ArchivedTrial:
         if trial_id not in self._trials:
-            for path in self._folder.glob(f"*_{trial_id}{SUFFIX}"):
+            for path in journals_of(self._folder, trial_id):
                 self._load(path)
         if trial_id not in self._trials:
             raise InputError(

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import bisect
 import contextlib
+from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_reader import JournalReading
@@ -13,30 +12,17 @@ from rastrainer.journal.recording import Recording
 from rastrainer.protocol import Phase
 from rastrainer.trial_analysis import analyze_trial
 from rastrainer.trial_record import TrialRecord
-from rastrainer_simulator.record.recorded_setup import setup_of
-from rastrainer_simulator.record.replay import replay
+from rastrainer_simulator.record.replay import replay, tick_span
+from rastrainer_simulator.replaying.reel import Frame, Reel
 from rastrainer_simulator.setup import SimulationSetup
-from rastrainer_simulator.state import Event, SimulationState, StepResult
+from rastrainer_simulator.state import Event, StepResult
 
 FRAMES_HZ = 60.0
 """As many as a view shows; the simulation has more steps."""
 AFTER_S = 0.25
 """How long the worst touch is seen when it has been made."""
-
-
-@dataclass(frozen=True)
-class Frame:
-    """What is shown at a moment.
-
-    Attributes:
-        time_s: from the trial's start, with its pauses.
-        state: of the simulation.
-        events: what has happened since the frame before.
-    """
-
-    time_s: float
-    state: SimulationState
-    events: tuple[Event, ...]
+TELL_EVERY = 60
+"""After so many frames the progress is told."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +32,7 @@ class Film:
     Attributes:
         trainee: pseudonym.
         task: name.
-        setup: head and robot.
-        frames: in their order, at least one.
+        frames: in their order, at least one; none while the trial was paused.
         worst: label of the touch with the largest error, and from when to when it was approached,
             in s; None for a trial that was not registered.
         difference: how what was simulated again differs from what was recorded; None where it is
@@ -56,8 +41,7 @@ class Film:
 
     trainee: str
     task: str
-    setup: SimulationSetup
-    frames: tuple[Frame, ...]
+    frames: Reel
     worst: tuple[str, float, float] | None
     difference: str | None
 
@@ -66,28 +50,30 @@ class Film:
         """How long it takes."""
         return self.frames[-1].time_s
 
-    def at(self, time_s: float) -> int:
-        """Return the number of the frame that is shown at a time."""
-        times = [frame.time_s for frame in self.frames]
-        return max(0, bisect.bisect_right(times, time_s) - 1)
 
-
-def make_film(reading: JournalReading, scenario: Path | None = None) -> Film:
+def make_film(
+    reading: JournalReading,
+    setup: SimulationSetup,
+    progress: Callable[[float], None] = lambda _share: None,
+) -> Film:
     """Simulate a trial again; that takes about as long as a tenth of the trial.
 
+    Args:
+        reading: the trial's journal, which is only read.
+        setup: what the journal's header describes.
+        progress: told the share of the work done, 0 to 1, some times.
+
     Raises:
-        InputError: the journal is none of a trial, or scenario or robot are others here.
+        InputError: the journal is none of a trial.
     """
-    setup = setup_of(reading.header, scenario)
-    cutter = _Cutter()
-    report = replay(reading, setup, cutter.add)
-    if not cutter.frames:
+    cutter = _Cutter(tick_span(reading), progress)
+    report = replay(reading, setup, cutter.take)
+    if not cutter.reel:
         raise InputError(f"{reading.path} holds nothing that could be shown again.")
     return Film(
         trainee=str(reading.header["trainee"]),
         task=str(reading.header["task"]),
-        setup=setup,
-        frames=tuple(cutter.frames),
+        frames=cutter.reel,
         worst=_worst(reading, setup),
         difference=report.difference,
     )
@@ -96,21 +82,32 @@ def make_film(reading: JournalReading, scenario: Path | None = None) -> Film:
 class _Cutter:
     """Takes the steps of a simulation and keeps what a view shows of them."""
 
-    def __init__(self) -> None:
-        self.frames: list[Frame] = []
+    def __init__(self, ticks: tuple[int, int], progress: Callable[[float], None]) -> None:
+        self.reel = Reel()
+        self._first, self._end = ticks
+        self._progress = progress
         self._start: float | None = None
+        self._due_s = 0.0
         self._events: list[Event] = []
 
-    def add(self, result: StepResult) -> None:
+    def take(self, result: StepResult) -> None:
         state = result.state
         if state.training.phase is Phase.IDLE and not result.events:
             return
         self._start = state.sim_time if self._start is None else self._start
         self._events += result.events
         time = state.sim_time - self._start
-        if not self.frames or time - self.frames[-1].time_s >= 1.0 / FRAMES_HZ or result.events:
-            self.frames.append(Frame(time, state, tuple(self._events)))
+        # Nothing moves in a pause, however long it is.
+        is_due = time >= self._due_s and state.training.phase is not Phase.PAUSED
+        if result.events or is_due:
+            self.reel.add(Frame(time, state, tuple(self._events)))
+            self._due_s = time + 1.0 / FRAMES_HZ
             self._events = []
+            self._tell(state.tick)
+
+    def _tell(self, tick: int) -> None:
+        if len(self.reel) % TELL_EVERY == 0:
+            self._progress((tick - self._first) / max(1, self._end - self._first))
 
 
 def _worst(reading: JournalReading, setup: SimulationSetup) -> tuple[str, float, float] | None:

@@ -6,44 +6,50 @@ from collections.abc import Callable, Sequence
 
 from rastrainer_simulator.controls.control_name import ControlName
 from rastrainer_simulator.flow.feedback import SENSATIONS, happening
-from rastrainer_simulator.flow.screen import Hint, Message, Screen, Tone
+from rastrainer_simulator.flow.screen import Hint, Screen
+from rastrainer_simulator.replaying.player import ACTIONS, Action, Player
 from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.subscribers import Subscribers
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label
 from rastrainer_simulator.view_server.operator_desk import Control, Feedback, Frames, Hello, News
 
-STEP_S = 5.0
-SLOWLY = 0.5
-"""Speed at which the worst touch is shown."""
-
-_PLAY, _BACK, _FORTH, _WORST, _CAMERA, _END = "play", "back", "forth", "worst", "camera", "end"
 _KEYS = {
-    "Space": _PLAY,
-    "Enter": _PLAY,
-    "ArrowLeft": _BACK,
-    "ArrowRight": _FORTH,
-    "KeyT": _WORST,
-    "KeyC": _CAMERA,
-    "Escape": _END,
+    "Space": Action.PLAY,
+    "Enter": Action.PLAY,
+    "ArrowLeft": Action.BACK,
+    "ArrowRight": Action.FORTH,
+    "ArrowUp": Action.WORST,
+    "KeyT": Action.WORST,
+    "KeyC": Action.CAMERA,
+    "KeyM": Action.END,
+    "Escape": Action.END,
 }
 """W3C `KeyboardEvent.code` → what it does."""
-_PAD = {0: _PLAY, 14: _BACK, 15: _FORTH, 2: _WORST, 3: _CAMERA}
+_PAD = {
+    0: Action.PLAY,
+    1: Action.END,
+    2: Action.WORST,
+    3: Action.CAMERA,
+    9: Action.END,
+    12: Action.WORST,
+    14: Action.BACK,
+    15: Action.FORTH,
+}
 """Buttons of the W3C standard gamepad."""
 _PRESSES = {
-    ControlName.TOUCH.value: _PLAY,
-    ControlName.UNDO.value: _WORST,
-    ControlName.CAMERA.value: _CAMERA,
-    ControlName.LEFT.value: _BACK,
-    ControlName.RIGHT.value: _FORTH,
+    **{control.value: action for control, action in ACTIONS.items()},
+    ControlName.TOUCH.value: Action.PLAY,
+    ControlName.UNDO.value: Action.END,
 }
 _HINTS = (
-    ("Space", "hint.play"),
-    ("← →", "hint.seek"),
-    ("T", "hint.worst"),
-    ("C", "hint.camera"),
-    ("Esc", "hint.end"),
+    (("Space",), "hint.play"),
+    (("ArrowLeft", "ArrowRight"), "hint.seek"),
+    (("ArrowUp",), "hint.worst"),
+    (("KeyC",), "hint.camera"),
+    (("Escape",), "hint.end"),
 )
+"""Keys, and the text of what they do."""
 
 
 class ReplayDesk:
@@ -64,14 +70,7 @@ class ReplayDesk:
         self._subscribers: Subscribers[News] = Subscribers()
         self._count = 0
         self._held: dict[int, frozenset[int]] = {}
-        self._does = {
-            _PLAY: lambda: loop.pause(loop.is_playing),
-            _BACK: lambda: loop.play_from(loop.time_s - STEP_S),
-            _FORTH: lambda: loop.play_from(loop.time_s + STEP_S),
-            _WORST: self._show_worst,
-            _CAMERA: self._change_camera,
-            _END: end,
-        }
+        self._player = Player(loop, end)
         self.screen = self._make_screen()
         loop.changed = self._refresh
         loop.subscribe(self._feel)
@@ -124,22 +123,9 @@ class ReplayDesk:
         """Nor does whoever looks at a picture that stands still."""
         self._loop.pause(True)
 
-    def _do(self, action: str | None) -> None:
+    def _do(self, action: Action | None) -> None:
         if action is not None:
-            self._does[action]()
-
-    def _show_worst(self) -> None:
-        worst = self._loop.film.worst
-        if worst is not None:
-            _label, begin, end = worst
-            self._loop.play_from(begin, end, SLOWLY)
-
-    def _change_camera(self) -> None:
-        names = tuple(self._loop.setup.scenario.cameras)
-        if names:
-            shown = self._loop.latest.camera
-            place = names.index(shown) if shown in names else -1
-            self._loop.look(names[(place + 1) % len(names)])
+            self._player.do(action)
 
     def _feel(self, result: StepResult) -> None:
         """Tell what happened then, to be heard and felt again."""
@@ -162,29 +148,9 @@ class ReplayDesk:
         self._subscribers.tell(news)
 
     def _make_screen(self) -> Screen:
-        loop, say = self._loop, self._texts.say
-        film = loop.film
-        task = film.setup.scenario.task(film.task)
-        said = say("replay.title", task=task.title, trainee=film.trainee)
-        if film.worst is not None and loop.speed != 1.0:
-            said = say("replay.worst", point=film.worst[0])
-        training = loop.latest.training
-        status = [
-            f"{_clock(loop.time_s)} / {_clock(film.duration_s)}",
-            say("status.points", kept=len(training.touches), count=len(task.labels)),
-        ]
-        if not loop.is_playing:
-            status.append(say("replay.paused"))
-        differs = film.difference is not None
-        return Screen(
-            instruction=Message(said),
-            warnings=(Message(say("replay.differs"), Tone.WARNING),) if differs else (),
-            status=tuple(status),
-            hints=tuple(Hint(key, say(name)) for key, name in _HINTS),
-            language=self._language,
-        )
+        hints = tuple(self._hint(codes, key) for codes, key in _HINTS)
+        return self._player.screen(self._texts, hints, self._language)
 
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(int(seconds), 60)
-    return f"{minutes:02d}:{rest:02d}"
+    def _hint(self, codes: tuple[str, ...], key: str) -> Hint:
+        labels = (input_label(self._texts, "keyboard", code) for code in codes)
+        return Hint(" / ".join(labels), self._texts.say(key))

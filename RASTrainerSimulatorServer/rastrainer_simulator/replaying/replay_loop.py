@@ -21,6 +21,7 @@ class ReplayLoop:
 
     Attributes:
         film: what is played.
+        setup: head and robot.
         time_s: where in the film it is.
         is_playing: whether it goes on.
         until_s: where it stops by itself.
@@ -31,8 +32,9 @@ class ReplayLoop:
 
     statistics = LoopStatistics()
 
-    def __init__(self, film: Film) -> None:
+    def __init__(self, film: Film, setup: SimulationSetup) -> None:
         self.film = film
+        self.setup = setup
         self.time_s = 0.0
         self.is_playing = True
         self.until_s = film.duration_s
@@ -43,11 +45,6 @@ class ReplayLoop:
         self._subscribers: Subscribers[StepResult] = Subscribers()
         self._shown = -1
 
-    @property
-    def setup(self) -> SimulationSetup:
-        """Head and robot."""
-        return self.film.setup
-
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
         """Have `callback` called with each frame; returns what ends that."""
         return self._subscribers.add(callback)
@@ -55,7 +52,8 @@ class ReplayLoop:
     def play_from(self, time_s: float, until_s: float | None = None, speed: float = 1.0) -> None:
         """Go on from a time in s, up to another or the end."""
         self.time_s = min(max(0.0, time_s), self.film.duration_s)
-        self.until_s = self.film.duration_s if until_s is None else until_s
+        end_s = self.film.duration_s
+        self.until_s = end_s if until_s is None else min(until_s, end_s)
         self.speed, self.is_playing = speed, True
         self._show(is_jump=True)
 
@@ -93,7 +91,7 @@ class ReplayLoop:
             before = now
 
     def _show(self, is_jump: bool) -> None:
-        frame = self.film.at(self.time_s)
+        frame = self.film.frames.number_at(self.time_s)
         passed = () if is_jump else self.film.frames[self._shown + 1 : frame + 1]
         self._shown = frame
         self.latest = self.film.frames[frame].state

@@ -13,7 +13,8 @@ from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.controls.config_folder import config_folder
 from rastrainer_simulator.desktop_process import DesktopProcess
 from rastrainer_simulator.flow.preferences import FILE_NAME, Preferences, read_preferences
-from rastrainer_simulator.replaying.film import Film, make_film
+from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.replaying.film import make_film
 from rastrainer_simulator.replaying.replay_desk import ReplayDesk
 from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.server import stop_on_signals
@@ -28,13 +29,14 @@ def show(
     Raises:
         InputError: it cannot be replayed, or the port not be listened on.
     """
-    film = make_film(read_journal(journal), scenario)
-    asyncio.run(_serve(film, port, has_window, tell))
+    reading = read_journal(journal)
+    setup = setup_of(reading.header, scenario)
+    loop = ReplayLoop(make_film(reading, setup), setup)
+    asyncio.run(_serve(loop, port, has_window, tell))
 
 
-async def _serve(film: Film, port: int | None, has_window: bool, tell: Callable) -> None:
+async def _serve(loop: ReplayLoop, port: int | None, has_window: bool, tell: Callable) -> None:
     stop = asyncio.Event()
-    loop = ReplayLoop(film)
     desk = ReplayDesk(loop, _language(), stop.set)
     window: DesktopProcess | None = None
     tasks: list[asyncio.Task[None]] = []

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
-import os
 import struct
 import subprocess
 import sys
@@ -14,14 +13,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.child_process import BELOW_NORMAL, environment_without_secrets
 from rastrainer_simulator.scene.cache_folder import forget_oldest
 from rastrainer_simulator.scene.scene_key import scene_key, setup_digest
 from rastrainer_simulator.setup import SimulationSetup
 
 NO_TASK = ""
-SECRETS = ("RASTRAINER_VIEW_KEY",)
 _HEADER = struct.Struct("<4sII")
-_BELOW_NORMAL = getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0)
 
 
 @dataclass(frozen=True)
@@ -134,8 +132,8 @@ async def _start() -> asyncio.subprocess.Process:
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
-            env={name: value for name, value in os.environ.items() if name not in SECRETS},
-            creationflags=_BELOW_NORMAL,
+            env=environment_without_secrets(),
+            creationflags=BELOW_NORMAL,
         )
     except OSError as error:
         raise InputError(f"The scene cannot be built: {error}.") from error

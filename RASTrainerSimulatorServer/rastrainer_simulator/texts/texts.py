@@ -68,3 +68,9 @@ class Texts:
     def again(self, sentence: str) -> str:
         """Return a sentence in this language; one that is not ours stays as it is."""
         return self.say(sentence.key, **sentence.values) if isinstance(sentence, Said) else sentence
+
+
+def input_label(texts: Texts, device: str, name: str) -> str:
+    """Return what an input of a device ("gamepad" or "keyboard") is called."""
+    key = f"{device}.{name}"
+    return texts.say(key) if key in texts else name.removeprefix("Key").removeprefix("Digit")

@@ -10,18 +10,18 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.simulator_command import DEFAULT_VIEW_PORT
 from rastrainer_simulator.view_server.limits import ViewLimits
 from rastrainer_simulator.view_server.operator_desk import OperatorDesk
 from rastrainer_simulator.view_server.sessions import LONGEST_KEY, SHORTEST_KEY
+from rastrainer_simulator.view_server.state_source import StateSource
 from rastrainer_simulator.view_server.view_server import ViewServer
 
 KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
 
 
 async def open_views(
-    control_loop: ControlLoop,
+    source: StateSource,
     desk: OperatorDesk,
     tell: Callable[[str], None],
     port: int | None,
@@ -50,7 +50,7 @@ async def open_views(
         tell(f"has a new pairing code for views: {code}")
 
     server = ViewServer(
-        control_loop, desk, tell_new_code, robot_meshes, limits, scenario_picture=scenario_picture
+        source, desk, tell_new_code, robot_meshes, limits, scenario_picture=scenario_picture
     )
     agreed = os.environ.get(KEY_VARIABLE)
     if agreed is not None:

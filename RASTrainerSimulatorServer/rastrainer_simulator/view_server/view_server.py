@@ -14,7 +14,6 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.igtl.state_feed import StateFeed
 from rastrainer_simulator.listener import Listener
 from rastrainer_simulator.scene.cache_folder import cache_folder
@@ -29,6 +28,7 @@ from rastrainer_simulator.view_server.page import NOT_BUILT, page_folder
 from rastrainer_simulator.view_server.pairing import PairingCode
 from rastrainer_simulator.view_server.security_headers import add_security_headers
 from rastrainer_simulator.view_server.sessions import Sessions
+from rastrainer_simulator.view_server.state_source import StateSource
 from rastrainer_simulator.view_server.view import View
 from rastrainer_simulator.view_server.views import Views
 
@@ -51,7 +51,7 @@ class ViewServer:
 
     def __init__(
         self,
-        control_loop: ControlLoop,
+        source: StateSource,
         desk: OperatorDesk,
         on_new_code: Callable[[str], None],
         robot_meshes: Path | None = None,
@@ -61,7 +61,7 @@ class ViewServer:
         """Make a server, in the event loop's thread; nothing listens yet.
 
         Args:
-            control_loop: whose states are told.
+            source: whose states are told.
             desk: what the views' input goes to, and where their screens come from.
             on_new_code: is given a pairing code that replaces `code`, to be shown.
             robot_meshes: those that the setups are loaded with.
@@ -69,7 +69,7 @@ class ViewServer:
             scenario_picture: returns the picture of a scenario by its name.
         """
         self._scenario_picture = scenario_picture
-        self._control_loop = control_loop
+        self._source = source
         self._desk = desk
         self._limits = limits or ViewLimits()
         self.code = PairingCode(asyncio.get_running_loop().time, self._renewed)
@@ -78,7 +78,7 @@ class ViewServer:
         self.sessions = Sessions(self._limits.sessions)
         self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
-        self._views = Views(control_loop, desk, self._scenes, self._limits)
+        self._views = Views(source, desk, self._scenes, self._limits)
         self._streams = 0
         self._page = page_folder()
         self._connections = Connections(self._limits.connections, self._limits.first_message_s)
@@ -103,7 +103,7 @@ class ViewServer:
         await self._runner.setup()
         self._connections.server = self._runner.server
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
-        self._unsubscribe = self._control_loop.subscribe(feed)
+        self._unsubscribe = self._source.subscribe(feed)
         return self.port
 
     async def listen_in_network(self, port: int, tls: ssl.SSLContext) -> int:

@@ -9,7 +9,6 @@ import time
 from collections.abc import Sequence
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.flow.screen import Screen
 from rastrainer_simulator.igtl.pacer import Pacer
 from rastrainer_simulator.scene.scene_files import SceneFiles
@@ -24,6 +23,7 @@ from rastrainer_simulator.view_server.operator_desk import (
     News,
     OperatorDesk,
 )
+from rastrainer_simulator.view_server.state_source import StateSource
 from rastrainer_simulator.view_server.view import View
 
 _log = logging.getLogger(__name__)
@@ -37,9 +37,9 @@ class Views:
     """The joined views; `is_due` may be called in any thread, all else in the event loop's."""
 
     def __init__(
-        self, control_loop: ControlLoop, desk: OperatorDesk, scenes: SceneFiles, limits: ViewLimits
+        self, source: StateSource, desk: OperatorDesk, scenes: SceneFiles, limits: ViewLimits
     ) -> None:
-        self._control_loop = control_loop
+        self._source = source
         self._desk = desk
         self._scenes = scenes
         self._limits = limits
@@ -99,7 +99,7 @@ class Views:
 
     def _tell_all(self, view: View) -> None:
         """Tell a view that has just joined how things stand."""
-        now = self._control_loop.latest
+        now = self._source.latest
         self._look_for_scene(now)
         put = view.outbox.put_latest
         put(outgoing.WELCOME, outgoing.welcome(view.number))
@@ -115,7 +115,7 @@ class Views:
             view.outbox.put_latest(outgoing.PAIRING, self._pairing)
 
     def _state_text(self, now: SimulationState) -> str:
-        statistics = self._control_loop.statistics
+        statistics = self._source.statistics
         return outgoing.state(now, statistics.late + statistics.skipped)
 
     def _hear(self, news: News) -> None:
@@ -132,7 +132,7 @@ class Views:
                 view.outbox.put_latest(outgoing.CONTROL, outgoing.control(news, view.number))
 
     def _look_for_scene(self, now: SimulationState) -> None:
-        setup, task = self._control_loop.setup, now.training.task
+        setup, task = self._source.setup, now.training.task
         if setup is self._setup and task == self._task:
             return
         self._setup, self._task = setup, task

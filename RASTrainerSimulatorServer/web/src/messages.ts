@@ -48,6 +48,7 @@ export interface Screen {
   readonly status: readonly string[];
   readonly hints: readonly Hint[];
   readonly language: string;
+  readonly is_stepped: boolean;
 }
 
 export type Triple = readonly [number, number, number];

@@ -10,6 +10,7 @@ import sys
 import numpy as np
 import pytest
 
+from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals
 from rastrainer.journal.journal_reader import read_journal
 from rastrainer.journal.recording import Recording
@@ -17,7 +18,9 @@ from rastrainer_simulator.cli import main
 from rastrainer_simulator.cohort.cohort import RECORDS
 from rastrainer_simulator.cohort.play import PlaySettings
 from rastrainer_simulator.flow.screen import Screen
+from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replaying.film import make_film
+from rastrainer_simulator.replaying.film_making import FilmMaking
 from rastrainer_simulator.replaying.replay_desk import ReplayDesk
 from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.view_server.operator_desk import Feedback
@@ -31,15 +34,20 @@ def journal(played):
 
 
 @pytest.fixture(scope="module")
-def film(journal):
-    return make_film(read_journal(journal))
+def setup(journal):
+    return setup_of(read_journal(journal).header)
+
+
+@pytest.fixture(scope="module")
+def film(journal, setup):
+    return make_film(read_journal(journal), setup)
 
 
 class Room:
     """A desk with somebody who watches."""
 
-    def __init__(self, film):
-        self.loop = ReplayLoop(film)
+    def __init__(self, film, setup):
+        self.loop = ReplayLoop(film, setup)
         self.ended, self.news, self.tips = [], [], []
         self.desk = ReplayDesk(self.loop, "en", lambda: self.ended.append(True))
         self.desk.subscribe(self.news.append)
@@ -55,8 +63,8 @@ class Room:
 
 
 @pytest.fixture
-def room(film):
-    return Room(film)
+def room(film, setup):
+    return Room(film, setup)
 
 
 def test_the_film_is_the_recorded_trial(journal, film):
@@ -74,7 +82,7 @@ def test_the_film_is_the_recorded_trial(journal, film):
 
 def test_it_plays_in_its_own_time_and_stops_at_its_end(room, film):
     room.loop.advance(10.0)
-    assert room.loop.latest is film.frames[film.at(10.0)].state
+    assert room.loop.latest is film.frames[film.frames.number_at(10.0)].state
     room.press("Space")
     room.loop.advance(10.0)
     assert (room.loop.time_s, room.desk.screen.status[-1]) == (10.0, "Paused")
@@ -117,6 +125,47 @@ def test_the_worst_touch_is_shown_at_half_speed_up_to_the_touch(room, film):
     assert room.touched - before == 1
     assert room.loop.latest.training.touches[-1].label == label
     assert any(isinstance(one, Screen) for one in room.news)
+
+
+@pytest.fixture
+def make(setup):
+    """Return what has films made by a process; what still goes on is ended."""
+    begun = []
+
+    def make(journal):
+        begun.append(FilmMaking(journal, setup.scenario.folder, None))
+        return begun[-1]
+
+    yield make
+    for making in begun:
+        making.cancel()
+
+
+def test_a_process_beside_the_simulator_makes_the_same_film_and_tells_how_far_it_is(
+    make, journal, film
+):
+    before = journal.read_bytes()
+    making = make(journal)
+    made = making.film.result(60)
+    assert 0.5 < making.share <= 1.0
+    assert (made.worst, made.difference) == (film.worst, None)
+    assert [frame.time_s for frame in made.frames] == [frame.time_s for frame in film.frames]
+    ours, theirs = made.frames[-1].state, film.frames[-1].state
+    assert (ours.q, ours.training) == (theirs.q, theirs.training)
+    assert journal.read_bytes() == before
+
+
+def test_what_cannot_be_filmed_beside_the_simulator_is_one_sentence(make, tmp_path):
+    (tmp_path / "no.journal").write_text("nothing")
+    with pytest.raises(InputError, match=r"^The trial cannot be shown again: .* journal"):
+        make(tmp_path / "no.journal").film.result(60)
+
+
+def test_a_film_that_nobody_wants_any_more_is_not_made(make, journal):
+    making = make(journal)
+    making.cancel()
+    with pytest.raises(InputError, match="cannot be shown again"):
+        making.film.result(60)
 
 
 def test_the_program_serves_it_to_views_until_escape(journal, tmp_path):

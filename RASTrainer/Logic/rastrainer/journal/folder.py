@@ -30,9 +30,14 @@ def journals(folder: Path) -> list[Path]:
     return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _begins_as_journal(path)]
 
 
+def journals_of(folder: Path, trial_id: str) -> list[Path]:
+    """Return the files of a folder that are named as a trial's journal: one, or none."""
+    return sorted(folder.glob(f"*_{trial_id}{SUFFIX}"))
+
+
 def read_trajectory(folder: Path, trial_id: str) -> Trajectory | None:
     """Return the trajectory of a trial; None where the folder has no usable journal of it."""
-    for path in sorted(folder.glob(f"*_{trial_id}{SUFFIX}")):
+    for path in journals_of(folder, trial_id):
         with contextlib.suppress(InputError):
             return Recording.of(read_journal(path).entries).trajectory()
     return None

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from rastrainer.errors import InputError
 from rastrainer.experiment.study_step import StudyStep
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.screen import Fact, Item, Menu, Tone
 from rastrainer_simulator.flow.session import Session
+from rastrainer_simulator.replaying.film_making import FilmMaking
 from rastrainer_simulator.state import TrialResult
 
 GOOD_MM = 2.0
@@ -77,9 +80,13 @@ class WaitingPage(FinishedPage):
 
 
 class ResultPage(FinishedPage):
-    """The score, and what it is made of."""
+    """The score, what it is made of, and the trial once more."""
 
     name = "result"
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._making: FilmMaking | None = None
 
     def menu(self) -> Menu:
         """Return the results with their units."""
@@ -89,10 +96,48 @@ class ResultPage(FinishedPage):
         return Menu(
             self.name,
             self.say("result.title", trainee=training.trainee, task=task),
-            (*_sentences(result, "warnings", 3), *_sentences(result, "feedback", 6)),
+            (
+                *_sentences(result, "warnings", 3),
+                *_sentences(result, "feedback", 6),
+                *self._what_comes_next(),
+            ),
             (*self._facts_of_result(result), *_facts_of_trial(self.session)),
             self.items(),
         )
+
+    def items(self) -> tuple[Item, ...]:
+        """Return where one can go, and what can be shown again."""
+        items = {item.name: item for item in super().items()}
+        shown = (self.button("worst"), self.button("replay"))
+        onward = [items.pop("next")] if "next" in items else []
+        return (*onward, *shown, *items.values())
+
+    def accept(self, item: str) -> None:
+        """Show the trial again, or go on."""
+        if item in ("replay", "worst"):
+            self._show_again(begins_at_worst=item == "worst")
+        else:
+            super().accept(item)
+
+    def closed(self) -> None:
+        """Nobody wants the film any more."""
+        if self._making is not None:
+            self._making.cancel()
+
+    def _show_again(self, begins_at_worst: bool) -> None:
+        """The film is made once, when it is first asked for."""
+        session = self.session
+        try:
+            self._making = self._making or session.make_film()
+        except InputError as error:
+            session.complain(str(error))
+        else:
+            session.pages.open(ReplayPage(session, self._making, begins_at_worst))
+
+    def _what_comes_next(self) -> tuple[str, ...]:
+        """Return what a study asks for after this trial."""
+        step = self._step()
+        return () if step is None else (self.session.step_sentence(step),)
 
     def _facts_of_result(self, result: TrialResult) -> list[Fact]:
         score = self.say("result.of 100", score=result.score)

@@ -71,8 +71,9 @@ export class Boards {
     return [this.menu, this.actions];
   }
 
-  get isInMenu(): boolean {
-    return this.screen?.menu != null;
+  /** Whether sticks step: through a menu, or through a trial that is shown again. */
+  get isStepped(): boolean {
+    return this.screen !== null && (this.screen.menu !== null || this.screen.is_stepped);
   }
 
   /** Stand where somebody at the place of the eyes reads them well. */

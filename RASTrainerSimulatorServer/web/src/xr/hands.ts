@@ -66,8 +66,8 @@ export class Hands {
   private repeated = "";
   private repeatIn = 0;
   isHolding = false;
-  /** Whether a menu is open: sticks then step through it. */
-  isInMenu = false;
+  /** Whether sticks step, as through a menu. */
+  isStepped = false;
 
   constructor(
     xr: WebXRManager,
@@ -102,7 +102,7 @@ export class Hands {
     }
     this.grab.steer(this.message.translation, passed);
     this.tellSticks();
-    this.repeat(this.isInMenu ? step : "", Math.min(LONGEST_STEP_S, passed));
+    this.repeat(this.isStepped ? step : "", Math.min(LONGEST_STEP_S, passed));
   }
 
   /** Let both hands feel something. */

@@ -84,7 +84,7 @@ export class Headset {
 
   showScreen(screen: Screen): void {
     this.boards.show(screen);
-    this.hands.isInMenu = this.boards.isInMenu;
+    this.hands.isStepped = this.boards.isStepped;
   }
 
   showControl(control: ControlNews): void {

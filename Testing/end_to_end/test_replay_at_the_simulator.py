@@ -1,0 +1,91 @@
+"""A trial that was played and scored over OpenIGTLink, shown again by the simulator's process."""
+
+from __future__ import annotations
+
+import secrets
+
+import numpy as np
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.scenario import load_scenario
+from rastrainer.scripted_trainee import Skill
+from rastrainer.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.stream_trainee import WatchingView
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.window_process import wait_until
+from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.view_server.served import ViewClient
+
+BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
+SPEED = ("--speed", "4")
+SCORE = {
+    "matrix": np.eye(4).ravel().tolist(),
+    "freMm": 1.25,
+    "expectedTreMm": 1.5,
+    "score": 81.0,
+}
+
+
+@pytest.fixture
+def thread():
+    thread = LoopThread()
+    yield thread
+    thread.stop()
+
+
+@pytest.fixture
+def key():
+    return secrets.token_hex(32)
+
+
+@pytest.fixture
+def simulator(tmp_path, key):
+    with ViewedSimulator(tmp_path / "records", *SPEED, key=key) as simulator:
+        yield simulator
+
+
+@pytest.fixture
+def slicer(simulator):
+    """A client that has played and scored a trial."""
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    with Client(port=simulator.port) as slicer:
+        say_hello(slicer, "Slicer")
+        trial = play_trial(slicer, scenario, "task-1", "P07", 5, BRISK)
+        score = {"trialId": trial.trial_id, **SCORE}
+        assert slicer.send_command("TrialScored", score, timeout=20).ok
+        yield slicer
+
+
+@pytest.fixture
+def views(thread, simulator, key):
+    """Two pages that have joined: what each sends, and what each is told."""
+    with (
+        ViewClient(thread, simulator.url, key) as one,
+        ViewClient(thread, simulator.url, key) as other,
+    ):
+        yield (one, WatchingView(one)), (other, WatchingView(other))
+
+
+def shown(view):
+    """Return the name of the menu; None where none is open."""
+    return view.screen.menu and view.screen.menu.name
+
+
+@pytest.mark.usefixtures("slicer")
+def test_all_views_see_the_trial_again_and_then_the_arm_and_the_journal_stays(tmp_path, views):
+    (journal,) = (tmp_path / "records").glob("*.journal")
+    before = journal.read_bytes()
+    (client, first), (_, second) = views
+    wait_until(lambda: shown(first) == "result", "the result")
+    client.send({"type": "item", "name": "worst"})
+    for view in (first, second):
+        wait_until(lambda view=view: shown(view) is None, "the film")
+        assert "the worst touch, at half speed" in view.screen.instruction.text
+        wait_until(lambda view=view: view.state["phase"] in ("running", "complete"), "the trial")
+    client.send({"type": "key", "code": "Escape", "isDown": True, "text": ""})
+    for view in (first, second):
+        wait_until(lambda view=view: shown(view) == "result", "the result again")
+        wait_until(lambda view=view: view.state["phase"] == "scored", "the arm")
+    assert journal.read_bytes() == before
