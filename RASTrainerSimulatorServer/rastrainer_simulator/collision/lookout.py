@@ -45,8 +45,9 @@ class Lookout:
         due, rows = self._due, []
         while due and due[0][0] <= travelled:
             rows.append(heappop(due)[1])
-        if rough is not None and len(rows) > _FEW:
-            rows = self._roughly_near(rows, rough(), travelled)
+            if rough is not None and len(rows) > _FEW:
+                rows = self._roughly_near(rows, rough(), travelled)
+                break
         rows.sort()
         return rows
 
@@ -56,8 +57,11 @@ class Lookout:
         heappush(self._due, (until, row))
 
     def _roughly_near(self, rows: list[int], bounds: np.ndarray, travelled: float) -> list[int]:
+        """Put off what is roughly far of `rows` and of what else is due; return the others."""
+        rows = rows + [row for moment, row in self._due if moment <= travelled]
         until = (travelled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
         far = (bounds >= _ROUGHLY_FAR).tolist()
-        self._due += [(until[row], row) for row in rows if far[row]]
+        waiting = [entry for entry in self._due if entry[0] > travelled]
+        self._due = [*waiting, *((until[row], row) for row in rows if far[row])]
         heapify(self._due)
         return [row for row in rows if not far[row]]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -12,11 +13,15 @@ from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
+from rastrainer_simulator.robot.solution import FabrikSettings
 
 LEANING_DEG = (0.0, 20.0, 40.0, 55.0)
 """How far the tool may lean away from the skin's normal; tried in this order."""
 
-AZIMUTHS = 8
+_AZIMUTHS = np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False).tolist()
+_LEANINGS = ((LEANING_DEG[0], 0.0), *product(LEANING_DEG[1:], _AZIMUTHS))
+"""How far each direction leans, degrees, and to which side, rad."""
+
 SWIVELS_DEG = (0.0, 60.0, -60.0)
 """Turns of the first joint, undone by the third, from which the elbow's place is looked for."""
 
@@ -52,7 +57,8 @@ class TouchPlanner:
         self._collision = collision
         self._clearance = clearance
         self._kinematics = make_kinematics(model)
-        self._fabrik = Fabrik(model)
+        # What one pass cannot hold no other can: the rest would only look for what comes nearest.
+        self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
         self._starts = [_swiveled(model.home, degrees) for degrees in SWIVELS_DEG]
 
     def touch(self, position: np.ndarray, normal: np.ndarray) -> Touch | None:
@@ -79,9 +85,10 @@ class TouchPlanner:
         The `likely` one is tried first: what has worked in one pose of the head mostly works in
         others, too, which saves many tries.
         """
-        directions = list(tool_directions(normal))
-        for number in (likely, *(each for each in range(len(directions)) if each != likely)):
-            if self._posture(position, directions[number][1]) is not None:
+        frame = _frame(normal)
+        numbers = range(len(_LEANINGS))
+        for number in (likely, *(each for each in numbers if each != likely)):
+            if self._posture(position, _leaning(frame, number)) is not None:
                 return number
         return None
 
@@ -99,15 +106,23 @@ class TouchPlanner:
 
 def tool_directions(normal: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
     """Yield directions of the tool against a normal, and how far each leans, in degrees."""
+    frame = _frame(normal)
+    for number, (leaning_deg, _azimuth) in enumerate(_LEANINGS):
+        yield leaning_deg, _leaning(frame, number)
+
+
+def _frame(normal: np.ndarray) -> np.ndarray:
+    """Return two directions across a unit normal, and the normal, as rows (3, 3)."""
     across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
     across /= np.linalg.norm(across)
-    along = np.cross(normal, across)
-    yield 0.0, -normal
-    for leaning_deg in LEANING_DEG[1:]:
-        leaning = np.radians(leaning_deg)
-        for azimuth in np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False):
-            aside = np.cos(azimuth) * across + np.sin(azimuth) * along
-            yield leaning_deg, np.sin(leaning) * aside - np.cos(leaning) * normal
+    return np.array([across, np.cross(normal, across), normal])
+
+
+def _leaning(frame: np.ndarray, number: int) -> np.ndarray:
+    leaning, azimuth = np.radians(_LEANINGS[number][0]), _LEANINGS[number][1]
+    across, along, normal = frame
+    aside = np.cos(azimuth) * across + np.sin(azimuth) * along
+    return np.sin(leaning) * aside - np.cos(leaning) * normal
 
 
 def _swiveled(home: tuple[float, ...], degrees: float) -> tuple[float, ...]:
