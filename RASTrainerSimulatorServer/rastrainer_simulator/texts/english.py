@@ -387,7 +387,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "replay.paused": "Paused",
         "replay.making": "Your trial is simulated again",
         "replay.done": "Done",
-        "replay.percent": "{share:.0%}",
+        "replay.percent": "{percent:.0f} %",
         "replay.back": "Back to the result",
         "replay.no worst": "Nobody can tell which touch of this trial was the worst.",
         "replay.no journal": "The trial cannot be shown again: its journal is not in the folder of "

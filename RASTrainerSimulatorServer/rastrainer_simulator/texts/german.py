@@ -399,7 +399,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "replay.paused": "Angehalten",
         "replay.making": "Dein Versuch wird noch einmal simuliert",
         "replay.done": "Fertig",
-        "replay.percent": "{share:.0%}",
+        "replay.percent": "{percent:.0f} %",
         "replay.back": "Zum Ergebnis",
         "replay.no worst": "Welche Berührung dieses Versuchs die schlechteste war, lässt sich "
         "nicht sagen.",

@@ -255,7 +255,7 @@ def test_until_the_film_is_made_its_progress_is_shown_and_one_can_go_back(place)
     place.choose("replay")
     place.until_menu("replay")
     assert place.menu.title == "Your trial is simulated again"
-    assert place.menu.facts[0].value.endswith("%")
+    assert place.menu.facts[0].value.endswith(" %")
     place.tap("accept")
     place.until_menu("result")
     place.submit("StartTask", task="task-1", trainee="P07")

@@ -37,7 +37,8 @@ class ReplayPage(Page):
 
     def menu(self) -> Menu:
         """Return how far the film is."""
-        done = Fact(self.say("replay.done"), self.say("replay.percent", share=self._making.share))
+        percent = self.say("replay.percent", percent=100.0 * self._making.share)
+        done = Fact(self.say("replay.done"), percent)
         button = self.button("back")
         return Menu(self.name, self.say("replay.making"), (), (done,), (button,))
 
