@@ -81,10 +81,11 @@ def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
     widths = np.concatenate([np.full(len(shaft), SHAFT_WIDTH / 2.0), arrow.half_width(head)])
     middle, outward = _at(arrow.way, along), _unit(_at(arrow.outward, along))
     to_left = _unit(np.cross(outward, _tangents(arrow.way, along)))
-    rows = []
-    for place, normal, left, width in zip(middle, outward, to_left, widths, strict=True):
-        rows.append([skin.onto(place + width * share * left, normal) for share in _ACROSS])
-    points = np.array(rows).reshape(-1, 3)
+    sides = np.array(_ACROSS)[:, None] * (widths[:, None] * to_left)[:, None]
+    rows = [
+        skin.onto(row, normal) for row, normal in zip(middle[:, None] + sides, outward, strict=True)
+    ]
+    points = np.concatenate(rows)
     return Shape(points, _grid(len(along), len(_ACROSS)), np.repeat(outward, len(_ACROSS), axis=0))
 
 
@@ -131,7 +132,7 @@ def _walk(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Walk over the skin, `turn` (rad) aside of `goal`; return places a step apart, and normals."""
     outward = skin.outward(start)
-    place = skin.onto(np.asarray(start, dtype=float), outward)
+    place = skin.onto(np.atleast_2d(start), outward)[0]
     way, normals = [place], [outward]
     while STEP * (len(way) - 1) < longest and np.linalg.norm(goal - place) > STEP:
         toward = goal - place
@@ -139,7 +140,8 @@ def _walk(
         if np.linalg.norm(along) < 1e-6:
             break  # The goal is straight below: on the other side of the head.
         along = np.cos(turn) * along + np.sin(turn) * np.cross(outward, along)
-        place = skin.onto(place + STEP * along / np.linalg.norm(along), outward)
+        ahead = place + STEP * along / np.linalg.norm(along)
+        place = skin.onto(ahead[None], outward)[0]
         outward = skin.outward(place)
         way.append(place)
         normals.append(outward)

@@ -86,11 +86,10 @@ def _choices(
     obstacles, radii = obstacles[near], radii[near]
     least = size.min() / 2.0 + MARGINS[-1]
     rectangle = _rectangle(size)
+    around = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)]) @ frame[:2]
     places: list[Place] = []
     for distance in DISTANCES:
-        for angle in ANGLES:
-            aside = np.cos(angle) * frame[0] + np.sin(angle) * frame[1]
-            middle = skin.onto(point + distance * aside, frame[2])
+        for middle in skin.onto(point + distance * around, frame[2]):
             own = np.linalg.norm(middle - point)
             if own > OWN_SHARE * np.linalg.norm(others - middle, axis=1).min(initial=np.inf):
                 continue
@@ -115,7 +114,8 @@ def _rectangle(size: np.ndarray) -> np.ndarray:
 
 
 def _clearance(covers: np.ndarray, obstacles: np.ndarray, radii: np.ndarray) -> float:
-    return float((np.linalg.norm(covers[:, None] - obstacles[None], axis=2) - radii).min())
+    away = covers[:, None] - obstacles[None]
+    return float((np.sqrt(np.einsum("ijk,ijk->ij", away, away)) - radii).min())
 
 
 def _chosen(choices: list[list[Place]], margin: float) -> list[Place] | None:

@@ -60,19 +60,24 @@ class Skin:
         up /= np.linalg.norm(up)
         return np.array([np.cross(up, outward), up, outward])
 
-    def onto(self, point: np.ndarray, outward: np.ndarray) -> np.ndarray:
-        """Return where the line through `point` along `outward` enters the skin, else `point`."""
-        start, end = point + REACH * outward, point - REACH * outward
-        hit, place = [0.0, 0.0, 0.0], mutable(0.0)
-        found = self._cells.IntersectWithLine(
-            start, end, 1e-6, place, hit, [0.0] * 3, mutable(0), mutable(0)
-        )
-        return np.array(hit) if found else point
+    def onto(self, points: np.ndarray, outward: np.ndarray) -> np.ndarray:
+        """Return where lines through `points` (n, 3) along `outward` (3,) enter the skin, (n, 3).
+
+        A point whose line misses the skin stays where it is.
+        """
+        placed = points.tolist()
+        hit, along, place = [0.0] * 3, mutable(0.0), [0.0] * 3
+        part, cell = mutable(0), mutable(0)
+        starts, ends = (points + REACH * outward).tolist(), (points - REACH * outward).tolist()
+        for row, (start, end) in enumerate(zip(starts, ends, strict=True)):
+            if self._cells.IntersectWithLine(start, end, 1e-6, along, hit, place, part, cell):
+                placed[row] = tuple(hit)
+        return np.array(placed)
 
     def lay(self, flat: np.ndarray, point: np.ndarray) -> np.ndarray:
         """Lay flat points (n, 2) float around a point of the skin; return (n, 3) float."""
         frame = self.frame(point)
-        return np.array([self.onto(point + corner @ frame[:2], frame[2]) for corner in flat])
+        return self.onto(point + flat @ frame[:2], frame[2])
 
     def lay_shape(self, points: np.ndarray, triangles: np.ndarray, at: np.ndarray) -> Shape:
         """Lay a flat shape, (n, 2) float points and (m, 3) int triangles, around a point."""
