@@ -14,7 +14,7 @@ from rastrainer_simulator.controls.inputs import GAMEPAD_INPUTS, Device
 from rastrainer_simulator.controls.source import SourceKind
 from rastrainer_simulator.flow.preferences import OPTIONS
 from rastrainer_simulator.texts.english import ENGLISH
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, pair_label
 
 
 def fields(sentence):
@@ -58,3 +58,16 @@ def test_a_sentence_can_be_copied_and_sent_to_another_process():
     said = Texts().say("start", trainee="P01", point="1")
     for copied in (copy.copy(said), copy.deepcopy(said), pickle.loads(pickle.dumps(said))):
         assert (copied, copied.key, copied.values) == (said, said.key, said.values)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "together"),
+    [
+        ("Stick left", "Stick right", "Stick left / right"),
+        ("Arrow up", "Tab", "Arrow up / Tab"),
+        ("A", "D", "A / D"),
+        ("Page up", "Arrow down", "Page up / Arrow down"),
+    ],
+)
+def test_what_two_inputs_share_is_said_once(first, second, together):
+    assert pair_label(first, second) == together

@@ -177,9 +177,8 @@ class Flow:
     def _menu_hints(self) -> tuple[Hint, ...]:
         session = self._session
         say = session.texts.say
-        up, down = session.label(ControlName.UP), session.label(ControlName.DOWN)
         return (
-            Hint(f"{up} / {down}", say("hint.choose")),
+            Hint(session.pair_label(ControlName.UP, ControlName.DOWN), say("hint.choose")),
             Hint(session.label(ControlName.ACCEPT), say("hint.accept")),
             Hint(session.label(ControlName.BACK), say("hint.back")),
         )

@@ -35,7 +35,7 @@ from rastrainer_simulator.replaying.film_making import FilmMaking
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.vectors import Vector
 
 NOTICE_S = 5.0
@@ -266,6 +266,10 @@ class Session:
         if holder is not None and holder.kind is SourceKind.XR and of_headset in self.texts:
             return self.texts.say(of_headset)
         return self.input_label(self.device, self.bindings.table(self.device)[control][0])
+
+    def pair_label(self, first: ControlName, second: ControlName) -> str:
+        """Return the first inputs of two controls that belong together."""
+        return pair_label(self.label(first), self.label(second))
 
     def input_labels(self, device: Device, control: ControlName) -> str:
         """Return all inputs of a control."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import reduce
 
 from rastrainer_simulator.controls.control_name import ControlName
 from rastrainer_simulator.flow.feedback import SENSATIONS, happening
@@ -11,7 +12,7 @@ from rastrainer_simulator.replaying.player import ACTIONS, Action, Player
 from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.subscribers import Subscribers
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.view_server.operator_desk import Control, Feedback, Frames, Hello, News
 
 _KEYS = {
@@ -153,4 +154,4 @@ class ReplayDesk:
 
     def _hint(self, codes: tuple[str, ...], key: str) -> Hint:
         labels = (input_label(self._texts, "keyboard", code) for code in codes)
-        return Hint(" / ".join(labels), self._texts.say(key))
+        return Hint(reduce(pair_label, labels), self._texts.say(key))

@@ -381,7 +381,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "hint.seek": "5 s back, forth",
         "hint.worst": "Worst touch",
         "hint.end": "End",
-        "hint.result": "Back to the result",
+        "hint.result": "Result",
         "replay.title": "{task} of {trainee}, shown again",
         "replay.worst": "Point {point}, the worst touch, at half speed",
         "replay.paused": "Paused",

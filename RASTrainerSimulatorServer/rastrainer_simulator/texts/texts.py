@@ -70,6 +70,12 @@ class Texts:
         return self.say(sentence.key, **sentence.values) if isinstance(sentence, Said) else sentence
 
 
+def pair_label(first: str, second: str) -> str:
+    """Return what two inputs are called together, such as "Stick left / right"."""
+    shared, _, last = second.rpartition(" ")
+    return f"{first} / {last if first.rpartition(' ')[0] == shared else second}"
+
+
 def input_label(texts: Texts, device: str, name: str) -> str:
     """Return what an input of a device ("gamepad" or "keyboard") is called."""
     key = f"{device}.{name}"

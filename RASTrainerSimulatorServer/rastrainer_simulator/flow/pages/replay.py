@@ -103,7 +103,7 @@ class ReplayPage(Page):
 
     def _hints(self) -> tuple[Hint, ...]:
         label, say = self.session.label, self.session.texts.say
-        seek = f"{label(ControlName.LEFT)} / {label(ControlName.RIGHT)}"
+        seek = self.session.pair_label(ControlName.LEFT, ControlName.RIGHT)
         return (
             Hint(label(ControlName.ACCEPT), say("hint.play")),
             Hint(seek, say("hint.seek")),
