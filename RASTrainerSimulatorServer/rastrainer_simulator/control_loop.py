@@ -20,7 +20,7 @@ from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.loop_statistics import LoopStatistics, Punctuality
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.pending_answers import PendingAnswers
-from rastrainer_simulator.precise_clock import precise_timing, sleep_until
+from rastrainer_simulator.precise_clock import precise_timing, sleep_until, stand_second_in_line
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.held_back import HeldBack
 from rastrainer_simulator.record.stamps import stamp
@@ -89,7 +89,13 @@ class ControlLoop:
         self._dt = 1.0 / rate_hz
         self._period = 0.0 if speed is None else self._dt / speed
         self._archive = TrialArchive(records)
-        self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="journal")
+        # A loop that never sleeps would leave the others nothing.
+        self._is_first_in_line = self._period >= self._dt
+        self._writer = ThreadPoolExecutor(
+            max_workers=1,
+            thread_name_prefix="journal",
+            initializer=stand_second_in_line if self._is_first_in_line else None,
+        )
         self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt)
         if interrupted is not None:
             self._recorder.take_up(simulation, interrupted)
@@ -196,7 +202,7 @@ class ControlLoop:
 
     def _run(self) -> None:
         try:
-            with precise_timing(is_first_in_line=self._period >= self._dt):
+            with precise_timing(self._is_first_in_line):
                 self._tick_on_time()
         except Exception:
             _log.exception("The control loop has broken down")

@@ -1,4 +1,4 @@
-"""Sleep until a moment of the monotonic clock, to a fraction of a millisecond."""
+"""Sleep until a moment of the monotonic clock, to a fraction of a millisecond, and be let to."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ Python's own 5 ms would let one busy thread make every second tick late, and wit
 threads in a row make one in fifty late.
 """
 
-_TIME_CRITICAL = 15
+FIRST, SECOND = 2, 1
+"""Real-time priorities of Linux: of the control loop, and of the threads that it waits for."""
+
+_WINDOWS_PRIORITY = {FIRST: 15, SECOND: 2}  # TIME_CRITICAL, HIGHEST
 
 
 def sleep_until(moment: float) -> None:
@@ -35,27 +38,43 @@ def precise_timing(is_first_in_line: bool) -> Iterator[None]:
     interval = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     try:
-        with _fine_timer(), _first_in_line() if is_first_in_line else contextlib.nullcontext():
+        with _fine_timer(), _in_line(FIRST) if is_first_in_line else contextlib.nullcontext():
             yield
     finally:
         sys.setswitchinterval(interval)
 
 
-@contextlib.contextmanager
-def _first_in_line() -> Iterator[None]:
-    """Ask for real-time priority; Linux grants it to root and where `ulimit -r` is above 0."""
+def stand_second_in_line() -> None:
+    """Let this thread run before all ordinary ones from now on, but after the control loop.
+
+    It is for the threads that share the interpreter with the loop in every tick. One that is put
+    aside for another program while it holds the interpreter makes the loop wait for both, whatever
+    the loop's own priority (priority inversion). Nothing happens where the system does not permit
+    it; processes and threads that the thread starts stay ordinary.
+    """
     if sys.platform == "win32":
-        with _thread_priority(_TIME_CRITICAL):
+        _set_windows_priority(_WINDOWS_PRIORITY[SECOND])
+    elif hasattr(os, "SCHED_FIFO"):
+        with contextlib.suppress(PermissionError):
+            _set_real_time(SECOND)
+
+
+@contextlib.contextmanager
+def _in_line(priority: int) -> Iterator[None]:
+    """Ask for real-time priority; Linux grants it to root and up to what `ulimit -r` tells."""
+    if sys.platform == "win32":
+        before = _set_windows_priority(_WINDOWS_PRIORITY[priority])
+        try:
             yield
+        finally:
+            _set_windows_priority(before)
         return
     if not hasattr(os, "SCHED_FIFO"):
         yield
         return
-    # Threads that it starts, such as the journal's, stay ordinary.
-    flag = os.SCHED_RESET_ON_FORK
     policy, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO | flag, os.sched_param(1))
+        _set_real_time(priority)
     except PermissionError:
         yield
         return
@@ -63,12 +82,16 @@ def _first_in_line() -> Iterator[None]:
         yield
     finally:
         # Whoever is not root may not take the flag back.
-        os.sched_setscheduler(0, policy | flag, parameters)
+        os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameters)
 
 
-@contextlib.contextmanager
-def _thread_priority(priority: int) -> Iterator[None]:
-    """Set the priority of this thread on Windows, which permits it to everyone."""
+def _set_real_time(priority: int) -> None:
+    # What the thread starts, such as the window, stays ordinary.
+    os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
+
+
+def _set_windows_priority(priority: int) -> int:
+    """Set the priority of this thread, which Windows permits to everyone; return that before."""
     import ctypes
 
     kernel = ctypes.windll.kernel32
@@ -76,10 +99,7 @@ def _thread_priority(priority: int) -> Iterator[None]:
     thread = ctypes.c_void_p(kernel.GetCurrentThread())
     before = kernel.GetThreadPriority(thread)
     kernel.SetThreadPriority(thread, priority)
-    try:
-        yield
-    finally:
-        kernel.SetThreadPriority(thread, before)
+    return before
 
 
 @contextlib.contextmanager

@@ -17,6 +17,7 @@ from typing import Any
 
 from rastrainer_simulator.cli import main as run
 from rastrainer_simulator.gamepad.gamepads import Gamepads
+from rastrainer_simulator.precise_clock import stand_second_in_line
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 
@@ -110,6 +111,8 @@ def main() -> int:
 
 
 def _obey(path: Path) -> None:
+    # A real gamepad's driver does not hold the interpreter either when the control loop is due.
+    stand_second_in_line()
     with path.open("a", buffering=1) as felt:
         gamepad = VirtualGamepad(lambda *strengths: felt.write(json.dumps(strengths) + "\n"))
         plug = Plug(gamepad)

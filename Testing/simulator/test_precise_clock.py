@@ -6,7 +6,13 @@ import threading
 
 import pytest
 
-from rastrainer_simulator.precise_clock import SWITCH_INTERVAL_S, precise_timing
+from rastrainer_simulator.precise_clock import (
+    FIRST,
+    SECOND,
+    SWITCH_INTERVAL_S,
+    precise_timing,
+    stand_second_in_line,
+)
 
 linux_only = pytest.mark.skipif(sys.platform != "linux", reason="how Linux schedules threads")
 
@@ -28,7 +34,7 @@ def may_be_first() -> bool:
 
     def ask() -> bool:
         try:
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIRST))
         except PermissionError:
             return False
         return True
@@ -52,6 +58,30 @@ def test_threads_that_the_loop_starts_stay_ordinary():
             return in_a_thread(policy)
 
     assert in_a_thread(inside) == os.SCHED_OTHER
+
+
+@linux_only
+def test_who_shares_the_interpreter_with_the_loop_comes_after_it_and_before_ordinary_threads():
+    def told() -> tuple[int, int]:
+        return policy(), os.sched_getparam(0).sched_priority
+
+    def second() -> tuple[tuple[int, int], tuple[int, int]]:
+        stand_second_in_line()
+        return told(), in_a_thread(told)
+
+    def first() -> tuple[int, int]:
+        with precise_timing(is_first_in_line=True):
+            return told()
+
+    ordinary = (os.SCHED_OTHER, 0)
+    itself, started = in_a_thread(second)
+    assert started == ordinary
+    if may_be_first():
+        assert itself == (os.SCHED_FIFO, SECOND)
+        assert in_a_thread(first) == (os.SCHED_FIFO, FIRST)
+        assert FIRST > SECOND
+    else:
+        assert itself == in_a_thread(first) == ordinary
 
 
 @linux_only

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 from rastrainer_simulator.doctor.finding import Finding, Verdict
+from rastrainer_simulator.precise_clock import FIRST
 
 
 def check_real_time() -> Iterator[Finding]:
@@ -33,7 +34,7 @@ def _is_permitted() -> bool:
 
     def ask() -> bool:
         try:
-            os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(1))
+            os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(FIRST))
         except PermissionError:
             return False
         return True
