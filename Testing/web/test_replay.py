@@ -1,0 +1,59 @@
+"""A trial shown again on the page, steered by its keyboard."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.scenario import load_scenario
+from rastrainer.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.assets import asset_path
+from Testing.web.chromium import open_page, wait_for
+from Testing.web.hands import PageKeys
+from Testing.web.place import WITHOUT_GRAPHICS, Place
+
+# A trial is played first: minutes.
+pytestmark = pytest.mark.soak
+
+SCORE = {
+    "matrix": np.eye(4).ravel().tolist(),
+    "freMm": 1.25,
+    "expectedTreMm": 1.5,
+    "score": 81.0,
+}
+POINTS = 15
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """A place at which a trial has been played and scored."""
+    folder = tmp_path_factory.mktemp("replay")
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS) as place:
+        with Client(port=place.simulator.port) as slicer:
+            say_hello(slicer, "Slicer")
+            trial = play_trial(slicer, scenario, "task-1", "P07", 5)
+            score = {"trialId": trial.trial_id, **SCORE}
+            assert slicer.send_command("TrialScored", score, timeout=20).ok
+        yield place
+
+
+def test_the_trial_is_shown_sought_and_left_by_the_keyboard(place, browser):
+    page = open_page(browser, place.simulator.url, place.simulator.code)
+    trainee = place.trainee(PageKeys(page))
+    trainee.until_menu("result")
+    trainee.choose("replay")
+    trainee.until_menu(None)
+    wait_for(page, "page.screen.instruction.text === 'Task 1 of P07, shown again'")
+    trainee.until(lambda: trainee.view.state["phase"] == "running", "the film")
+    for _ in range(3):
+        trainee.hands.tap("right")
+    trainee.until(lambda: 0 < trainee.touched < POINTS, "a later part of the film")
+    trainee.hands.tap("up")
+    trainee.until(lambda: "worst" in trainee.view.screen.instruction.text, "the worst touch")
+    trainee.hands.tap("back")
+    trainee.until_menu("result")
+    trainee.until(lambda: trainee.view.state["phase"] == "scored", "the arm")
+    assert page.problems == []
+    page.close()
