@@ -96,7 +96,8 @@ def test_the_trial_run_is_as_long_as_the_study_says(menu, guide):
     tell(menu, guide, StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0))
     menu.choose("trial-run")
     menu.until_menu(None)
-    assert menu.desk.screen.status[2] in ("08:00 left", "07:59 left")
+    # Time goes on while the disk keeps the start.
+    assert menu.desk.screen.status[2].startswith(("08:00", "07:5"))
 
 
 def test_a_trial_that_was_asked_for_is_not_begun_twice_before_slicer_says_what_follows(menu, guide):
