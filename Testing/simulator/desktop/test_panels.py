@@ -50,6 +50,15 @@ def test_no_menu_is_larger_than_its_room_and_its_focus_is_always_seen(menu, size
     assert picture.pixels[0, 0, 3] == 0
 
 
+@pytest.mark.parametrize("size", SIZES)
+def test_a_long_text_hides_no_choice(size):
+    said = "Take more care at the points 5, 7: without these errors all would be 29 % more exact."
+    facts = tuple(Fact(f"Expected error at the target {n}", f"{n}.25 mm") for n in range(7))
+    items = tuple(Item(name, name) for name in ("next", "worst", "replay", "again", "menu"))
+    menu = Menu("result", "P07: Task 1", (said,) * 6, facts, items, "next")
+    assert len(paint(menu, size).rows) == len(items)
+
+
 def test_a_click_finds_the_item_in_whose_row_it_is():
     picture = paint(MENU, (1920, 1080))
     for name, row in picture.rows.items():

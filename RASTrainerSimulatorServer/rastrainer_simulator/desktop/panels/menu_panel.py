@@ -50,22 +50,27 @@ def menu_panel(
 
     The item `hovered` is under the mouse; `thumbnail` belongs to the one that has the focus.
 
-    What is too high is set smaller, down to what is still readable, and then wider; beyond that
-    its rows scroll with the focus.
+    What is too high is set smaller, down to what is still readable, then wider, and then with its
+    text beside its rows; beyond that the rows scroll with the focus.
     """
-    width, factor = theme.PANEL_WIDTH, 1.0
+    factor, width, widths = 1.0, theme.PANEL_WIDTH, [theme.BROAD_PANEL_WIDTH]
+    if menu.paragraphs:
+        widths.insert(0, theme.WIDE_PANEL_WIDTH)
     layout = _Layout(menu, Brush(scale), room, width)
-    while layout.height > room[1] and (factor > SMALLEST or width < theme.BROAD_PANEL_WIDTH):
+    while layout.height > room[1] and (factor > SMALLEST or widths):
         if factor > SMALLEST:
             factor *= SHRINK
         else:
-            width = theme.BROAD_PANEL_WIDTH
+            width = widths.pop()
         layout = _Layout(menu, Brush(scale * factor), room, width)
     return layout.paint(hovered, thumbnail)
 
 
 class _Layout:
-    """Where everything of a menu comes, at one scale; a picture needs a width of its own."""
+    """Where everything of a menu comes, at one scale.
+
+    A picture needs a width of its own; without one, the widest panel has its text in two columns.
+    """
 
     def __init__(self, menu: Menu, brush: Brush, room: tuple[int, int], width: int):
         self._menu = menu
@@ -75,8 +80,11 @@ class _Layout:
         self._width = min(brush.px(theme.WIDE_PANEL_WIDTH if has_picture else width), room[0])
         inside = self._width - 2 * self._pad
         self._picture_width = round(0.42 * inside) if has_picture else 0
-        self._left = self._pad + self._picture_width + (self._pad if has_picture else 0)
+        is_split = not has_picture and width >= theme.WIDE_PANEL_WIDTH
+        aside = (inside - self._pad) // 2 if is_split else self._picture_width
+        self._left = self._pad + aside + (self._pad if aside else 0)
         self._text_width = self._width - self._pad - self._left
+        self._lines_left = self._pad if is_split else self._left
         self._title = brush.wrap(menu.title, theme.TITLE, inside)
         self._lines = [brush.wrap(text, theme.BODY, self._text_width) for text in menu.paragraphs]
         self._help = max(
@@ -88,7 +96,12 @@ class _Layout:
             default=0,
         )
         above, below = self._heights()
-        least = self._least_height() if any(item.picture for item in menu.items) else 0
+        least = 0
+        if any(item.picture for item in menu.items):
+            least = self._height_beside(round(_PICTURE_HEIGHT * self._picture_width))
+        elif is_split:
+            least = self._height_beside(self._lines_height())
+            above -= self._lines_height()
         self.height = max(above + self._rows_height(len(menu.items)) + below, least)
         fitting = max(1, (room[1] - above - below) // (self._row + self._gap))
         self._shown = self._rows_in_sight(min(len(menu.items), fitting))
@@ -110,8 +123,7 @@ class _Layout:
         """Return how much is above the rows, and how much is below them."""
         brush = self._brush
         above = self._pad + len(self._title) * brush.line_height(theme.TITLE) + brush.px(theme.PAD)
-        for lines in self._lines:
-            above += len(lines) * brush.line_height(theme.BODY) + brush.px(theme.GAP)
+        above += self._lines_height()
         facts = len(self._menu.facts)
         above += facts * brush.px(_FACT_HEIGHT) + (brush.px(theme.PAD) if facts else 0)
         below = self._pad
@@ -119,15 +131,14 @@ class _Layout:
             below += self._help * brush.line_height(theme.SMALL) + brush.px(theme.GAP)
         return above, below
 
-    def _least_height(self) -> int:
-        """Return how high it is for the picture's sake alone."""
+    def _lines_height(self) -> int:
+        gap, height = self._brush.px(theme.GAP), self._brush.line_height(theme.BODY)
+        return sum(len(lines) * height + gap for lines in self._lines)
+
+    def _height_beside(self, content: int) -> int:
+        """Return how high it is for the sake of what stands beside the rows alone."""
         title = len(self._title) * self._brush.line_height(theme.TITLE)
-        return (
-            2 * self._pad
-            + title
-            + self._brush.px(theme.PAD)
-            + round(_PICTURE_HEIGHT * self._picture_width)
-        )
+        return 2 * self._pad + title + self._brush.px(theme.PAD) + content
 
     def _rows_in_sight(self, count: int) -> range:
         names = [item.name for item in self._menu.items]
@@ -161,12 +172,14 @@ class _Layout:
         return MenuPicture(canvas.pixels(), rows)
 
     def _paint_text(self, canvas: Canvas, top: int) -> int:
-        brush = self._brush
+        brush, begin = self._brush, top
         for lines in self._lines:
             for line in lines:
-                brush.write(canvas, line, theme.BODY, theme.TEXT_SOFT, self._left, top)
+                brush.write(canvas, line, theme.BODY, theme.TEXT_SOFT, self._lines_left, top)
                 top += brush.line_height(theme.BODY)
             top += brush.px(theme.GAP)
+        if self._lines_left < self._left:
+            top = begin
         height = brush.px(_FACT_HEIGHT)
         for fact in self._menu.facts:
             row = top + (height - brush.line_height(theme.BODY)) // 2
