@@ -29,7 +29,7 @@ class SimulatorDouble:
     """
 
     def __init__(self, responder: Responder | None = None, port: int = 0) -> None:
-        self._responder = responder or (lambda _name, _arguments: {})
+        self.responder = responder or (lambda _name, _arguments: {})
         self._listener = socket.create_server(("127.0.0.1", port))
         self.port = self._listener.getsockname()[1]
         self._peers: list[socket.socket] = []
@@ -96,7 +96,7 @@ class SimulatorDouble:
     def _answer(self, command: Command) -> None:
         arguments = json.loads(command.body or "{}")
         self.commands.append((command.name, arguments))
-        answer = self._responder(command.name, arguments)
+        answer = self.responder(command.name, arguments)
         if answer is None:
             return
         is_refusal = isinstance(answer, str)

@@ -189,6 +189,30 @@ def test_a_score_that_nobody_heard_is_told_over_the_next_connection(lab, make_re
     assert lab.stored().true_tre_mm is not None
 
 
+def test_scores_that_nobody_heard_are_told_one_after_the_other(lab, make_record):
+    trials = [str(uuid.UUID(int=number)) for number in (11, 12, 13)]
+    lab.refusal = "Not now."
+    for trial in trials:
+        lab.simulator.send_command("TrialCompleted", make_record(trial))
+        lab.run_until(lambda trial=trial: {"trialId": trial} in lab.sent("AcknowledgeTrial"))
+    lab.run_until(lambda: len(lab.sent("TrialScored")) == 3)
+    lab.link.disconnect()
+    lab.refusal = None
+    kept = []
+    answer = lab.answer
+
+    def watch(name, arguments):
+        if name == "TrialScored":
+            with Study.open(lab.path) as study:
+                kept.append(len(trials) - len(study.unrevealed()))
+        return answer(name, arguments)
+
+    lab.simulator.responder = watch
+    lab.link.connectTo(port=lab.simulator.port)
+    lab.run_until(lambda: len(lab.scored) == 3)
+    assert kept == [0, 1, 2]
+
+
 def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
     state = f'{{"trialId": "{OTHER}", "phase": "running"}}'
     lab.simulator.send(Device.SIM_STATE, String(state))

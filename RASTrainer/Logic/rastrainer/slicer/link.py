@@ -75,6 +75,11 @@ class Link:
         return self._status
 
     @property
+    def isOpen(self) -> bool:
+        """Whether there is a connection."""
+        return self._connection.isOpen
+
+    @property
     def connector(self) -> Any | None:
         """The connector; a host without Slicer's timer calls its `PeriodicProcess`."""
         return self._connection.connector
@@ -116,7 +121,7 @@ class Link:
         """
         check_arguments(name, arguments or {})
         status = self._connection.status
-        if not self._connection.isOpen or status.state is LinkState.WRONG_VERSION:
+        if not self.isOpen or status.state is LinkState.WRONG_VERSION:
             self._pending.refuse(onReply, status.sentence)
             return
         command = self._connection.kit.makeCommand()
@@ -136,7 +141,7 @@ class Link:
             if self.connector is not None:
                 prepareNodes(self._scene)
         self._tellStatus()
-        self._pending.poll(self._connection.isOpen)
+        self._pending.poll(self.isOpen)
         if self.connector is not None:
             self._handOverNodes()
         self._handOverTrials()

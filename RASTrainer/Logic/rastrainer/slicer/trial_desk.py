@@ -8,6 +8,7 @@ without its truth is scored again over the next connection.
 from __future__ import annotations
 
 import logging
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,6 +79,7 @@ class TrialDesk:
         self._records = records
         self._study: Study | None = None
         self._told: set[str] = set()
+        self._untold: deque[TrialRecord] = deque()
         self._state: Mapping[str, Any] = {}
         self._lastProblem = ""
         link.trialCompleted.connect(self._receive)
@@ -105,7 +107,7 @@ class TrialDesk:
         try:
             record = TrialRecord.from_json(value)
             study = self._openedStudy()
-            analysis = self._analyze(record, study)
+            analysis = self._analyze(record)
             isRevealed = _keep(value, record, analysis, study)
         except DeletedTrialError:
             # Its trainee is gone for good: it must not be offered for ever.
@@ -124,10 +126,10 @@ class TrialDesk:
     def _acknowledge(self, record: TrialRecord) -> None:
         self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": record.trial_id})
 
-    def _analyze(self, record: TrialRecord, study: Study) -> TrialAnalysis | None:
+    def _analyze(self, record: TrialRecord) -> TrialAnalysis | None:
         try:
             scenario = self._findScenario(record.scenario)
-            return review(record, scenario, study, self._records, self._cohort)
+            return review(record, scenario, self._openedStudy(), self._records, self._cohort)
         except InputError as error:
             self._complain(_("A trial is kept but cannot be scored: {error}").format(error=error))
             return None
@@ -135,16 +137,27 @@ class TrialDesk:
     def _resume(self) -> None:
         """Go on with trials whose score was told to nobody before the connection was cut."""
         try:
-            study = self._openedStudy()
-            records = study.unrevealed()
+            self._untold = deque(self._openedStudy().unrevealed())
         except InputError as error:
             self._complain(str(error))
             return
-        for record in records:
-            analysis = self._analyze(record, study)
-            if analysis is not None and record.trial_id not in self._told:
+        self._resumeNext()
+
+    def _resumeNext(self) -> None:
+        """Score and tell one trial; the next follows its answer.
+
+        Scoring takes a moment. If all were scored at once, the link would go unread for so long
+        that their answers, and then the connection, would be given up.
+        """
+        while self._untold and self._link.isOpen:
+            record = self._untold.popleft()
+            if record.trial_id in self._told:
+                continue
+            analysis = self._analyze(record)
+            if analysis is not None:
                 # A trial of another simulator is none of this one's business.
-                self._tellScore(analysis, logging.info)
+                self._tellScore(analysis, logging.info, self._resumeNext)
+                return
 
     def _show(self, analysis: TrialAnalysis) -> None:
         """Show a trial in the scene, unless another one is being played there."""
@@ -153,7 +166,12 @@ class TrialDesk:
             return
         showTrial(self._scene, self._findScenario(analysis.record.scenario), analysis)
 
-    def _tellScore(self, analysis: TrialAnalysis, complain: Callable[[str], None]) -> None:
+    def _tellScore(
+        self,
+        analysis: TrialAnalysis,
+        complain: Callable[[str], None],
+        goOn: Callable[[], None] = lambda: None,
+    ) -> None:
         trialId = analysis.record.trial_id
         self._told.add(trialId)
 
@@ -166,8 +184,9 @@ class TrialDesk:
                 self._openedStudy().set_truth(trialId, truth.true_tre_mm, truth.head_to_world)
             except InputError as error:
                 complain(_("The score was not taken: {error}").format(error=error))
-                return
-            self.trialScored.emit(ScoredTrial(analysis, truth))
+            else:
+                self.trialScored.emit(ScoredTrial(analysis, truth))
+            goOn()
 
         self._link.send(CommandName.TRIAL_SCORED, _scoreArguments(analysis), takeAnswer)
 
