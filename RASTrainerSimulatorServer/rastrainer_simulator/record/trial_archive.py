@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from collections.abc import Mapping
@@ -85,10 +86,6 @@ class TrialArchive:
         self._trials[trial.record.trial_id] = trial
         self._journals[trial.record.trial_id] = journal
 
-    def scored(self, trial_id: str, arguments: Mapping[str, Any]) -> None:
-        """Take note of a score that is in the trial's journal already."""
-        self._trials[trial_id] = replace(self._trials[trial_id], scored=dict(arguments))
-
     def answer(
         self, command: str, arguments: Mapping[str, Any], times: Mapping[str, Any]
     ) -> dict[str, Any]:
@@ -102,18 +99,28 @@ class TrialArchive:
         """
         trial = self._found(arguments["trialId"])
         trial_id = trial.record.trial_id
+        # As a journal gives them back: told again, they are the same.
+        arguments = json.loads(json.dumps(arguments))
+        if command == CommandName.ACKNOWLEDGE_TRIAL and not trial.acknowledged:
+            self._append(trial_id, {"kind": "acknowledged", **times})
+            trial = replace(trial, acknowledged=True)
+        elif command == CommandName.TRIAL_SCORED and trial.scored != arguments:
+            self._append(trial_id, {"kind": "scored", **times, "arguments": arguments})
+            trial = replace(trial, scored=arguments)
+        self._keep(trial)
         if command == CommandName.GET_TRIAL:
             return trial.told()
         if command == CommandName.ACKNOWLEDGE_TRIAL:
-            if not trial.acknowledged:
-                self._append(trial_id, {"kind": "acknowledged", **times})
-                self._trials[trial_id] = replace(trial, acknowledged=True)
             return {"trialId": trial_id}
-        if trial.scored != arguments:
-            entry = {"kind": "scored", **times, "arguments": dict(arguments)}
-            self._append(trial_id, entry)
-            self.scored(trial_id, arguments)
-        return {"trialId": trial_id, **self._trials[trial_id].revealed()}
+        return {"trialId": trial_id, **trial.revealed()}
+
+    def _keep(self, trial: ArchivedTrial) -> None:
+        """Keep a trial at hand until all is done with it; then its journal suffices."""
+        trial_id = trial.record.trial_id
+        if trial.acknowledged and trial.scored is not None:
+            del self._trials[trial_id], self._journals[trial_id]
+        else:
+            self._trials[trial_id] = trial
 
     def _found(self, trial_id: str) -> ArchivedTrial:
         if trial_id not in self._trials:

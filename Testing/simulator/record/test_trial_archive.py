@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,12 @@ from rastrainer.protocol import CommandName
 from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.stamps import stamp
-from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find_unacknowledged
+from rastrainer_simulator.record.trial_archive import (
+    SUFFIX,
+    ArchivedTrial,
+    TrialArchive,
+    find_unacknowledged,
+)
 from rastrainer_simulator.training.true_error import Truth
 
 TRIAL_ID = "5c6f1d0e-6a4e-4c37-9d0c-0f6a2f7d9b11"
@@ -113,6 +120,24 @@ def test_a_trial_that_was_acknowledged_can_still_be_asked_for_and_scored(tmp_pat
     assert archive.unacknowledged() == ()
     assert archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)["acknowledged"]
     assert "headToWorld" in archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+
+
+def test_a_trial_that_is_done_takes_no_memory_and_is_answered_as_before(tmp_path):
+    path = write_trial(tmp_path)
+    archive = TrialArchive(tmp_path)
+    archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    truth = archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+    gc.collect()
+    assert not [each for each in gc.get_objects() if type(each) is ArchivedTrial]
+    for _ in range(3):
+        assert archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW) == truth
+        assert archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
+        told = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+        assert told["phase"] == "scored"
+        assert told["trueTreMm"] == truth["trueTreMm"]
+    reading = read_journal(path)
+    assert reading.integrity is Integrity.INTACT
+    assert len(reading.of_kind("scored")) == len(reading.of_kind("acknowledged")) == 1
 
 
 def test_a_half_written_line_after_the_record_does_not_hide_the_trial(tmp_path):
