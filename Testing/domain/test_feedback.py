@@ -1,7 +1,6 @@
 """After a trial the trainee learns what it was worth, what hurt and why, and what to improve."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,10 +15,8 @@ from rastrainer.feedback.trial_feedback import trial_feedback
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.registration import register
 from rastrainer.scoring import score_trial, task_reference
-from rastrainer.study_values import StoredTrial
-from rastrainer.trial_record import TrialRecord
+from rastrainer.study_values import PastTrial
 from Testing.domain.conftest import head_points
-from Testing.domain.trial_records import make_record
 
 LABELS = tuple(str(i + 1) for i in range(15))
 REFERENCE = task_reference("task-1")
@@ -138,28 +135,19 @@ def test_advice_never_promises_more_than_the_whole_score(time, error, idle, effi
         assert 0 <= one.gain <= 100 - score.score
 
 
-def stored(number, score, task="task-1", mode="desktop", time=110.0):
-    record = TrialRecord.from_json(
-        make_record(
-            trialId=f"00000000-0000-0000-0000-{number:012d}",
-            task=task,
-            mode=mode,
-            completionTimeS=time,
-        )
-    )
-    trial_score = replace(score_trial(time, 0.4, REFERENCE), score=score)
-    return StoredTrial(record, {}, trial_score, None, None)
+def past(number, score, mode="desktop", acceptable=True):
+    return PastTrial(str(number), "task-1", mode, 110.0, score, acceptable)
 
 
 def test_progress_tells_best_mark_and_competence():
-    history = [stored(i, 40.0 + i) for i in range(12)]
-    progress = progress_of(history, history[-1], pass_mark=45.0)
+    history = [past(i, 40.0 + i) for i in range(12)]
+    progress = progress_of(history, history[-1].trial_id, pass_mark=45.0)
     assert progress.is_best
     assert progress.passes
     assert progress.curve is not None
     assert progress.sentences[0].endswith("It is your best so far.")
     assert progress.sentences[1] == "Passed: the mark is 45."
-    early = progress_of(history, history[2], pass_mark=45.0)
+    early = progress_of(history, history[2].trial_id, pass_mark=45.0)
     assert not early.passes
     assert early.scores == (40.0, 41.0, 42.0)
     assert early.sentences[1] == "Not passed yet: 3 points to the mark of 45."
@@ -167,36 +155,35 @@ def test_progress_tells_best_mark_and_competence():
 
 
 def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
-    history = [stored(i, 80.0) for i in range(20)]
-    progress = progress_of(history, history[-1], pass_mark=60.0)
+    history = [past(i, 80.0) for i in range(20)]
+    progress = progress_of(history, history[-1].trial_id, pass_mark=60.0)
     assert progress.competence.competent_at is not None
     assert progress.competence.false_discovery <= 0.05
     assert "show competence since number" in progress.sentences[2]
-    other = [stored(i, 80.0, mode="hmd") for i in range(19)] + [stored(19, 80.0)]
-    assert progress_of(other, other[-1], 60.0).competence.competent_at is None
+    other = [past(i, 80.0, mode="hmd") for i in range(19)] + [past(19, 80.0)]
+    assert progress_of(other, other[-1].trial_id, 60.0).competence.competent_at is None
 
 
 def test_a_trial_with_an_unacceptable_error_never_passes():
-    bad = stored(1, 99.0)
-    bad = replace(bad, score=replace(bad.score, acceptable=False))
-    progress = progress_of([bad], bad, pass_mark=10.0)
+    bad = past(1, 99.0, acceptable=False)
+    progress = progress_of([bad], bad.trial_id, pass_mark=10.0)
     assert not progress.passes
     assert progress.sentences[1].startswith("Not passed: the expected target error")
     with pytest.raises(InputError, match="scored trial of the trainee's own"):
-        progress_of([], bad, 10.0)
+        progress_of([], bad.trial_id, 10.0)
 
 
 def test_the_feedback_goes_through_json_and_reads_in_order():
     errors = np.zeros((15, 3))
     errors[3] = 5.0 * NORMALS[3]
-    history = [stored(1, 50.0), stored(2, 60.0)]
+    history = [past(1, 50.0), past(2, 60.0)]
     feedback = trial_feedback(
         score_trial(150.0, 2.5, REFERENCE),
         registered(errors),
         NORMALS,
         {"idle_time_s": 40.0},
         recording(),
-        progress_of(history, history[1], 55.0),
+        progress_of(history, history[1].trial_id, 55.0),
     )
     told = json.loads(json.dumps(feedback.to_json(), allow_nan=False))
     assert told["worst"] == "4"

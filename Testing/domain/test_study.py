@@ -239,6 +239,25 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     assert (second.score, second.true_tre_mm) == (None, None)
 
 
+def test_past_trials_are_the_scored_ones_of_a_trainee_as_they_were_started(study, results):
+    score = results[2]
+    for number, day in ((1, 19), (2, 17), (3, 18)):
+        record = make_record(
+            trialId=f"00000000-0000-0000-0000-{number:012d}",
+            trainee="T-001",
+            startedUtc=f"2026-05-{day}T09:30:00Z",
+        )
+        study.add_trial(record, *(results if number != 3 else ()))
+    first, second = study.past_trials("T-001")
+    assert (first.trial_id[-1], second.trial_id[-1]) == ("2", "1")
+    assert (first.score, first.acceptable) == (score.score, score.acceptable)
+    stored = study.trial(first.trial_id).record
+    assert (first.task, first.mode) == (stored.task, stored.mode)
+    assert first.completion_time_s == stored.completion_time_s
+    with pytest.raises(InputError):
+        study.past_trials("nobody")
+
+
 def test_motion_metrics_are_stored_once_and_finite(study):
     study.add_trial(record())
     study.set_motion(record()["trialId"], {"path_mm": 2500.5, "sparc": -1.9})

@@ -16,7 +16,13 @@ from rastrainer.registration import Registration
 from rastrainer.scoring import TrialScore
 from rastrainer.study_database import StudyDatabase
 from rastrainer.study_tombstones import DeletedTrialError
-from rastrainer.study_values import StoredRegistration, StoredTrial, Trainee, TrialOutcome
+from rastrainer.study_values import (
+    PastTrial,
+    StoredRegistration,
+    StoredTrial,
+    Trainee,
+    TrialOutcome,
+)
 from rastrainer.target_error import TargetError
 from rastrainer.trial_record import TrialRecord
 
@@ -187,6 +193,15 @@ class Study:
         """
         with self._database.reading() as connection:
             return study_trials.history(connection, pseudonym)
+
+    def past_trials(self, pseudonym: str) -> tuple[PastTrial, ...]:
+        """Return what progress is told from: a trainee's scored trials as they were started.
+
+        Raises:
+            InputError: the study has no trainee of this pseudonym.
+        """
+        with self._database.reading() as connection:
+            return study_trials.past_trials(connection, pseudonym)
 
     def outcomes(self, task: str, mode: str) -> tuple[TrialOutcome, ...]:
         """Return what all trials of a task and mode are compared by, as they were stored."""

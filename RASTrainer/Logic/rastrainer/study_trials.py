@@ -16,7 +16,7 @@ from rastrainer.scoring import TrialScore
 from rastrainer.study_clock import utc_now
 from rastrainer.study_tombstones import check_not_buried
 from rastrainer.study_trainees import TRAINEE_ID
-from rastrainer.study_values import StoredRegistration, StoredTrial, TrialOutcome
+from rastrainer.study_values import PastTrial, StoredRegistration, StoredTrial, TrialOutcome
 from rastrainer.target_error import TargetError
 from rastrainer.trial_record import TrialRecord
 
@@ -187,6 +187,24 @@ def history(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredTrial
         (pseudonym,),
     ).fetchall()
     return tuple(find(connection, trial_id) for (trial_id,) in rows)
+
+
+def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTrial, ...]:
+    """Return a trainee's scored trials as they were started."""
+    study_trainees.find(connection, pseudonym)
+    rows = connection.execute(
+        "SELECT trial_id, task, mode, completion_time_s, "
+        "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
+        "ORDER BY scores.id DESC LIMIT 1) AS latest "
+        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND latest IS NOT NULL "
+        "ORDER BY started_utc, trials.rowid",
+        (pseudonym,),
+    ).fetchall()
+    scores = [decoded(latest, TrialScore.from_json) for *_, latest in rows]
+    return tuple(
+        PastTrial(*row[:-1], score.score, score.acceptable)
+        for row, score in zip(rows, scores, strict=True)
+    )
 
 
 def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:

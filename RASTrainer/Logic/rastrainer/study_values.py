@@ -107,6 +107,26 @@ class TrialOutcome:
 
 
 @dataclass(frozen=True)
+class PastTrial:
+    """A scored trial, as a trainee's progress is told from it.
+
+    Attributes:
+        trial_id: UUID.
+        task, mode: As recorded.
+        completion_time_s: As recorded.
+        score: The latest, above 0 up to 100.
+        acceptable: Whether the expected target error was within the limit.
+    """
+
+    trial_id: str
+    task: str
+    mode: str
+    completion_time_s: float
+    score: float
+    acceptable: bool
+
+
+@dataclass(frozen=True)
 class StoredTrial:
     """A trial with the latest of everything that was computed from it.
 

@@ -49,8 +49,7 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
         InputError: the study has no such trial.
     """
     record = analysis.record
-    trial = study.trial(record.trial_id)
-    if trial.score is None:
+    if study.trial(record.trial_id).score is None:
         return analysis
-    progress = progress_of(study.history(record.trainee), trial)
+    progress = progress_of(study.past_trials(record.trainee), record.trial_id)
     return replace(analysis, feedback=replace(analysis.feedback, progress=progress))

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.learning.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.learning.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
 from rastrainer.number_text import fixed
-from rastrainer.study_values import StoredTrial
+from rastrainer.study_values import PastTrial
 
 ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4
 """A competent trainee fails in 5 of 100 trials, an incompetent one in 40."""
@@ -41,44 +41,42 @@ class Progress:
     sentences: tuple[str, ...]
 
 
-def progress_of(
-    history: Sequence[StoredTrial], trial: StoredTrial, pass_mark: float = PASS_MARK
-) -> Progress:
+def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float = PASS_MARK) -> Progress:
     """Return how a trial stands.
 
     Args:
-        history: All trials of the trainee in their order; later ones than this do not count.
-        trial: One of them, which has a score.
+        past: All scored trials of the trainee in their order; later ones than this do not count.
+        trial_id: Of one of them.
         pass_mark: Score to reach, such as that of contrasting groups.
 
     Raises:
-        InputError: the trial is not in the history, or has no score.
+        InputError: the trial is none of them.
     """
-    ids = [other.record.trial_id for other in history]
-    if trial.record.trial_id not in ids or trial.score is None:
+    ids = [other.trial_id for other in past]
+    if trial_id not in ids:
         raise InputError("Progress is told of a scored trial of the trainee's own history.")
-    until = history[: ids.index(trial.record.trial_id) + 1]
-    record = trial.record
-    scored = [other for other in until if other.score and other.record.mode == record.mode]
-    same = [other for other in scored if other.record.task == record.task]
-    scores = tuple(other.score.score for other in same)
-    failures = [not _passes(other, pass_mark) for other in scored]
+    until = past[: ids.index(trial_id) + 1]
+    trial = until[-1]
+    in_mode = [other for other in until if other.mode == trial.mode]
+    same = [other for other in in_mode if other.task == trial.task]
+    scores = tuple(other.score for other in same)
+    failures = [not _passes(other, pass_mark) for other in in_mode]
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     competence = lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
-    times = [other.record.completion_time_s for other in same]
+    times = [other.completion_time_s for other in same]
     curve = fit_learning_curve(times) if len(times) >= FEWEST_TRIALS else None
     is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
     passes = _passes(trial, pass_mark)
     sentences = (
         *_about_scores(scores, is_best),
-        _about_mark(trial.score.score, trial.score.acceptable, pass_mark),
+        _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )
     return Progress(scores, is_best, passes, competence, curve, sentences)
 
 
-def _passes(trial: StoredTrial, pass_mark: float) -> bool:
-    return trial.score.acceptable and trial.score.score >= pass_mark
+def _passes(trial: PastTrial, pass_mark: float) -> bool:
+    return trial.acceptable and trial.score >= pass_mark
 
 
 def _about_scores(scores: Sequence[float], is_best: bool) -> list[str]:
