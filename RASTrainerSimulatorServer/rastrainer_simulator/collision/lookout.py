@@ -51,6 +51,24 @@ class Lookout:
         rows.sort()
         return rows
 
+    def nearest(
+        self,
+        travelled: float,
+        distance: Callable[[int], float],
+        rough: Callable[[], np.ndarray],
+    ) -> tuple[float, int | None]:
+        """Return the least distance, m, and its row; FAR and None where all are farther.
+
+        `distance` gives that of a row, m; for the others see `due`.
+        """
+        best, nearest = FAR, None
+        for row in self.due(travelled, rough):
+            found = distance(row)
+            self.put_off(row, found, travelled)
+            if found < best:
+                best, nearest = found, row
+        return best, nearest
+
     def put_off(self, row: int, distance: float, travelled: float) -> None:
         """Let a row be due again once it may be below FAR; it is now at least `distance`, m."""
         until = travelled + (distance - FAR - _ROUNDING) / self._closing

@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR
 from rastrainer_simulator.collision.lookout import Lookout
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
@@ -36,13 +35,10 @@ class SelfClearance:
         The distance is at most FAR, and then no links are named. `travelled` is how far the arm has
         moved since ever, m.
         """
-        best, names = FAR, ()
-        for pair in self._lookout.due(travelled, partial(self._bounds, posed)):
-            distance = self._distance(posed, pair)
-            self._lookout.put_off(pair, distance, travelled)
-            if distance < best:
-                best, names = distance, self._names[pair]
-        return best, names
+        best, pair = self._lookout.nearest(
+            travelled, partial(self._distance, posed), partial(self._bounds, posed)
+        )
+        return best, () if pair is None else self._names[pair]
 
     def _bounds(self, posed: PosedArm) -> np.ndarray:
         """Return below what the distance of no pair can be, (pairs,) float, m."""

@@ -8,7 +8,6 @@ from functools import partial
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import FAR
 from rastrainer_simulator.collision.lookout import Lookout
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.segment_distance import segment_distance
@@ -54,12 +53,10 @@ class TableClearance:
         The distance is at most FAR, and then no link is named. `travelled` is how far the arm has
         moved since ever, m.
         """
-        best, name = FAR, ""
-        for row in self._lookout.due(travelled, partial(self._bounds, posed)):
-            distance = self._distance(posed, row)
-            self._lookout.put_off(row, distance, travelled)
-            if distance < best:
-                best, name = distance, self._arm.names[row]
+        best, row = self._lookout.nearest(
+            travelled, partial(self._distance, posed), partial(self._bounds, posed)
+        )
+        name = "" if row is None else self._arm.names[row]
         # The tip is no part of a capsule; it is the tool's, which is last.
         above = posed.tip[2] - self._table
         return (above, self._arm.names[-1]) if above < best else (best, name)

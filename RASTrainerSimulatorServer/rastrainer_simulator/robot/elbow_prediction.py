@@ -89,14 +89,13 @@ def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vec
     my = gy - ty - (oz * tx - ox * tz)
     mz = gz - tz - (ox * ty - oy * tx)
     d5 = (mx * wx + my * wy + mz * wz) / sin(theta[5])
-    d6 = mx * (wy * tz - wz * ty) + my * (wz * tx - wx * tz) + mz * (wx * ty - wy * tx)
+    ax, ay, az = wy * tz - wz * ty, wz * tx - wx * tz, wx * ty - wy * tx
+    d6 = mx * ax + my * ay + mz * az
     if goal.roll is None:
         return d5, d6, 0.0
     # The goal's x axis along the tool's y axis, which is joint 6's axis turned about the tool.
     ux, uy, uz = goal.roll[0]
     c, s = cos(theta[6]), sin(theta[6])
-    asked = c * (ux * wx + uy * wy + uz * wz) - s * (
-        ux * (wy * tz - wz * ty) + uy * (wz * tx - wx * tz) + uz * (wx * ty - wy * tx)
-    )
+    asked = c * (ux * wx + uy * wy + uz * wz) - s * (ux * ax + uy * ay + uz * az)
     made = ox * tx + oy * ty + oz * tz + d5 * (fx * tx + fy * ty + fz * tz)
     return d5, d6, asked - made

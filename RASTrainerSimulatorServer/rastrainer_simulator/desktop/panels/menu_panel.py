@@ -80,11 +80,10 @@ class _Layout:
         self._width = min(brush.px(theme.WIDE_PANEL_WIDTH if has_picture else width), room[0])
         inside = self._width - 2 * self._pad
         self._picture_width = round(0.42 * inside) if has_picture else 0
-        is_split = not has_picture and width >= theme.WIDE_PANEL_WIDTH
-        aside = (inside - self._pad) // 2 if is_split else self._picture_width
+        self._is_split = not has_picture and width >= theme.WIDE_PANEL_WIDTH
+        aside = (inside - self._pad) // 2 if self._is_split else self._picture_width
         self._left = self._pad + aside + (self._pad if aside else 0)
         self._text_width = self._width - self._pad - self._left
-        self._lines_left = self._pad if is_split else self._left
         self._title = brush.wrap(menu.title, theme.TITLE, inside)
         self._lines = [brush.wrap(text, theme.BODY, self._text_width) for text in menu.paragraphs]
         self._help = max(
@@ -99,9 +98,8 @@ class _Layout:
         least = 0
         if any(item.picture for item in menu.items):
             least = self._height_beside(round(_PICTURE_HEIGHT * self._picture_width))
-        elif is_split:
+        elif self._is_split:
             least = self._height_beside(self._lines_height())
-            above -= self._lines_height()
         self.height = max(above + self._rows_height(len(menu.items)) + below, least)
         fitting = max(1, (room[1] - above - below) // (self._row + self._gap))
         self._shown = self._rows_in_sight(min(len(menu.items), fitting))
@@ -123,7 +121,8 @@ class _Layout:
         """Return how much is above the rows, and how much is below them."""
         brush = self._brush
         above = self._pad + len(self._title) * brush.line_height(theme.TITLE) + brush.px(theme.PAD)
-        above += self._lines_height()
+        if not self._is_split:
+            above += self._lines_height()
         facts = len(self._menu.facts)
         above += facts * brush.px(_FACT_HEIGHT) + (brush.px(theme.PAD) if facts else 0)
         below = self._pad
@@ -173,12 +172,13 @@ class _Layout:
 
     def _paint_text(self, canvas: Canvas, top: int) -> int:
         brush, begin = self._brush, top
+        left = self._pad if self._is_split else self._left
         for lines in self._lines:
             for line in lines:
-                brush.write(canvas, line, theme.BODY, theme.TEXT_SOFT, self._lines_left, top)
+                brush.write(canvas, line, theme.BODY, theme.TEXT_SOFT, left, top)
                 top += brush.line_height(theme.BODY)
             top += brush.px(theme.GAP)
-        if self._lines_left < self._left:
+        if self._is_split:
             top = begin
         height = brush.px(_FACT_HEIGHT)
         for fact in self._menu.facts:
