@@ -89,12 +89,12 @@ class ControlLoop:
         self._dt = 1.0 / rate_hz
         self._period = 0.0 if speed is None else self._dt / speed
         self._archive = TrialArchive(records)
-        # A loop that never sleeps would leave the others nothing.
-        self._is_first_in_line = self._period >= self._dt
+        self.is_first_in_line = self._period >= self._dt
+        """Whether it runs before all others; one that never sleeps would leave them nothing."""
         self._writer = ThreadPoolExecutor(
             max_workers=1,
             thread_name_prefix="journal",
-            initializer=stand_second_in_line if self._is_first_in_line else None,
+            initializer=stand_second_in_line if self.is_first_in_line else None,
         )
         self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt)
         if interrupted is not None:
@@ -202,7 +202,7 @@ class ControlLoop:
 
     def _run(self) -> None:
         try:
-            with precise_timing(self._is_first_in_line):
+            with precise_timing(self.is_first_in_line):
                 self._tick_on_time()
         except Exception:
             _log.exception("The control loop has broken down")

@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 SWITCH_INTERVAL_S = 0.0001
 """How long another Python thread may keep the interpreter once the control loop is due.
@@ -55,8 +56,16 @@ def stand_second_in_line() -> None:
     if sys.platform == "win32":
         _set_windows_priority(_WINDOWS_PRIORITY[SECOND])
     elif hasattr(os, "SCHED_FIFO"):
-        with contextlib.suppress(PermissionError):
-            _set_real_time(SECOND)
+        _set_real_time(SECOND)
+
+
+def is_real_time_permitted() -> bool:
+    """Tell whether the system lets the control loop run before all ordinary threads."""
+    if not hasattr(os, "SCHED_FIFO"):
+        return sys.platform == "win32"
+    # Tried in a thread that ends with it: nothing has to be taken back.
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        return pool.submit(_set_real_time, FIRST).result()
 
 
 @contextlib.contextmanager
@@ -73,9 +82,7 @@ def _in_line(priority: int) -> Iterator[None]:
         yield
         return
     policy, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    try:
-        _set_real_time(priority)
-    except PermissionError:
+    if not _set_real_time(priority):
         yield
         return
     try:
@@ -85,9 +92,15 @@ def _in_line(priority: int) -> Iterator[None]:
         os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameters)
 
 
-def _set_real_time(priority: int) -> None:
+def _set_real_time(priority: int) -> bool:
+    """Set the priority of this thread, and tell whether the system permits it."""
     # What the thread starts, such as the window, stays ordinary.
-    os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
+    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+    try:
+        os.sched_setscheduler(0, policy, os.sched_param(priority))
+    except PermissionError:
+        return False
+    return True
 
 
 def _set_windows_priority(priority: int) -> int:

@@ -29,6 +29,7 @@ from rastrainer_simulator.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.igtl.state_feed import StateFeed
 from rastrainer_simulator.limits_file import read_limits
 from rastrainer_simulator.logs.trial_log import TrialLog
+from rastrainer_simulator.precise_clock import stand_second_in_line
 from rastrainer_simulator.record.interrupted_trial import find_interrupted
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.record.records_folder import RecordsFolder
@@ -122,6 +123,8 @@ class SimulatorServer:
         """
         for problem in self._control_loop.problems:
             _log.warning("%s", problem)
+        if self._control_loop.is_first_in_line:
+            stand_second_in_line()
         loop = asyncio.get_running_loop()
         link = SimulatorLink(
             latest=lambda: self._control_loop.latest,

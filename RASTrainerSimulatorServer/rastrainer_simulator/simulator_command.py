@@ -111,7 +111,6 @@ def run(arguments: argparse.Namespace) -> int:
 
     from rastrainer_simulator.logs.log_files import keep_logs
     from rastrainer_simulator.logs.log_folder import log_folder
-    from rastrainer_simulator.precise_clock import stand_second_in_line
     from rastrainer_simulator.server import ServerOptions, SimulatorServer
 
     own = None if arguments.config is None else arguments.config / "logs"
@@ -135,8 +134,6 @@ def run(arguments: argparse.Namespace) -> int:
     )
     with keep_logs(logs, f"simulator-{arguments.port}"):
         server = SimulatorServer(options)
-        if options.speed <= 1.0:
-            stand_second_in_line()
         asyncio.run(server.run(lambda where: print(f"RASTrainer simulator {where}", flush=True)))
     return 0
 

@@ -24,6 +24,10 @@ RECORD_LIMIT_BYTES = 2**20
 TRUTH_LIMIT = 1e6
 MOTION_LIMIT = 1e9
 
+_LATEST_SCORE = """
+    SELECT {} FROM scores WHERE scores.trial_id = trials.trial_id ORDER BY scores.id DESC LIMIT 1
+"""
+
 Value = TypeVar("Value")
 
 
@@ -194,8 +198,7 @@ def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTri
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
         "SELECT trial_id, task, mode, completion_time_s, "
-        "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
-        "ORDER BY scores.id DESC LIMIT 1) AS latest "
+        f"({_LATEST_SCORE.format('score_json')}) AS latest "
         f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND latest IS NOT NULL "
         "ORDER BY started_utc, trials.rowid",
         (pseudonym,),
@@ -238,11 +241,9 @@ def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
 def outcomes(connection: sqlite3.Connection, task: str, mode: str) -> tuple[TrialOutcome, ...]:
     """Return the outcomes of all trials of a task and mode, in the order they were stored."""
     rows = connection.execute(
-        """
+        f"""
         SELECT trials.trial_id, pseudonym, completion_time_s,
-            (SELECT score FROM scores WHERE scores.trial_id = trials.trial_id
-             ORDER BY scores.id DESC LIMIT 1),
-            true_tre_mm
+            ({_LATEST_SCORE.format("score")}), true_tre_mm
         FROM trials
         JOIN trainees ON trainees.id = trainee_id
         LEFT JOIN truths ON truths.trial_id = trials.trial_id

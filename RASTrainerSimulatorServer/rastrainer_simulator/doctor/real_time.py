@@ -5,10 +5,9 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 
 from rastrainer_simulator.doctor.finding import Finding, Verdict
-from rastrainer_simulator.precise_clock import FIRST
+from rastrainer_simulator.precise_clock import is_real_time_permitted
 
 
 def check_real_time() -> Iterator[Finding]:
@@ -17,7 +16,7 @@ def check_real_time() -> Iterator[Finding]:
         told = "is given to everyone" if sys.platform == "win32" else "is not asked for"
         yield Finding("real time", Verdict.OK, f"Real-time priority {told} on this system.")
         return
-    if _is_permitted():
+    if is_real_time_permitted():
         yield Finding("real time", Verdict.OK, "Real-time priority is permitted.")
         return
     yield Finding(
@@ -27,17 +26,3 @@ def check_real_time() -> Iterator[Finding]:
         "Add the line `@audio - rtprio 20` (or your group) to /etc/security/limits.conf and "
         "log in anew; `ulimit -r` then tells 20.",
     )
-
-
-def _is_permitted() -> bool:
-    """Try it in a thread that ends with it: nothing has to be taken back."""
-
-    def ask() -> bool:
-        try:
-            os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(FIRST))
-        except PermissionError:
-            return False
-        return True
-
-    with ThreadPoolExecutor(max_workers=1) as pool:
-        return pool.submit(ask).result()

@@ -13,7 +13,7 @@ import pytest
 
 from rastrainer_simulator.cli import main
 from rastrainer_simulator.doctor import folders as folders_check
-from rastrainer_simulator.doctor import python_packages, real_time
+from rastrainer_simulator.doctor import python_packages
 from rastrainer_simulator.doctor.clock import check_clock
 from rastrainer_simulator.doctor.finding import Verdict
 from rastrainer_simulator.doctor.folders import check_folders
@@ -145,7 +145,7 @@ def test_real_time_priority_is_tried_without_a_lasting_effect(monkeypatch):
     def refuse(*_arguments):
         raise PermissionError
 
-    monkeypatch.setattr(real_time.os, "sched_setscheduler", refuse)
+    monkeypatch.setattr(os, "sched_setscheduler", refuse)
     (finding,) = check_real_time()
     assert finding.verdict is Verdict.WARNING
     assert "limits.conf" in finding.remedy
