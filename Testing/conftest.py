@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from Testing.simulator.igtl.servers import LoopThread
+
 HERE = Path(__file__).parent
 LONGEST = ("end_to_end", "web", "security")
 """Folders whose tests start processes, browsers and attacks. They are checked first, so that no
@@ -20,6 +22,13 @@ def pytest_configure():
     # Collected wherever Python happens to be, Qt's and VTK's objects would also die in a thread
     # that answers a socket, which ends the process.
     gc.disable()
+
+
+@pytest.fixture(scope="module")
+def loop_thread():
+    """An event loop in a thread, so that a test may block."""
+    with LoopThread() as thread:
+        yield thread
 
 
 @pytest.hookimpl(trylast=True)

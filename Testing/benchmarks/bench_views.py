@@ -30,10 +30,10 @@ def rows(quick: bool) -> list[dict]:
 
 def _stream_rows(seconds: float) -> list[dict]:
     key = secrets.token_urlsafe()
-    thread = LoopThread()
     with tempfile.TemporaryDirectory() as folder:
         arguments = (Path(folder) / "records", "--view-port", "0")
         with (
+            LoopThread() as thread,
             ViewedSimulator(*arguments, key=key) as simulator,
             ViewClient(thread, simulator.url, key) as view,
         ):
@@ -47,7 +47,6 @@ def _stream_rows(seconds: float) -> list[dict]:
                 states += text.startswith('{"type":"state"')
             cpu = [cpu_share(simulator.pid, 0.5) for _ in range(int(seconds))]
             rss = resident_mb(simulator.pid)
-    thread.stop()
     return [
         row("views.stream", [sum(sizes) / seconds / 1000], "kB/s"),
         row("views.states", [states / seconds], "1/s"),
@@ -59,8 +58,8 @@ def _stream_rows(seconds: float) -> list[dict]:
 def _crowd_row(seconds: float) -> dict:
     """Return what several views are sent together."""
     key = secrets.token_urlsafe()
-    thread = LoopThread()
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        thread = stack.enter_context(LoopThread())
         arguments = (Path(folder) / "records", "--view-port", "0")
         simulator = stack.enter_context(ViewedSimulator(*arguments, key=key))
         views = [stack.enter_context(ViewClient(thread, simulator.url, key)) for _ in range(CROWD)]
@@ -71,7 +70,6 @@ def _crowd_row(seconds: float) -> dict:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             sizes += [len(view.next_text().encode()) for view in views]
-    thread.stop()
     return row(f"views.stream to {CROWD}", [sum(sizes) / seconds / 1000], "kB/s")
 
 

@@ -44,8 +44,7 @@ class Lab:
         with ExitStack() as stack:
             self.simulator = stack.enter_context(self._start(*arguments))
             self.url = self.simulator.next_line().removeprefix(VIEWS).partition(",")[0]
-            thread = LoopThread()
-            stack.callback(thread.stop)
+            thread = stack.enter_context(LoopThread())
             client = stack.enter_context(ViewClient(thread, self.url, self.key))
             self.view = WatchingView(client)
             self.display = stack.enter_context(VirtualDisplay())

@@ -25,7 +25,7 @@ from rastrainer_simulator.setup import load_setup
 from rastrainer_simulator.simulation import Simulation
 from Testing.end_to_end.faulty_proxy import FaultyProxy
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
-from Testing.simulator.igtl.servers import HOST, LoopThread
+from Testing.simulator.igtl.servers import HOST
 from Testing.slicer.simulator_double import process_link, run_link_until
 
 PATIENCE_S = 60.0
@@ -84,13 +84,12 @@ class SlicerSide:
         self.scored += 1
 
 
-def deliver(folder, simulation, trials, seed, longest_s):
+def deliver(folder, simulation, thread, trials, seed, longest_s):
     """Deliver so many trials through faults and ends of both sides; return what was seen."""
     rng = random.Random(seed)
     records, study = folder / "records", folder / "study.db"
     wanted = write_finished_trials(records, range(1, trials + 1))
     scenario = load_scenario(COLIN)
-    thread = LoopThread()
     server = Server(thread, simulation, records)
     proxy = FaultyProxy(server.port, rng, longest_s)
     slicer = SlicerSide(study, scenario, proxy.port)
@@ -117,7 +116,6 @@ def deliver(folder, simulation, trials, seed, longest_s):
         slicer.close()
         proxy.close()
         server.close()
-        thread.stop()
     with Study.open(study) as opened:
         stored = [trial.record.trial_id for trial in opened.history(TRAINEE)]
     assert sorted(stored) == sorted(wanted)
@@ -132,15 +130,15 @@ def simulation():
 
 
 def test_twenty_trials_arrive_exactly_once_through_faults_and_ends_of_both_sides(
-    simulation, tmp_path
+    simulation, loop_thread, tmp_path
 ):
-    faults, _ends = deliver(tmp_path, simulation, trials=20, seed=2, longest_s=0.2)
+    faults, _ends = deliver(tmp_path, simulation, loop_thread, trials=20, seed=2, longest_s=0.2)
     assert sum(faults.values()) >= 3
 
 
 @pytest.mark.soak
-def test_a_thousand_trials_arrive_exactly_once(simulation, tmp_path, capsys):
-    faults, ends = deliver(tmp_path, simulation, trials=1000, seed=3, longest_s=12.0)
+def test_a_thousand_trials_arrive_exactly_once(simulation, loop_thread, tmp_path, capsys):
+    faults, ends = deliver(tmp_path, simulation, loop_thread, trials=1000, seed=3, longest_s=12.0)
     assert set(faults) == {"cut", "reset", "half-open", "late"}
     assert min(ends) >= 3
     with capsys.disabled():

@@ -63,8 +63,7 @@ def train(folder: Path, seconds: float) -> Run:
     simulators, slicers = [], []
     player = SurvivingPlayer(load_scenario(COLIN), random.Random(1))
     with contextlib.ExitStack() as stack:
-        thread = LoopThread()
-        stack.callback(thread.stop)
+        thread = stack.enter_context(LoopThread())
         simulator = stack.enter_context(
             ViewedSimulator(records, "--speed", "2", "--view-port", "0", key=KEY)
         )

@@ -82,9 +82,8 @@ def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_goes_on_once_there_
 def ended(tmp_path_factory):
     """Return a folder after a simulator in use, with a view, a client and a trial, was ended."""
     folder = tmp_path_factory.mktemp("lab")
-    thread = LoopThread()
     with contextlib.ExitStack() as stack:
-        stack.callback(thread.stop)
+        thread = stack.enter_context(LoopThread())
         simulator = stack.enter_context(ViewedSimulator(folder / "records", key=KEY))
         client = stack.enter_context(Client(port=simulator.port))
         view = stack.enter_context(ViewClient(thread, simulator.url, KEY))

@@ -15,7 +15,6 @@ from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.end_to_end.window_process import wait_until
-from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ViewClient
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
@@ -26,13 +25,6 @@ SCORE = {
     "expectedTreMm": 1.5,
     "score": 81.0,
 }
-
-
-@pytest.fixture
-def thread():
-    thread = LoopThread()
-    yield thread
-    thread.stop()
 
 
 @pytest.fixture
@@ -59,11 +51,11 @@ def slicer(simulator):
 
 
 @pytest.fixture
-def views(thread, simulator, key):
+def views(loop_thread, simulator, key):
     """Two pages that have joined: what each sends, and what each is told."""
     with (
-        ViewClient(thread, simulator.url, key) as one,
-        ViewClient(thread, simulator.url, key) as other,
+        ViewClient(loop_thread, simulator.url, key) as one,
+        ViewClient(loop_thread, simulator.url, key) as other,
     ):
         yield (one, WatchingView(one)), (other, WatchingView(other))
 

@@ -4,21 +4,11 @@ from __future__ import annotations
 
 import secrets
 
-import pytest
-
 from rastrainer.experiment.study_step import StudyStep
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ViewClient
-
-
-@pytest.fixture
-def thread():
-    thread = LoopThread()
-    yield thread
-    thread.stop()
 
 
 def go_to(view, item, menu):
@@ -40,14 +30,14 @@ def enabled(screen):
     return [item["name"] for item in items if "task" in item["name"] and item["is_enabled"]]
 
 
-def test_what_slicer_tells_of_a_study_is_what_the_trainees_menu_offers(thread, tmp_path):
+def test_what_slicer_tells_of_a_study_is_what_the_trainees_menu_offers(loop_thread, tmp_path):
     key = secrets.token_hex(32)
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": "Slicer"}
     step = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
     with (
         ViewedSimulator(tmp_path / "records", key=key) as simulator,
         Client(port=simulator.port) as slicer,
-        ViewClient(thread, simulator.url, key) as view,
+        ViewClient(loop_thread, simulator.url, key) as view,
     ):
         assert slicer.send_command("Hello", hello, timeout=20).ok
         assert slicer.send_command("StudyStep", step.arguments(), timeout=20).ok

@@ -22,9 +22,10 @@ from Testing.simulator.view_server.served import ViewClient
 
 
 def attack(folder, warm_up: int, count: int, capsys) -> None:
-    key, thread = secrets.token_urlsafe(), LoopThread()
+    key = secrets.token_urlsafe()
     arguments = (folder, "--view-port", "0", "--seed", "1")
     with (
+        LoopThread() as thread,
         ViewedSimulator(*arguments, key=key) as simulator,
         Client(port=simulator.port) as slicer,
         ViewClient(thread, simulator.url, key) as view,
@@ -44,7 +45,6 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
         assert after.resident_mb - before.resident_mb < MOST_GROWTH_MB
         assert view.next("state")["type"] == "state"
         status, errors = simulator.stop()
-    thread.stop()
     assert status == 0
     assert "Traceback" not in errors
     assert " ERROR " not in errors

@@ -70,8 +70,7 @@ class Place:
             del os.environ["RASTRAINER_VIEW_KEY"]
         told = SERVES.search(self.simulator.next_line())
         self.simulator.url, self.simulator.code = told.groups()
-        thread = LoopThread()
-        self._stack.callback(thread.stop)
+        thread = self._stack.enter_context(LoopThread())
         watcher = self._stack.enter_context(ViewClient(thread, self.simulator.url, key))
         self.view = WatchingView(watcher)
 

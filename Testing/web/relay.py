@@ -21,7 +21,8 @@ class Relay:
     def __init__(self, port: int):
         """Lead to a port of this computer."""
         self._target = port
-        self._thread = LoopThread()
+        self._stack = contextlib.ExitStack()
+        self._thread = self._stack.enter_context(LoopThread())
         self._writers: list[asyncio.StreamWriter] = []
         self._goes = asyncio.Event()
         self._goes.set()
@@ -34,7 +35,7 @@ class Relay:
     def __exit__(self, *_exception: object) -> None:
         self._thread.call(self._server.close)
         self.cut()
-        self._thread.stop()
+        self._stack.close()
 
     def stall(self) -> None:
         """Pass nothing on, as a wireless network out of reach; nobody is told."""

@@ -24,7 +24,6 @@ from rastrainer_simulator.replaying.film_making import FilmMaking
 from rastrainer_simulator.replaying.replay_desk import ReplayDesk
 from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.view_server.operator_desk import Feedback
-from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ViewClient
 
 
@@ -168,7 +167,7 @@ def test_a_film_that_nobody_wants_any_more_is_not_made(make, journal):
         making.film.result(60)
 
 
-def test_the_program_serves_it_to_views_until_escape(journal, tmp_path):
+def test_the_program_serves_it_to_views_until_escape(journal, tmp_path, loop_thread):
     key = secrets.token_hex(32)
     command = ["replay", str(journal), "--view", "--no-window", "--view-port", "0"]
     process = subprocess.Popen(
@@ -177,11 +176,10 @@ def test_the_program_serves_it_to_views_until_escape(journal, tmp_path):
         stdout=subprocess.PIPE,
         text=True,
     )
-    thread = LoopThread()
     try:
         line = process.stdout.readline()
         url = re.search(r"http://\S+?:\d+", line)[0]
-        view = ViewClient(thread, url, key)
+        view = ViewClient(loop_thread, url, key)
         view.join()
         first = view.next("state")
         told = view.all_until(
@@ -196,7 +194,6 @@ def test_the_program_serves_it_to_views_until_escape(journal, tmp_path):
             process.send_signal(signal.SIGTERM)
             process.wait(30)
         process.stdout.close()
-        thread.stop()
 
 
 def test_what_cannot_be_shown_is_one_sentence(tmp_path, journal, capsys):

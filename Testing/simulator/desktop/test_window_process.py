@@ -15,7 +15,6 @@ from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.view_server.operator_desk import Feedback, Hello
 from Testing.end_to_end.heard import times_heard
-from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ServedViews
 
 PATIENCE_S = 60.0
@@ -55,13 +54,6 @@ class Window:
 
 
 @pytest.fixture(scope="module")
-def thread():
-    thread = LoopThread()
-    yield thread
-    thread.stop()
-
-
-@pytest.fixture(scope="module")
 def control_loop(setup, tmp_path_factory):
     records = tmp_path_factory.mktemp("records")
     with ControlLoop(Simulation(setup, seed=3), records) as loop:
@@ -69,10 +61,10 @@ def control_loop(setup, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def session(thread, control_loop, tmp_path_factory):
+def session(loop_thread, control_loop, tmp_path_factory):
     """Have a window hear seven events, lose its server, and find it again."""
     folder = tmp_path_factory.mktemp("window")
-    served = ServedViews(thread, control_loop)
+    served = ServedViews(loop_thread, control_loop)
     key = served.new_key()
     window = Window(served.url, key, folder)
     try:
@@ -84,8 +76,8 @@ def session(thread, control_loop, tmp_path_factory):
         served.tell(Feedback(len(PLAYED) + 1, "touch", "touch", volume=0.0))
         port = served.port
         served.close()
-        again = ServedViews(thread, control_loop, port=port)
-        thread.call(again.server.sessions.admit, key)
+        again = ServedViews(loop_thread, control_loop, port=port)
+        loop_thread.call(again.server.sessions.admit, key)
         joined += _wait_for_join(again)
         again.close()
     finally:

@@ -6,14 +6,7 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer_simulator.igtl.limits import Limits
-from Testing.simulator.igtl.servers import LinkServer, LoopThread, PlainServer
-
-
-@pytest.fixture
-def loop_thread():
-    thread = LoopThread()
-    yield thread
-    thread.stop()
+from Testing.simulator.igtl.servers import LinkServer, PlainServer
 
 
 @pytest.fixture

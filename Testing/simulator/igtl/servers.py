@@ -23,12 +23,18 @@ HOST = "127.0.0.1"
 
 
 class LoopThread:
-    """An event loop in a thread, so that a test may block."""
+    """An event loop in a thread, so that a test may block; it ends with the `with` statement."""
 
-    def __init__(self):
+    def __enter__(self):
         self.loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self.loop.run_forever, daemon=True)
         self._thread.start()
+        return self
+
+    def __exit__(self, *_exception):
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self._thread.join()
+        self.loop.close()
 
     def run(self, coroutine):
         return asyncio.run_coroutine_threadsafe(coroutine, self.loop).result(10)
@@ -38,11 +44,6 @@ class LoopThread:
             return function(*arguments, **named)
 
         return self.run(called())
-
-    def stop(self):
-        self.loop.call_soon_threadsafe(self.loop.stop)
-        self._thread.join()
-        self.loop.close()
 
 
 class RecordingHandler:

@@ -17,7 +17,7 @@ from rastrainer.igtl.points import Point, Points
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.state import Touch, TrainingState
-from Testing.simulator.igtl.servers import LinkServer, LoopThread, at_rest
+from Testing.simulator.igtl.servers import LinkServer, at_rest
 
 SOURCE = Path(__file__).with_name("reference_client.cpp")
 HEADERS = Path("/usr/include/openigtlink")
@@ -37,14 +37,13 @@ def reference_client(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module", params=["", "hostile"], ids=["good", "hostile"])
-def exchange(reference_client, request):
+def exchange(reference_client, loop_thread, request):
     """What each side read of the other: our server's messages, and the client's lines by device.
 
     A hostile client sends what cannot be used before all else: that costs it and others nothing.
     """
 
-    thread = LoopThread()
-    server = LinkServer(thread, Limits())
+    server = LinkServer(loop_thread, Limits())
     server.simulated.latest = at_rest(
         tool_tip_to_world=TIP, training=TrainingState(trial_id="id-1", touches=(TOUCH,))
     )
@@ -56,7 +55,7 @@ def exchange(reference_client, request):
         receive(connection, message)
 
     server.link.received = keep_and_receive
-    beat = asyncio.run_coroutine_threadsafe(server.link.beat(), thread.loop)
+    beat = asyncio.run_coroutine_threadsafe(server.link.beat(), loop_thread.loop)
     process = subprocess.Popen(
         [reference_client, str(server.port), *request.param.split()],
         stdout=subprocess.PIPE,
@@ -73,8 +72,7 @@ def exchange(reference_client, request):
             continue
     output = process.stdout.read()
     beat.cancel()
-    thread.run(server.server.close())
-    thread.stop()
+    loop_thread.run(server.server.close())
     assert process.returncode == 0, output
     lines = [line.split(" ", 2) for line in output.splitlines()]
     return {message.device: message for message in taken}, {line[1]: line for line in lines}

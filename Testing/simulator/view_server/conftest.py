@@ -31,13 +31,6 @@ def control_loop(tmp_path_factory, setup) -> ControlLoop:
         yield control_loop
 
 
-@pytest.fixture(scope="module")
-def loop_thread():
-    thread = LoopThread()
-    yield thread
-    thread.stop()
-
-
 @pytest.fixture(autouse=True)
 def no_page(monkeypatch):
     """Have no built page, whether there is one in this checkout or not."""
@@ -66,14 +59,13 @@ def served(serve) -> ServedViews:
 @pytest.fixture
 def connect():
     """Connects views to a server, each with a key of its own, and lets them go."""
-    thread = LoopThread()
     views = []
 
     def connect_one(served: ServedViews) -> ViewClient:
         views.append(ViewClient(thread, served.url, served.new_key()))
         return views[-1]
 
-    yield connect_one
-    for view in views:
-        view.__exit__()
-    thread.stop()
+    with LoopThread() as thread:
+        yield connect_one
+        for view in views:
+            view.__exit__()

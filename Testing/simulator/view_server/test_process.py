@@ -7,30 +7,23 @@ import pytest
 
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.simulator.igtl.servers import HOST, LoopThread
+from Testing.simulator.igtl.servers import HOST
 from Testing.simulator.view_server.served import ViewClient, request
 
 
-@pytest.fixture
-def thread():
-    thread = LoopThread()
-    yield thread
-    thread.stop()
-
-
-def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, thread):
+def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, loop_thread):
     with ViewedSimulator(tmp_path / "records", "--view-port", "0") as simulator:
         status, headers, _ = request(simulator.url, "/pair", "POST", json={"code": simulator.code})
         assert status == 200
         key = headers["Set-Cookie"].split(";")[0].partition("=")[2]
-        with ViewClient(thread, simulator.url, key) as view:
+        with ViewClient(loop_thread, simulator.url, key) as view:
             assert view.join()["protocol"] == 1
             assert view.next("screen")["screen"]["menu"]["name"] == "start"
             first, second = view.next("state"), view.next("state")
             assert second["tick"] > first["tick"]
             view.send("{")
             assert view.closing()[0] == 1008
-        with ViewClient(thread, simulator.url, key) as again:
+        with ViewClient(loop_thread, simulator.url, key) as again:
             assert again.join()["view"] == 2
             scene = again.next("scene")["url"]
             headers = {"Authorization": f"Bearer {key}"}
@@ -41,11 +34,11 @@ def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, thread):
         assert simulator.code not in errors
 
 
-def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, thread):
+def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, loop_thread):
     key = secrets.token_urlsafe()
     with (
         ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator,
-        ViewClient(thread, simulator.url, key) as view,
+        ViewClient(loop_thread, simulator.url, key) as view,
     ):
         view.join()
         view.next("state")
