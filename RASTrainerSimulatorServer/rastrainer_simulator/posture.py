@@ -42,7 +42,8 @@ class Posture:
     def surface(self) -> Surface:
         """The head as the tool sees it."""
         tip, shaft = self.clearance.tip, self.clearance.shaft
-        return Surface(tip.distance_m, tip.normal, shaft.distance_m, shaft.normal)
+        shaft_normal = None if shaft is None else shaft.normal
+        return Surface(tip.distance_m, tip.normal, self.clearance.shaft_m, shaft_normal)
 
 
 class Postures:

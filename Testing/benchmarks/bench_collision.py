@@ -93,7 +93,8 @@ def _clearance_row(
     agrees = []
     for links in tour[::10]:
         found, theirs = collision.check(links), peer.check(links)
-        ours = (abs(found.tip_m), found.shaft_m, found.links_m, found.self_m)
+        shaft = collision.nearest_to_shaft(links, np.inf).distance_m
+        ours = (abs(found.tip_m), shaft, found.links_m, found.self_m)
         agrees.append(all(abs(a - b) < AGREEMENT for a, b in zip(ours, theirs, strict=True)))
     return row_of_figures(
         name,

@@ -9,6 +9,10 @@ from rastrainer_simulator.vectors import Vector
 FAR = 0.1
 """Clearances of links, self and table are exact up to here, m; what is farther counts as FAR."""
 
+SHAFT_NEAR = 0.0015
+"""The shaft's clearance is exact up to here, m, and wherever it is less than the tip's: only then
+does it say more than the tip's does."""
+
 
 class Nearest(NamedTuple):
     """The place of the head's surface that is nearest to the tip or to the shaft.
@@ -31,7 +35,8 @@ class Clearance(NamedTuple):
 
     Attributes:
         tip: the very tip of the tool against the head.
-        shaft: the rest of the tool against the head; it starts 3 mm behind the tip.
+        shaft: the rest of the tool against the head, where it is near (see `SHAFT_NEAR`), else
+            None; it starts 3 mm behind the tip.
         links_m: the links, flange included, against the head; at most FAR.
         links_worst: the link that is nearest to the head, "" where none is within FAR.
         self_m: the arm against itself, links at least three joints apart; at most FAR.
@@ -41,7 +46,7 @@ class Clearance(NamedTuple):
     """
 
     tip: Nearest
-    shaft: Nearest
+    shaft: Nearest | None
     links_m: float
     links_worst: str
     self_m: float
@@ -56,8 +61,8 @@ class Clearance(NamedTuple):
 
     @property
     def shaft_m(self) -> float:
-        """Signed clearance of the tool without its tip to the head, m."""
-        return self.shaft.distance_m
+        """Signed clearance of the tool without its tip to the head, m; at least so much if far."""
+        return max(self.tip_m, SHAFT_NEAR) if self.shaft is None else self.shaft.distance_m
 
     @property
     def tool_m(self) -> float:

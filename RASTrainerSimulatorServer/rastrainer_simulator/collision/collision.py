@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rastrainer_simulator.collision.clearance import Clearance, Nearest
+from rastrainer_simulator.collision.clearance import SHAFT_NEAR, Clearance, Nearest
 from rastrainer_simulator.collision.head_clearance import HeadClearance
 from rastrainer_simulator.collision.head_surface import HeadSurface
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
@@ -68,9 +68,10 @@ class Collision:
         """
         posed = self._arm.pose(link_to_world)
         travelled = self._travel(posed)
+        tip = self._head.nearest_to_point(posed.tip)
         return Clearance(
-            self._head.nearest_to_point(posed.tip),
-            self._head.nearest_to_shaft(posed),
+            tip,
+            self._head.nearest_to_shaft(posed, max(tip.distance_m, SHAFT_NEAR)),
             *self._head.nearest_to_links(posed, travelled),
             *self._self.nearest(posed, travelled),
             *self._table.nearest(posed, travelled),
@@ -87,7 +88,7 @@ class Collision:
         travelled = self._travel(posed)
         return (
             self._table.nearest(posed, travelled)[0] >= clearance
-            and self._head.nearest_to_shaft(posed).distance_m > 0.0
+            and self._head.nearest_to_shaft(posed, 0.0) is None
             and self._head.are_links_off(posed, clearance)
             and self._self.nearest(posed, travelled)[0] >= clearance
         )
@@ -102,3 +103,9 @@ class Collision:
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""
         return self._head.nearest_to_point(point)
+
+    def nearest_to_shaft(
+        self, link_to_world: Mapping[str, np.ndarray], limit: float
+    ) -> Nearest | None:
+        """Return the place of the head nearest to the shaft; None where none is within `limit`."""
+        return self._head.nearest_to_shaft(self._arm.pose(link_to_world), limit)

@@ -107,9 +107,12 @@ class Contact:
         clearance, reach = start.clearance, length(displacement) + REST
         above = tip[2] - self._collision.table_height
         others = []
-        if clearance.shaft_m < reach:
-            gap = min(REST - clearance.shaft_m, RECOVERY)
-            others.append(_shifted(clearance.shaft.normal, gap, tip))
+        shaft = clearance.shaft
+        if shaft is None and clearance.shaft_m < reach:
+            shaft = self._collision.nearest_to_shaft(start.link_to_world, reach)
+        if shaft is not None and shaft.distance_m < reach:
+            gap = min(REST - shaft.distance_m, RECOVERY)
+            others.append(_shifted(shaft.normal, gap, tip))
         if above < reach:
             others.append(_shifted((0.0, 0.0, 1.0), min(REST - above, RECOVERY), tip))
         return slide(self._collision.nearest_to_point, tip, clearance.tip, displacement, others)

@@ -65,11 +65,14 @@ class HeadClearance:
         """Return the place of the head nearest to a point, World, m."""
         return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
 
-    def nearest_to_shaft(self, posed: PosedArm) -> Nearest:
-        """Return the place of the head nearest to the tool behind its tip, World, m."""
+    def nearest_to_shaft(self, posed: PosedArm, limit: float) -> Nearest | None:
+        """Return the place of the head nearest to the tool behind its tip, World, m.
+
+        It is None where no place is nearer than `limit`.
+        """
         rows = range(self._arm.link_count, len(self._known))
-        found, _ = self._nearest(posed, rows, self._bounds(posed, rows), math.inf)
-        return self._in_world(found)
+        found, _ = self._nearest(posed, rows, self._bounds(posed, rows), limit)
+        return None if found is None else self._in_world(found)
 
     def nearest_to_links(self, posed: PosedArm, travelled: float) -> tuple[float, str]:
         """Return the clearance of the links, m, and the nearest of them.

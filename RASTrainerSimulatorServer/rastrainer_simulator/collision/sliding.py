@@ -79,7 +79,9 @@ def _step(
         target = nearest_inside(goal, planes)
         if target is None:
             break
-        trial = add(position, shortened(subtract(target, position), longest))
+        short = add(position, shortened(subtract(target, position), longest))
+        # From a place nearer than `rest`, part of the way is only part of the way out.
+        trial = nearest_inside(short, planes) or short
         there = nearest_to_point(trial)
         if there.distance_m >= rest - _EXACT:
             return trial, there, planes

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.collision.clearance import FAR
+from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.posed_arm import ArmCapsules
 from rastrainer_simulator.collision.table_clearance import Surroundings
@@ -84,7 +84,7 @@ def test_clearances_of_tip_and_shaft_are_those_of_brute_force(
 ):
     vertices, corners = corners_in_world(head, head_to_world)
     signed = vtk_distance(vertices, head[1])
-    inside = 0
+    inside = near = 0
     for q in postures:
         links = KINEMATICS.links(q)
         found, posed = collision.check(links), ARM.pose(links)
@@ -92,8 +92,15 @@ def test_clearances_of_tip_and_shaft_are_those_of_brute_force(
         inside += found.tip_m < -0.02
         tool = range(ARM.link_count, len(ARM.capsules))
         expected, _ = brute_capsules(posed, tool, corners, signed)
-        assert found.shaft_m == pytest.approx(expected, abs=FIVE_HUNDREDTHS_MM)
+        assert found.tool_m == pytest.approx(min(found.tip_m, expected), abs=FIVE_HUNDREDTHS_MM)
+        far = max(found.tip_m, SHAFT_NEAR)
+        assert found.shaft_m == pytest.approx(min(expected, far), abs=FIVE_HUNDREDTHS_MM)
+        assert (found.shaft is None) == (expected >= far)
+        exact = collision.nearest_to_shaft(links, np.inf).distance_m
+        assert exact == pytest.approx(expected, abs=FIVE_HUNDREDTHS_MM)
+        near += found.shaft is not None
     assert inside > 8
+    assert 0 < near < len(postures)
 
 
 def test_the_nearest_link_and_its_clearance_are_those_of_brute_force(head, head_to_world):
@@ -248,7 +255,8 @@ def test_the_worst_part_is_named(head, collision):
     above = collision.check(KINEMATICS.links(posture(over, (0.0, 0.0, -1.0))))
     assert above.worst == "tip"
     assert above.tool_m == above.tip_m
-    assert above.without_tip_m == above.shaft_m > above.tip_m
+    assert above.shaft is None
+    assert above.without_tip_m == above.shaft_m == above.tip_m
 
 
 @pytest.mark.parametrize(
