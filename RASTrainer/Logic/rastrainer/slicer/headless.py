@@ -54,13 +54,15 @@ class HeadlessHost:
     Attributes:
         application: the scene and what it needs.
         link: to the simulator.
-        trials: those that are scored, in the order in which they came.
+        latest: the trial that was scored last.
+        results: the numbers of each scored trial as JSON, in the order in which they came.
     """
 
     def __init__(self, shelf: ScenarioShelf, output: Path, cohort: Path | None) -> None:
         self.application = HeadlessScene()
         self.link = Link(self.application.scene, headlessKit, client="headless Slicer")
-        self.trials: list[ScoredTrial] = []
+        self.latest: ScoredTrial | None = None
+        self.results: list[str] = []
         self._touches = 0
         self._desk = TrialDesk(
             self.application.scene,
@@ -81,10 +83,10 @@ class HeadlessHost:
             TrialsMissingError: they did not come in time.
         """
         end = time.monotonic() + timeoutS
-        while len(self.trials) < count:
+        while len(self.results) < count:
             if time.monotonic() > end:
                 raise TrialsMissingError(
-                    f"{len(self.trials)} of {count} trials came within {timeoutS:g} s. "
+                    f"{len(self.results)} of {count} trials came within {timeoutS:g} s. "
                     f"{self.link.status.sentence} {self.link.status.remedy}".rstrip()
                 )
             if self.link.connector is not None:
@@ -109,8 +111,11 @@ class HeadlessHost:
         self._touches = len(labels)
 
     def _tellTrial(self, trial: ScoredTrial) -> None:
-        self.trials.append(trial)
-        tell("trial", results=results_json(trial.analysis, trial.truth))
+        # Of a day's trials only the numbers are kept.
+        results = results_json(trial.analysis, trial.truth)
+        self.latest = trial
+        self.results.append(json.dumps(results, allow_nan=False))
+        tell("trial", results=results)
 
 
 def tell(event: str, **values: Any) -> None:
@@ -152,7 +157,7 @@ def _run(arguments: argparse.Namespace) -> None:
         host.run(arguments.trials, arguments.timeout)
     finally:
         host.close()
-    files = writeOutput(arguments.output, host.application, scenario, host.trials)
+    files = writeOutput(arguments.output, host.application, scenario, host.latest, host.results)
     tell("output", **files, study=str(arguments.output / STUDY_FILE))
 
 

@@ -13,7 +13,6 @@ from rastrainer.slicer.headless_scene import HeadlessScene
 from rastrainer.slicer.residual_glyphs import magnification
 from rastrainer.slicer.residual_picture import writeResidualPicture
 from rastrainer.slicer.trial_desk import ScoredTrial
-from rastrainer.trial_results import results_json
 
 SCENE = "trial.mrb"
 PICTURE = "residuals.png"
@@ -21,18 +20,24 @@ RESULTS = "results.json"
 
 
 def writeOutput(
-    folder: Path, application: HeadlessScene, scenario: Scenario, trials: Sequence[ScoredTrial]
+    folder: Path,
+    application: HeadlessScene,
+    scenario: Scenario,
+    latest: ScoredTrial,
+    results: Sequence[str],
 ) -> dict[str, str]:
-    """Write scene and picture of the last trial and the numbers of all; return the files' paths.
+    """Write scene and picture of the latest trial and the numbers of all; return the files' paths.
+
+    `results` is each trial's `results_json` as text.
 
     Raises:
         InputError: a file cannot be written.
     """
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
-    values = [results_json(trial.analysis, trial.truth) for trial in trials]
+    values = [json.loads(text) for text in results]
     write_text(files["results"], json.dumps({"trials": values}, indent=2, allow_nan=False) + "\n")
     application.save(files["scene"])
-    _writePicture(files["picture"], scenario, trials[-1])
+    _writePicture(files["picture"], scenario, latest)
     return {name: str(path) for name, path in files.items()}
 
 
