@@ -17,6 +17,7 @@ import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName
+from Testing.benchmarks.bare_loop import BareLoop
 from Testing.benchmarks.loop_health import Punctuality, punctuality, read_health
 from Testing.benchmarks.row import row
 from Testing.end_to_end.lab import Lab
@@ -38,8 +39,19 @@ class Delay(NamedTuple):
     shown: float
 
 
+class Swing(NamedTuple):
+    """How punctual the loop was while the arm moved up and down, and a bare loop beside it."""
+
+    loop: Punctuality
+    bare: Punctuality
+    seconds: float
+
+
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `desktop.*`, and `loop.on_time.window` beside the loop without a window."""
+    """Return the rows `desktop.*`, and `loop.on_time.*` with and without the window.
+
+    Beside each of these two is a loop that does nothing, at the same time on the same machine.
+    """
     seconds, pushes = (5, 8) if quick else (15, 40)
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -47,17 +59,20 @@ def rows(quick: bool) -> list[dict]:
         Client(port=lab.simulator.port) as slicer,
     ):
         _start_trial(lab, slicer)
-        alone, _ = _swing(lab, slicer, seconds)
+        alone = _swing(lab, slicer, seconds)
         window = lab.open_window("window", "--size", "{}x{}".format(*SIZE))
         random = np.random.default_rng(SEED)
         delays = [_delay(lab, window, random) for _ in range(pushes)]
-        beside, rate = _swing(lab, slicer, seconds, window)
+        drawn = len(window.frames())
+        beside = _swing(lab, slicer, seconds)
+        rate = (len(window.frames()) - drawn) / beside.seconds
     told, shown = 1e3 * np.array(delays).T
     return [
         row("desktop.stick to stream", told, "ms"),
         row("desktop.stick to picture", shown, "ms"),
         row("desktop.pictures", [rate], "1/s"),
-        _on_time_row(beside, alone),
+        _on_time_row("window", beside),
+        _on_time_row("no window", alone),
     ]
 
 
@@ -95,18 +110,16 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
     return Delay(told - begin, shown[0] - begin)
 
 
-def _swing(
-    lab: Lab, slicer: Client, seconds: int, window: WindowProcess | None = None
-) -> tuple[Punctuality, float]:
-    """Move the arm up and down; return how punctual the loop was, and pictures a second."""
-    before, begin = 0 if window is None else len(window.frames()), time.monotonic()
-    health = [read_health(slicer)]
-    while time.monotonic() < begin + seconds:
-        _push(lab, _way(lab))
-        health.append(read_health(slicer))
-    _push(lab, 0.0)
-    drawn = 0 if window is None else len(window.frames()) - before
-    return punctuality(health), drawn / (time.monotonic() - begin)
+def _swing(lab: Lab, slicer: Client, seconds: int) -> Swing:
+    with BareLoop() as bare:
+        begin = time.monotonic()
+        health = [read_health(slicer)]
+        while time.monotonic() < begin + seconds:
+            _push(lab, _way(lab))
+            health.append(read_health(slicer))
+        _push(lab, 0.0)
+        took = time.monotonic() - begin
+    return Swing(punctuality(health), bare.punctuality, took)
 
 
 def _push(lab: Lab, up: float) -> None:
@@ -124,7 +137,8 @@ def _pixel(lab: Lab, place: np.ndarray) -> float:
     return 2.0 * distance * math.tan(math.radians(camera["viewAngleDeg"]) / 2.0) / SIZE[1]
 
 
-def _on_time_row(beside: Punctuality, alone: Punctuality) -> dict:
+def _on_time_row(name: str, swing: Swing) -> dict:
     """Return a row like `loop.on_time`: p99 is the share that 99 of 100 seconds exceed."""
-    others = {"success": beside.on_time, "n": beside.ticks, "worst": 1}
-    return row("loop.on_time.window", beside.shares, "%", "no window", alone.shares, **others)
+    others = {"success": swing.loop.on_time, "n": swing.loop.ticks, "worst": 1}
+    shares, bare = swing.loop.shares, swing.bare.shares
+    return row(f"loop.on_time.{name}", shares, "%", "bare loop", bare, **others)
