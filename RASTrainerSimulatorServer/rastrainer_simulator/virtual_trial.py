@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.protocol import CommandName, Mode, Phase, check_arguments
-from rastrainer.scripted_trainee import Action, Observation, ScriptedTrainee, Skill, seeded_skill
+from rastrainer.scripted_trainee import Action, Observation, ScriptedTrainee, Skill
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import SimulationState, StepResult
@@ -76,12 +75,7 @@ def play_virtual_trial(
     scenario = simulation.setup.scenario
     task = scenario.task(task_name)
     head_to_world = scenario.perturbed_head_to_world(seed)
-    hands = ScriptedTrainee(
-        transforms.apply(head_to_world, task.fiducials),
-        transforms.apply(head_to_world, scenario.target_position[None])[0],
-        seeded_skill(skill, seed),
-        seed,
-    )
+    hands = ScriptedTrainee.of(scenario, task_name, head_to_world, skill, seed)
     start = {
         "task": task_name,
         "trainee": trainee or f"virtual-{seed}",

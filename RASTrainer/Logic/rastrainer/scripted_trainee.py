@@ -12,7 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer import transforms
+from rastrainer.fiducial_normals import fiducial_normals
 from rastrainer.protocol import SPEED_LIMIT_MM_S, CommandName, Phase
+from rastrainer.scenario import Scenario
 
 LIFT_MM = 35.0
 """How far the tip is taken off the skin before it travels to the next fiducial."""
@@ -65,6 +68,7 @@ class ScriptedTrainee:
 
     Args:
         fiducials_mm: (n, 3) float, the fiducials as seen in the room, World, mm.
+        normals: (n, 3) float, the skin's outward unit normals there, World.
         head_center_mm: (3,) float, around which the hand travels, World, mm.
         skill: what the hands are like.
         seed: of the tremor and the aim.
@@ -73,11 +77,13 @@ class ScriptedTrainee:
     def __init__(
         self,
         fiducials_mm: np.ndarray,
+        normals: np.ndarray,
         head_center_mm: np.ndarray,
         skill: Skill | None = None,
         seed: int = 0,
     ) -> None:
         self._fiducials = np.asarray(fiducials_mm, dtype=float)
+        self._normals = np.asarray(normals, dtype=float)
         self._center = np.asarray(head_center_mm, dtype=float)
         self._skill = skill or Skill()
         self._random = np.random.default_rng(seed)
@@ -89,6 +95,23 @@ class ScriptedTrainee:
         self._acts_from_s = 0.0
         self._gives_up_at_s = np.inf
         self._tremor = np.zeros(3)
+
+    @classmethod
+    def of(
+        cls, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
+    ) -> ScriptedTrainee:
+        """Return one who slips somewhere in a task; HeadToWorld is (4, 4) float, mm.
+
+        Raises:
+            InputError: there is no such task, or the head's mesh cannot be used.
+        """
+        return cls(
+            transforms.apply(head_to_world, scenario.task(task_name).fiducials),
+            fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T,
+            transforms.apply(head_to_world, scenario.target_position[None])[0],
+            seeded_skill(skill, seed),
+            seed,
+        )
 
     def decide(self, observation: Observation) -> Action | None:
         """Return the command to send now, or None to wait; at most one every 50 ms."""
@@ -126,7 +149,7 @@ class ScriptedTrainee:
         """Lift off, travel around the head, come down along the skin's outward direction."""
         point = observation.next_point
         fiducial = self._fiducials[point - 1]
-        outward = self._outward(fiducial)
+        outward = self._normals[point - 1]
         aim = fiducial + self._tangential_error(outward, slips=point == self._slip_at)
         lifted = observation.tip_mm + LIFT_MM * self._outward(observation.tip_mm)
         above = fiducial + LIFT_MM * outward
@@ -195,6 +218,8 @@ class ScriptedTrainee:
 
 
 def seeded_skill(skill: Skill, seed: int) -> Skill:
-    """Return a skill with another fiducial at which to slip, drawn from the seed."""
+    """Return the skill of a trainee who slips, if ever, at a fiducial drawn from the seed."""
+    if skill.slip_at is None:
+        return skill
     point = int(np.random.default_rng([seed, 1]).integers(2, 15))
     return replace(skill, slip_at=point)

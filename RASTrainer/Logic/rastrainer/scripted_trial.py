@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device, Mode, Phase
 from rastrainer.scenario import Scenario
-from rastrainer.scripted_trainee import Observation, ScriptedTrainee, Skill, seeded_skill
+from rastrainer.scripted_trainee import Observation, ScriptedTrainee, Skill
 
 ANSWER_TIMEOUT_S = 10.0
 LONGEST_TRIAL_S = 1800.0
@@ -60,12 +59,7 @@ def play_trial(
         LinkError: the connection was lost.
     """
     head_to_world = scenario.perturbed_head_to_world(seed)
-    trainee = ScriptedTrainee(
-        transforms.apply(head_to_world, scenario.task(task_name).fiducials),
-        transforms.apply(head_to_world, np.array([scenario.target_position]))[0],
-        seeded_skill(skill or Skill(), seed),
-        seed,
-    )
+    trainee = ScriptedTrainee.of(scenario, task_name, head_to_world, skill or Skill(), seed)
     start = {"task": task_name, "trainee": trainee_id, "mode": Mode.DESKTOP.value, "seed": seed}
     trial_id = _send(client, CommandName.START_TASK, start)["trialId"]
     view = _View(client, trial_id, on_progress)

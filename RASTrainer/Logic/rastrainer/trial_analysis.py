@@ -9,14 +9,13 @@ from dataclasses import dataclass
 from rastrainer import ctps
 from rastrainer.errors import InputError
 from rastrainer.feedback.trial_feedback import TrialFeedback, trial_feedback
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.fiducial_normals import fiducial_normals
 from rastrainer.localization_error import error_along_surface
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.point_list import PointList, pair
 from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration, register
 from rastrainer.scenario import Scenario
 from rastrainer.scoring import ScoreReference, TrialScore, score_trial, task_reference
-from rastrainer.surface_queries import outward_normals
 from rastrainer.target_error import TargetError, target_error
 from rastrainer.trial_record import TrialRecord
 
@@ -98,7 +97,8 @@ def analyze_trial(
         # Points in one plane allow no affine fit; it is only looked at anyway.
         with contextlib.suppress(InputError):
             fits[kind] = register(moving, fixed, kind, labels)
-    normals = outward_normals(read_head_mesh(scenario.head_mesh), fixed)
+    rows = [task.labels.index(label) for label in labels]
+    normals = fiducial_normals(scenario, record.task)[rows]
     errors = {
         kind: target_error(fit, scenario.target_position, error_along_surface(fit, normals))
         for kind, fit in fits.items()
