@@ -31,5 +31,29 @@ def test_the_effect_of_a_mode_is_found_where_it_is_and_of_its_size(tmp_path):
     assert found["score"].adjusted_p < 0.01
 
 
+@pytest.mark.soak
+def test_two_hundred_trainees_give_back_what_is_true_of_them(tmp_path):
+    """An hour on two cores: ten tasks in both modes each, 4,000 trials."""
+    tasks = tuple(f"task-{number}" for number in range(1, 6))
+    modes = ("desktop", "hmd")
+    protocol = StudyProtocol("soak", "Soak", modes, "balanced", tasks, "balanced", repetitions=2)
+    effect = {"hmd": ModeEffect(speed=0.8, aim=1.5)}
+    population = Population(skill=BRISK, learning=0.15, modes=effect)
+    run = simulate_cohort(protocol, population, 200, 11, tmp_path / "study", PlaySettings())
+    assert (run.played, run.stuck) == (4000, 0)
+    data = read_study_data(tmp_path / "study" / DATABASE)
+    found = {c.outcome.name: c for c in compare_modes(data, MAIN_OUTCOMES, *modes)}
+    for name, factor in (("completion_time_s", 1 / 0.8), ("rmse_mm", 1.5)):
+        desktop, hmd = map(np.mean, _means(found[name]))
+        assert hmd / desktop == pytest.approx(factor, rel=0.05)
+        assert found[name].adjusted_p < 1e-6
+    for mode in modes:
+        times = [[t.values["completion_time_s"], t.number] for t in data.of_mode(mode)]
+        first, last = (
+            np.mean([s for s, n in times if n in rounds]) for rounds in ((1, 2), (9, 10))
+        )
+        assert last < 0.96 * first
+
+
 def _means(comparison):
     return comparison.first_means, comparison.second_means
