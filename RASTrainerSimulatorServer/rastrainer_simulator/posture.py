@@ -41,9 +41,10 @@ class Posture:
     @property
     def surface(self) -> Surface:
         """The head as the tool sees it."""
-        tip, shaft = self.clearance.tip, self.clearance.shaft
-        shaft_normal = None if shaft is None else shaft.normal
-        return Surface(tip.distance_m, tip.normal, self.clearance.shaft_m, shaft_normal)
+        tip = self.clearance.tip
+        # A shaft that is far is no nearer than the tip, and then the tip alone counts.
+        shaft = self.clearance.shaft or tip
+        return Surface(tip.distance_m, tip.normal, shaft.distance_m, shaft.normal)
 
 
 class Postures:

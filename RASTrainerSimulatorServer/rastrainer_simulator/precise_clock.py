@@ -60,9 +60,7 @@ def stand_second_in_line() -> None:
 
 
 def is_real_time_permitted() -> bool:
-    """Tell whether the system lets the control loop run before all ordinary threads."""
-    if not hasattr(os, "SCHED_FIFO"):
-        return sys.platform == "win32"
+    """Tell whether a system with `SCHED_FIFO` lets the control loop run before ordinary threads."""
     # Tried in a thread that ends with it: nothing has to be taken back.
     with ThreadPoolExecutor(max_workers=1) as pool:
         return pool.submit(_set_real_time, FIRST).result()

@@ -21,21 +21,21 @@ class Relay:
     def __init__(self, port: int):
         """Lead to a port of this computer."""
         self._target = port
-        self._stack = contextlib.ExitStack()
-        self._thread = self._stack.enter_context(LoopThread())
+        self._thread = LoopThread()
         self._writers: list[asyncio.StreamWriter] = []
         self._goes = asyncio.Event()
         self._goes.set()
-        self._server = self._thread.run(asyncio.start_server(self._relay, HOST, 0))
-        self.url = f"http://{HOST}:{self._server.sockets[0].getsockname()[1]}"
 
     def __enter__(self) -> Relay:
+        self._thread.__enter__()
+        self._server = self._thread.run(asyncio.start_server(self._relay, HOST, 0))
+        self.url = f"http://{HOST}:{self._server.sockets[0].getsockname()[1]}"
         return self
 
     def __exit__(self, *_exception: object) -> None:
         self._thread.call(self._server.close)
         self.cut()
-        self._stack.close()
+        self._thread.__exit__()
 
     def stall(self) -> None:
         """Pass nothing on, as a wireless network out of reach; nobody is told."""

@@ -79,13 +79,13 @@ class ScriptedTrainee:
         fiducials_mm: np.ndarray,
         normals: np.ndarray,
         head_center_mm: np.ndarray,
-        skill: Skill | None = None,
-        seed: int = 0,
+        skill: Skill,
+        seed: int,
     ) -> None:
         self._fiducials = np.asarray(fiducials_mm, dtype=float)
         self._normals = np.asarray(normals, dtype=float)
         self._center = np.asarray(head_center_mm, dtype=float)
-        self._skill = skill or Skill()
+        self._skill = skill
         self._random = np.random.default_rng(seed)
         self._slip_at = self._skill.slip_at
         self._planned_for: int | None = None
@@ -100,7 +100,7 @@ class ScriptedTrainee:
     def of(
         cls, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
     ) -> ScriptedTrainee:
-        """Return one who slips somewhere in a task; HeadToWorld is (4, 4) float, mm.
+        """Return one for a task, who slips, if ever, somewhere; HeadToWorld is (4, 4) float, mm.
 
         Raises:
             InputError: there is no such task, or the head's mesh cannot be used.

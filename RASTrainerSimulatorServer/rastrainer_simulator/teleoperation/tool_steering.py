@@ -74,13 +74,13 @@ class Surface:
     """The head as the tool sees it: clearances (m) and outward normals nearest to it.
 
     `clearance` and `normal` are those of the tip, `shaft_clearance` and `shaft_normal` those of the
-    tool behind it, whose normal may be unknown where it is farther from the head than the tip.
+    tool behind it.
     """
 
     clearance: float
     normal: Vector
     shaft_clearance: float
-    shaft_normal: Vector | None
+    shaft_normal: Vector
 
 
 class ToolSteering:
@@ -148,9 +148,8 @@ class ToolSteering:
         if settings.choice not in (ToolDirection.CLEAR, ToolDirection.NORMAL):
             return None
         most = settings.leaning_turn * dt
-        aside, clearance = surface.shaft_normal, surface.shaft_clearance
-        if aside is not None and clearance < min(settings.shaft_clearance, surface.clearance):
-            return turned_toward(direction, scale(aside, -1.0), most)
+        if surface.shaft_clearance < min(settings.shaft_clearance, surface.clearance):
+            return turned_toward(direction, scale(surface.shaft_normal, -1.0), most)
         x, y, z = surface.normal
         inward = unit((-x, -y, -max(z, settings.from_above)))
         excess = angle(direction, inward) - self._lean_limit(surface.clearance)
