@@ -57,7 +57,7 @@ class Run:
     trials: int
 
 
-def train(folder: Path, seconds: float) -> Run:
+def train(folder: Path, seconds: float, speed: float) -> Run:
     """Play trial after trial, each in a connection of its own, a view and Slicer's side beside."""
     records = folder / "records"
     simulators, slicers = [], []
@@ -65,7 +65,7 @@ def train(folder: Path, seconds: float) -> Run:
     with contextlib.ExitStack() as stack:
         thread = stack.enter_context(LoopThread())
         simulator = stack.enter_context(
-            ViewedSimulator(records, "--speed", "2", "--view-port", "0", key=KEY)
+            ViewedSimulator(records, "--speed", str(speed), "--view-port", "0", key=KEY)
         )
         slicer = SlicerProcess(
             *("--port", str(simulator.port), "--trials", "1000000", "--timeout", "100000"),
@@ -125,7 +125,7 @@ def told(run: Run) -> str:
 
 
 def test_two_minutes_of_training_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
-    run = train(tmp_path, 120.0)
+    run = train(tmp_path, 120.0, speed=2)
     with capsys.disabled():
         print(told(run))
     check_flat(run)
@@ -133,7 +133,7 @@ def test_two_minutes_of_training_leave_memory_and_descriptors_as_they_were(tmp_p
 
 @pytest.mark.soak
 def test_two_hours_of_training_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
-    run = train(tmp_path, 7200.0)
+    run = train(tmp_path, 7200.0, speed=1)
     with capsys.disabled():
         print(told(run))
     check_flat(run)
