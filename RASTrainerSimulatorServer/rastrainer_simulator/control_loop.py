@@ -38,6 +38,7 @@ CATCH_UP_S = 0.1
 COMMANDS_PER_TICK = 16
 TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
 SHUTTING_DOWN = "The simulator is shutting down."
+ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
 
 _OF_ANY_TRIAL = (
     CommandName.GET_TRIAL,
@@ -274,6 +275,9 @@ class ControlLoop:
                 data = self._archive.answer(command.name, command.arguments, times)
             except RASTrainerError as error:
                 self._answers.give(Answer(command.ticket, False, str(error)))
+            except Exception:
+                _log.exception("%s of an older trial has failed", command.name)
+                self._answers.give(Answer(command.ticket, False, ARCHIVE_FAILED))
             else:
                 self._answers.give(Answer(command.ticket, True, data=data))
 

@@ -103,13 +103,17 @@ class SimulatorServer:
         self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
         self._study = StudyGuide()
-        taken_up = self._take_up() if options.goes_on else None
-        simulation, reading = taken_up or (self._make_simulation(options.scenario), None)
-        self._goes_on = reading is not None
+        # First: until the folder is ours, another simulator may add to the trial to go on with.
         self._records = RecordsFolder(options.records)
-        self._control_loop = ControlLoop(
-            simulation, options.records, speed=options.speed, interrupted=reading
-        )
+        with contextlib.ExitStack() as unless_ready:
+            unless_ready.callback(self._records.close)
+            taken_up = self._take_up() if options.goes_on else None
+            simulation, reading = taken_up or (self._make_simulation(options.scenario), None)
+            self._goes_on = reading is not None
+            self._control_loop = ControlLoop(
+                simulation, options.records, speed=options.speed, interrupted=reading
+            )
+            unless_ready.pop_all()
         self._scenarios = ScenarioLoader(
             self._control_loop, self._make_simulation, _is_loopback(_peers_host(options))
         )

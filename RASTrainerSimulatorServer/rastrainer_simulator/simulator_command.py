@@ -157,5 +157,5 @@ def _check(arguments: argparse.Namespace) -> None:
 def _address(text: str) -> tuple[str, int]:
     host, _colon, port = text.rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
-        raise InputError("--connect must be HOST:PORT, such as 127.0.0.1:18945.")
+        raise InputError("--connect must be HOST:PORT, such as 127.0.0.1:18944.")
     return host, int(port)

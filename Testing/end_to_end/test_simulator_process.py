@@ -47,12 +47,13 @@ def test_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_pat
         (["--speed", "0"], "--speed must be above 0 and at most 1000."),
         (["--speed", "nan"], "--speed must be above 0 and at most 1000."),
         (["--seed", "-1"], "--seed must be from 0 to 9223372036854775807."),
-        (["--connect", "slicer"], "--connect must be HOST:PORT, such as 127.0.0.1:18945."),
+        (["--connect", "slicer"], "--connect must be HOST:PORT, such as 127.0.0.1:18944."),
         (["--scenario", "nowhere"], "The scenario's folder nowhere does not exist."),
     ],
 )
 def test_wrong_argument_ends_with_one_sentence_and_status_2(tmp_path, capsys, arguments, sentence):
-    assert main(["simulator", "--config", str(tmp_path), *arguments]) == 2
+    places = ["--records", str(tmp_path), "--config", str(tmp_path)]
+    assert main(["simulator", *places, *arguments]) == 2
     assert capsys.readouterr().err == f"rastrainer: {sentence}\n"
 
 

@@ -255,6 +255,22 @@ def test_a_finished_trial_waits_for_its_acknowledgment_also_after_a_restart(
         assert loop.unacknowledged() == ()
 
 
+def test_a_question_about_an_older_trial_that_fails_unforeseen_is_answered(running, caplog):
+    trial_id = running.start()
+    running.finish()
+    assert running.score(trial_id).ok
+    running.start()
+    deep = []
+    for _ in range(100_000):
+        deep = [deep]
+    asked = {"trialId": trial_id, "details": deep}
+    answer = running.loop.submit(CommandName.TRIAL_SCORED, asked).result(PATIENCE_S)
+    assert not answer.ok
+    assert "log says why" in answer.message
+    assert "TrialScored of an older trial has failed" in caplog.text
+    assert running.do(CommandName.GET_TRIAL, trialId=trial_id).ok
+
+
 def test_a_trial_in_a_second_session_with_the_same_seed_is_another_trial(
     anywhere, tmp_path, running
 ):

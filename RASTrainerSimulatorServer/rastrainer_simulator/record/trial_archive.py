@@ -154,21 +154,35 @@ def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
     """Return the trial that a journal tells of, None if it was never registered.
 
     Raises:
-        InputError: the journal was altered, or its record is not one.
+        InputError: the journal was altered, or what it tells of the trial is not as it should be.
     """
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
+    try:
+        return _archived_trial(reading)
+    except (InputError, KeyError, TypeError, ValueError, AttributeError) as error:
+        # Its hashes may be right and its content not: it was forged, or a later version wrote it.
+        raise InputError(
+            f"{reading.path} does not hold a registered trial as it should ({error!r}); it is not "
+            "delivered."
+        ) from None
+
+
+def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
     registered = reading.of_kind("registered")
     if not registered:
         return None
     scores = reading.of_kind("scored")
-    return ArchivedTrial(
+    trial = ArchivedTrial(
         record=TrialRecord.from_json(registered[-1]["record"]),
         truth=Truth.from_json(registered[-1]["truth"]),
         seed=reading.header["seed"],
         scored=scores[-1]["arguments"] if scores else None,
         acknowledged=bool(reading.of_kind("acknowledged")),
     )
+    # What GetTrial and TrialScored tell can be computed from it.
+    replace(trial, scored=trial.scored or {"matrix": np.eye(4)}).told()
+    return trial
 
 
 def find_unacknowledged(folder: Path) -> list[Path]:

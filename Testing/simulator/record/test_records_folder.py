@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
+import signal
 import tempfile
 from pathlib import Path
 
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName
+from rastrainer_simulator import server
 from rastrainer_simulator.cli import main
+from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.record.records_folder import RecordsFolder
+from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.forked_child import in_child
+
+PATIENCE_S = 30.0
 
 
 def take(folder):
@@ -70,3 +78,57 @@ def test_a_file_in_the_place_of_the_folder_is_told(tmp_path):
     (tmp_path / "trials").write_text("my notes")
     with pytest.raises(InputError, match=r"cannot be recorded in .*trials: File exists"):
         RecordsFolder(tmp_path / "trials")
+
+
+def journal_of_two_touches(simulation, folder):
+    """Return the path of an interrupted trial's journal, and where its second touch begins."""
+    with ControlLoop(simulation, folder, speed=None) as loop:
+        loop.submit(CommandName.ABORT).result(PATIENCE_S)
+        start = {"task": "task-1", "trainee": "P01", "mode": "desktop"}
+        assert loop.submit(CommandName.START_TASK, start).result(PATIENCE_S).ok
+        assert loop.submit(CommandName.CAPTURE).result(PATIENCE_S).ok
+        (path,) = folder.glob(f"*{SUFFIX}")
+        size = path.stat().st_size
+        assert loop.submit(CommandName.CAPTURE).result(PATIENCE_S).ok
+    return path, path.read_bytes()[:size].rindex(b"\n") + 1
+
+
+def kept_beside_a_server_that_touches_until_it_leaves(path, size, config):
+    """Start a simulator while another one adds to a journal; return what it says it goes on with.
+
+    The other one leaves the folder in the moment in which the new one takes it.
+    """
+    whole = path.read_bytes()
+    path.write_bytes(whole[:size])
+
+    class Left(RecordsFolder):
+        def __init__(self, folder):
+            path.write_bytes(whole)
+            super().__init__(folder)
+
+    server.RecordsFolder = Left
+    said = []
+
+    def tell(words):
+        said.append(words)
+        if words.startswith("goes on"):
+            signal.raise_signal(signal.SIGTERM)
+
+    options = server.ServerOptions(path.parent, 1, port=0, has_views=False, config=config)
+    asyncio.run(server.SimulatorServer(options).run(tell))
+    return said[-1]
+
+
+def test_a_simulator_goes_on_with_all_that_another_one_touched_until_it_left(simulation, tmp_path):
+    path, size = journal_of_two_touches(simulation, tmp_path / "records")
+    said = in_child(
+        kept_beside_a_server_that_touches_until_it_leaves, path, size, tmp_path / "config"
+    )
+    assert "2 of 15 points are kept" in said
+
+
+def test_a_simulator_that_cannot_be_made_leaves_the_folder(tmp_path):
+    nowhere = server.ServerOptions(tmp_path, 1, scenario=tmp_path / "none", config=tmp_path)
+    with pytest.raises(InputError, match="does not exist"):
+        server.SimulatorServer(nowhere)
+    RecordsFolder(tmp_path).close()

@@ -158,6 +158,37 @@ def test_an_altered_journal_is_not_delivered_and_named(tmp_path):
     assert "altered" in archive.problems[0]
 
 
+@pytest.mark.parametrize(
+    "odd",
+    [
+        {"record": None},
+        {"record": {}},
+        {"truth": {}},
+        {"truth": TRUTH.to_json() | {"headToWorld": [1.0, 2.0]}},
+        {"truth": TRUTH.to_json() | {"fiducials": {"1": [0.0, 0.0, 0.0]}}},
+        {"truth": TRUTH.to_json() | {"target": "the nose"}},
+    ],
+    ids=["no record", "empty record", "no truth", "half a matrix", "one fiducial", "no target"],
+)
+def test_a_journal_of_right_hashes_and_odd_content_is_named_and_holds_up_no_other(tmp_path, odd):
+    registered = {"kind": "registered", "record": RECORD.to_json(), "truth": TRUTH.to_json()}
+    path = write_trial(tmp_path, registered | odd)
+    other_id = TRIAL_ID.replace("5c6f", "0000")
+    write_trial(tmp_path, trial_id=other_id)
+    archive = TrialArchive(tmp_path)
+    assert [record.trial_id for record in archive.unacknowledged()] == [other_id]
+    (problem,) = archive.problems
+    assert path.name in problem
+    assert "not delivered" in problem
+
+
+def test_a_score_that_is_none_is_named(tmp_path):
+    path = write_trial(tmp_path, {"kind": "scored", "arguments": {"matrix": [1.0]}})
+    archive = TrialArchive(tmp_path)
+    assert archive.unacknowledged() == ()
+    assert path.name in archive.problems[0]
+
+
 def test_a_trial_that_is_not_there_gets_a_sentence(tmp_path):
     archive = TrialArchive(tmp_path)
     with pytest.raises(InputError, match="no registered trial"):
