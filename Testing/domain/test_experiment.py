@@ -3,6 +3,7 @@
 import itertools
 import json
 from collections import Counter
+from datetime import datetime, timezone
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,7 @@ from rastrainer.study import Study
 from Testing.domain.trial_records import make_record
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
+NOW = datetime(2999, 1, 1, tzinfo=timezone.utc)
 
 
 def protocol(**changes):
@@ -149,7 +151,7 @@ def test_every_step_can_be_told_to_the_simulator_and_comes_back_the_same(study):
     progress.enroll("T001")
     kinds = set()
     while True:
-        step = StudyStep.of("T001", progress.progress("T001"))
+        step = StudyStep.of("T001", progress.progress("T001"), NOW)
         checked = check_arguments(CommandName.STUDY_STEP, json.loads(json.dumps(step.arguments())))
         assert StudyStep.told(checked) == step
         kinds.add(step.kind)

@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.slicer.study_desk import StudyDesk
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.study import Study
+from rastrainer.trial_record import TrialRecord
 from Testing.slicer.training_room import Room
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
@@ -23,9 +25,7 @@ class Lab:
         self.room, self.path = room, folder / "study.db"
         self.moment = datetime.now(timezone.utc)
         self.trainees = TraineeDesk(lambda: Study.open(self.path), folder / "journals")
-        self.desk = StudyDesk(
-            self.trainees, room.desk, room.link, lambda: room.now, lambda: self.moment
-        )
+        self.desk = StudyDesk(self.trainees, room.desk, room.link, lambda: self.moment)
 
     def close(self):
         self.desk.close()
@@ -35,11 +35,13 @@ class Lab:
     def next(self):
         return self.desk.progress().next_step.name
 
-    def practice(self, seconds):
-        """Let the trial run be played for so long."""
-        self.tell(phase="running")
-        self.room.now += seconds
-        self.tell(phase="idle")
+    def practice(self, seconds, **changes):
+        """Let a trial run be played for so long, with a pause in it, and then be ended."""
+        self.tell(phase="running", elapsedS=0.0, **changes)
+        self.tell(phase="running", elapsedS=seconds / 2, **changes)
+        self.tell(phase="paused", elapsedS=seconds, **changes)
+        self.room.now += 1000.0
+        self.tell(phase="idle", elapsedS=0.0)
 
     def tell(self, **changes):
         """Have the simulator tell of a trial, and wait until the desk knows."""
@@ -99,23 +101,38 @@ def test_the_study_starts_only_what_comes_next(enrolled):
 def test_the_time_of_a_trial_run_outlives_an_interruption(enrolled, tmp_path):
     enrolled.desk.answer([0] * 16)
     enrolled.practice(120.0)
-    with pytest.raises(InputError, match=r"5 minutes, of which 2\.0 are over"):
-        enrolled.desk.finishStep()
     enrolled.close()
     again = Lab(enrolled.room, tmp_path)
     again.trainees.choose("T001")
     assert again.desk.minutesOver(again.desk.progress()) == 2.0
-    again.practice(180.0)
-    again.desk.finishStep()
+    again.practice(179.0)
+    assert again.next == "hmd/trial-run"
+    again.practice(1.0)
     assert again.next == "hmd/1/task-1"
     again.close()
+
+
+def test_the_trial_run_ends_by_itself_while_it_is_played(enrolled):
+    enrolled.desk.answer([0] * 16)
+    enrolled.tell(phase="running", elapsedS=0.5)
+    enrolled.tell(phase="running", elapsedS=299.9)
+    assert enrolled.next == "hmd/trial-run"
+    enrolled.tell(phase="running", elapsedS=300.0)
+    assert enrolled.next == "hmd/1/task-1"
+    assert enrolled.desk.progress().entries[-1].details == {"minutes": 5.0}
+
+
+def test_what_a_slicer_before_may_have_counted_of_a_trial_run_is_not_counted_again(enrolled):
+    enrolled.desk.answer([0] * 16)
+    enrolled.tell(phase="running", elapsedS=250.0)
+    enrolled.tell(phase="running", elapsedS=280.0)
+    assert enrolled.desk.minutesOver(enrolled.desk.progress()) == 0.5
 
 
 def test_practice_of_another_trainee_or_task_does_not_count(enrolled):
     enrolled.desk.answer([0] * 16)
     for other in ({"trainee": "T002"}, {"task": "task-1"}, {"mode": "desktop"}):
-        enrolled.tell(phase="running", **other)
-        enrolled.room.now += 600.0
+        enrolled.practice(600.0, **other)
     enrolled.practice(6.0)
     assert enrolled.desk.minutesOver(enrolled.desk.progress()) == pytest.approx(0.1)
 
@@ -142,7 +159,9 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
     again.close()
 
 
-def test_a_break_lasts_as_long_as_the_protocol_says_by_the_clock(lab, tmp_path):
+def test_a_break_ends_by_itself_and_whoever_is_chosen_when_the_protocols_minutes_are_over(
+    lab, tmp_path
+):
     short = json.loads(SHIPPED.read_text()) | {
         "tasks": ["task-1"],
         "questionnaires": [],
@@ -154,13 +173,16 @@ def test_a_break_lasts_as_long_as_the_protocol_says_by_the_clock(lab, tmp_path):
     lab.desk.enroll()
     lab.desk.skipStep("the headset's battery was empty")
     assert lab.next == "desktop/break"
+    lab.trainees.choose("")
     lab.moment = datetime.now(timezone.utc) + timedelta(minutes=9.9)
-    with pytest.raises(InputError, match="The break takes 10 minutes"):
-        lab.desk.finishStep()
+    lab.desk.process()
+    lab.trainees.choose("T001")
+    assert lab.next == "desktop/break"
     lab.moment += timedelta(minutes=0.2)
-    lab.desk.finishStep()
+    lab.desk.process()
     entry = lab.desk.progress().entries[-1]
     assert (entry.outcome, round(entry.details["minutes"], 1)) == ("done", 10.1)
+    assert lab.next == "desktop/1/task-1"
 
 
 def test_a_trial_that_will_not_count_is_told_while_it_is_played(enrolled):
@@ -224,3 +246,99 @@ def test_who_is_deleted_is_led_no_more(enrolled):
     enrolled.room.run_until(lambda: told(enrolled))
     enrolled.trainees.delete()
     enrolled.room.run_until(lambda: told(enrolled) == {"trainee": "T001", "kind": "free"})
+
+
+def test_a_trial_of_somebody_who_is_not_chosen_counts_and_the_simulator_is_told(
+    enrolled, make_record
+):
+    enrolled.desk.answer([0] * 16)
+    enrolled.desk.skipStep("has practiced in the pilot")
+    enrolled.trainees.create("T002", consent=True)
+    record = make_record(
+        "00000000-0000-0000-0000-000000000001",
+        trainee="T001",
+        mode="hmd",
+        startedUtc=STARTED,
+        completedUtc=STARTED,
+    )
+    enrolled.trainees.study.add_trial(record)
+    enrolled.desk.countTrial(TrialRecord.from_json(record))
+    enrolled.room.run_until(lambda: told(enrolled).get("task") == "task-2")
+    assert told(enrolled)["trainee"] == "T001"
+
+
+def test_a_late_trial_counts_before_a_simulator_is_told_what_comes_next(
+    enrolled, make_record, tmp_path
+):
+    enrolled.desk.answer([0] * 16)
+    enrolled.desk.skipStep("has practiced in the pilot")
+    enrolled.trainees.choose("")
+    enrolled.room.run_until(lambda: told(enrolled).get("task") == "task-1")
+    with Study.open(tmp_path / "study.db") as elsewhere:
+        elsewhere.add_trial(
+            make_record(
+                "00000000-0000-0000-0000-000000000001",
+                trainee="T001",
+                mode="hmd",
+                startedUtc=STARTED,
+                completedUtc=STARTED,
+            )
+        )
+    enrolled.room.link.disconnect()
+    before = len(enrolled.room.sent("StudyStep"))
+    enrolled.room.link.connectTo(port=enrolled.room.simulator.port)
+    enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) > before)
+    assert [step["task"] for step in enrolled.room.sent("StudyStep")[before:]] == ["task-2"]
+
+
+def answered(lab, **changes):
+    """Have the simulator tell of answers."""
+    told = {"trainee": "T001", "number": 1, "questionnaire": "ssq", "answers": [1] * 16}
+    lab.room.simulator.send_command("StepAnswered", {**told, **changes})
+
+
+def test_what_is_answered_at_the_simulator_is_kept_once_whoever_is_chosen(enrolled):
+    enrolled.trainees.choose("")
+    answered(enrolled)
+    answered(enrolled, answers=[3] * 16)
+    enrolled.room.run_until(lambda: told(enrolled).get("kind") == "trial-run")
+    answered(enrolled, answers=[3] * 16)
+    sent = len(enrolled.room.sent("StudyStep"))
+    enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) > sent)
+    (kept,) = StudyProgress(enrolled.trainees.study).answers()
+    assert (kept.trainee, kept.step.name, kept.answers) == ("T001", "hmd/before/ssq", (1,) * 16)
+    assert told(enrolled)["kind"] == "trial-run"
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"answers": [1] * 15},
+        {"answers": [4] * 16},
+        {"answers": 7},
+        {"trainee": ["T001"]},
+        {"number": 2},
+        {"questionnaire": "sus", "answers": [1] * 10},
+        {"questionnaire": "dance"},
+    ],
+)
+def test_answers_that_do_not_belong_to_the_step_are_not_kept(enrolled, wrong):
+    answered(enrolled, **wrong)
+    enrolled.tell(phase="running")
+    assert enrolled.next == "hmd/before/ssq"
+
+
+def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab, tmp_path):
+    path = tmp_path / "short.json"
+    changed = {"tasks": ["task-1"], "questionnaires": [], "trialRun": {"minutes": 0}}
+    path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
+    lab.desk.begin(path)
+    lab.desk.enroll()
+    lab.desk.skipStep("the headset's battery was empty")
+    lab.moment = datetime.now(timezone.utc) + timedelta(minutes=4)
+    lab.room.link.disconnect()
+    before = len(lab.room.sent("StudyStep"))
+    lab.room.link.connectTo(port=lab.room.simulator.port)
+    lab.room.run_until(lambda: len(lab.room.sent("StudyStep")) > before)
+    assert told(lab)["minutes"] == 10.0
+    assert told(lab)["over"] == pytest.approx(4.0, abs=0.5)

@@ -83,8 +83,6 @@ def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun
     begun.press("skipStepButton")
     assert outcomes(begun)[:2] == ["left out: the sheets were missing", "next"]
     assert begun.text("stepTimeText") == "0:00 of 5 min are over."
-    with pytest.raises(AssertionError, match="Its time is not over yet"):
-        begun.press("finishStepButton")
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         begun.press("startStepButton")
     begun.press("createTraineeButton")

@@ -84,7 +84,7 @@ class Proximity(str, Enum):
 
 
 class CommandName:
-    """Names of the commands; `TRIAL_COMPLETED` alone goes from the server to its clients."""
+    """Names of the commands; the last two go from the server to its clients."""
 
     HELLO = "Hello"
     LIST_TASKS = "ListTasks"
@@ -105,6 +105,7 @@ class CommandName:
     GET_TRIAL = "GetTrial"
     ACKNOWLEDGE_TRIAL = "AcknowledgeTrial"
     TRIAL_COMPLETED = "TrialCompleted"
+    STEP_ANSWERED = "StepAnswered"
 
 
 SPEED_LIMIT_MM_S = 500.0
@@ -260,6 +261,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "mode": Argument(one_of(*(mode.value for mode in Mode)), ""),
         "questionnaire": Argument(text(), ""),
         "minutes": Argument(number(0, 43_200, "min"), 0.0),
+        "over": Argument(number(0, 43_200, "min"), 0.0),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -76,6 +77,15 @@ class Progress:
     def since_utc(self) -> str:
         """When the step before the next one was done, or the trainee enrolled; ISO 8601."""
         return self.entries[-1].stored_utc if self.entries else self.enrolled_utc
+
+    def minutes_over(self, now: datetime) -> float:
+        """Return how much of the next step's time is over: of a trial run, or of a break; min."""
+        step = self.next_step
+        if step is None or step.kind not in (StepKind.TRIAL_RUN, StepKind.BREAK):
+            return 0.0
+        if step.kind is StepKind.TRIAL_RUN:
+            return self.practiced_s / 60.0
+        return max(0.0, (now - datetime.fromisoformat(self.since_utc)).total_seconds() / 60.0)
 
     @property
     def counted_trials(self) -> tuple[str, ...]:

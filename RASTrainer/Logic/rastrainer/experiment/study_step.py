@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
+from datetime import datetime
 from typing import Any
 
 from rastrainer.experiment.progress import Progress
@@ -23,6 +24,8 @@ class StudyStep:
         mode: In which it is done; "" for what belongs to none.
         questionnaire: That is asked; "" where none is.
         minutes: How long it takes; 0 where that is open.
+        over: How many of these minutes are over when it is told. It goes on by itself, so that a
+            step is the same step whenever it is told.
     """
 
     trainee: str
@@ -33,9 +36,10 @@ class StudyStep:
     mode: str = ""
     questionnaire: str = ""
     minutes: float = 0.0
+    over: float = field(default=0.0, compare=False)
 
     @classmethod
-    def of(cls, trainee: str, progress: Progress) -> StudyStep:
+    def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:
         """Return what comes next for a trainee who stands there."""
         step, count = progress.next_step, len(progress.steps)
         if step is None:
@@ -49,6 +53,7 @@ class StudyStep:
             mode=step.mode,
             questionnaire=step.questionnaire,
             minutes=step.minutes,
+            over=min(progress.minutes_over(now), step.minutes),
         )
 
     @classmethod

@@ -36,7 +36,6 @@ class StudyPanel:
         ui.beginStudyButton.connect("clicked()", self.begin)
         ui.enrollButton.connect("clicked()", self.enroll)
         ui.startStepButton.connect("clicked()", self.startStep)
-        ui.finishStepButton.connect("clicked()", self.finishStep)
         ui.skipStepButton.connect("clicked()", self.skipStep)
         ui.saveAnswersButton.connect("clicked()", self.saveAnswers)
         ui.protocolPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
@@ -66,11 +65,6 @@ class StudyPanel:
         """Start the trial that comes next."""
         with slicer.util.tryWithErrorDisplay(_("The step was not started.")):
             self._desk.startStep()
-
-    def finishStep(self) -> None:
-        """End the trial run or the break."""
-        with slicer.util.tryWithErrorDisplay(_("The step was not ended.")):
-            self._desk.finishStep()
 
     def saveAnswers(self) -> None:
         """Keep the answers of the questionnaire."""
@@ -140,7 +134,6 @@ class StudyPanel:
         ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = asked
         key = (self._session.trainees.chosen, step.name) if asked else None
         self._form.show(key, find_questionnaire(step.questionnaire) if asked else None)
-        ui.finishStepButton.visible = step is not None and step.kind in TIMED
         ui.startStepButton.visible = step is not None and step.kind in TRIALS
         ui.skipStepButton.visible = step is not None
         self.showState()
@@ -160,9 +153,9 @@ class StudyPanel:
             _("Choose a trainee in the section Trainees first."),
         )
         if self._progress is not None and self._progress.next_step is not None:
-            self._showStepButtons(self._progress, self._progress.next_step)
+            self._showStartButton(self._progress.next_step)
 
-    def _showStepButtons(self, progress: Progress, step: Step) -> None:
+    def _showStartButton(self, step: Step) -> None:
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         isOpen = self._session.training.progress.isOpen
         setUsable(
@@ -172,12 +165,6 @@ class StudyPanel:
             _("A trial is open: abort it or let it be registered first.")
             if isConnected
             else _("Connect to the simulator first."),
-        )
-        setUsable(
-            self._ui.finishStepButton,
-            self._desk.minutesOver(progress) >= step.minutes,
-            _("Go on with the next step."),
-            _("Its time is not over yet; to go on earlier, skip it with a reason."),
         )
 
 

@@ -42,6 +42,7 @@ class Link:
         pointsChanged: emits the list of touched points (`vtkMRMLMarkupsFiducialNode`).
         stateChanged: emits what `SimState` says, a dict.
         trialCompleted: emits the record that the simulator delivers, a dict not yet checked.
+        stepAnswered: emits the answers to a questionnaire of a study, a dict not yet checked.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class Link:
         self.pointsChanged = Signal()
         self.stateChanged = Signal()
         self.trialCompleted = Signal()
+        self.stepAnswered = Signal()
         self._scene = scene
         self._client = client
         # From inside VTK nothing may raise: commands are kept here until `process`.
@@ -144,7 +146,7 @@ class Link:
         self._pending.poll(self.isOpen)
         if self.connector is not None:
             self._handOverNodes()
-        self._handOverTrials()
+        self._handOverCommands()
 
     def _begin(self, address: tuple[str, int], isListening: bool) -> None:
         if not 0 < address[1] < 65536:
@@ -180,11 +182,15 @@ class Link:
             self._stateText = text
             self._handOver(text, Device.SIM_STATE, self.stateChanged)
 
-    def _handOverTrials(self) -> None:
+    def _handOverCommands(self) -> None:
+        signals = {
+            CommandName.TRIAL_COMPLETED: self.trialCompleted,
+            CommandName.STEP_ANSWERED: self.stepAnswered,
+        }
         while self._received:
             name, content = self._received.popleft()
-            if name == CommandName.TRIAL_COMPLETED:
-                self._handOver(content, name, self.trialCompleted)
+            if name in signals:
+                self._handOver(content, name, signals[name])
             else:
                 logging.warning("The simulator sent the unknown command %s.", name)
 

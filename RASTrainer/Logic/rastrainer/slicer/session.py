@@ -107,6 +107,7 @@ class Session:
         self.taskChosen = Signal()
         self.scenarioMade = Signal()
         self._trial = ""
+        self.trials.trialKept.connect(self.study.countTrial)
         self.trials.trialScored.connect(self._takeScored)
         self.link.stateChanged.connect(self._noticeNewTrial)
 
@@ -140,6 +141,7 @@ class Session:
         if self._scene.IsBatchProcessing():
             return
         self.link.process()
+        self.study.process()
         self.registration.process()
         self.replay.process()
         followPlacement(self._scene)

@@ -3,36 +3,39 @@
 from __future__ import annotations
 
 import contextlib
-import time
-from collections.abc import Callable, Sequence
-from datetime import datetime, timezone
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.experiment.progress import Progress
+from rastrainer.experiment.step_answers import StepAnswers
 from rastrainer.experiment.steps import Step, StepKind
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import StudyProtocol, read_study_protocol
 from rastrainer.experiment.study_step import StudyStep
-from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
+from rastrainer.protocol import CommandName
 from rastrainer.slicer.link import Link
+from rastrainer.slicer.practice_watch import PracticeWatch
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.slicer.training_desk import TrainingDesk
 from rastrainer.slicer.translation import _
 from rastrainer.study import Study
+from rastrainer.trial_record import TrialRecord
 
 TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
-KEPT_EVERY_S = 5.0
-"""What a crash may cost of the time that a trial run was practiced."""
 
 
 class StudyDesk:
-    """What the Study panel does, for the trainee who is chosen.
+    """What the Study panel does for the chosen trainee, and leading everybody who is enrolled.
 
     All that is done stands in the study's file before anyone is told, so that whoever opens it
-    again goes on where the trainee was. The simulator is told what comes next for each trainee, so
-    that its own menu begins nothing else.
+    again goes on where the trainee was. The simulator is told what comes next for each trainee,
+    whoever is chosen here, so that its own menu begins nothing else. Trial runs and breaks end by
+    themselves; `process` is to be called about ten times a second.
 
     Attributes:
         changed: emits nothing, whenever a step may have been done.
@@ -43,30 +46,39 @@ class StudyDesk:
         trainees: TraineeDesk,
         training: TrainingDesk,
         link: Link,
-        clock: Callable[[], float] = time.monotonic,
         now: Callable[[], datetime] = lambda: datetime.now(timezone.utc),
     ) -> None:
         self.changed = Signal()
         self._trainees = trainees
         self._training = training
         self._link = link
-        self._clock = clock
         self._now = now
-        self._practicing: tuple[str, str] | None = None
-        self._since = 0.0
         self._told: dict[str, StudyStep] = {}
-        self._toldStudy: Study | None = None
-        trainees.changed.connect(self._count)
-        training.changed.connect(self._practice)
+        self._ledStudy: Study | None = None
+        self._breaks: dict[str, datetime] = {}
+        self._watch = PracticeWatch(trainees, training, self._leadAgain)
+        trainees.changed.connect(self._followTrainees)
         link.opened.connect(self._tellAll)
-        self.changed.connect(self._tellNews)
+        link.stepAnswered.connect(self._takeAnswers)
 
     def close(self) -> None:
         """Listen no more, and keep what was practiced last."""
-        self._trainees.changed.disconnect(self._count)
-        self._training.changed.disconnect(self._practice)
+        self._trainees.changed.disconnect(self._followTrainees)
         self._link.opened.disconnect(self._tellAll)
-        self._keep()
+        self._link.stepAnswered.disconnect(self._takeAnswers)
+        self._watch.close()
+
+    def process(self) -> None:
+        """End the breaks whose time is over."""
+        now = self._now()
+        for name in [name for name, end in self._breaks.items() if now >= end]:
+            del self._breaks[name]
+            with contextlib.suppress(InputError):
+                study = StudyProgress(self._trainees.study)
+                progress = study.progress(name)
+                minutes = progress.minutes_over(now)
+                study.finish(name, progress.next_step.name, {"minutes": minutes})
+            self._leadOn(name)
 
     def protocol(self) -> StudyProtocol | None:
         """Return the study's protocol; None where trainees practice freely."""
@@ -92,7 +104,7 @@ class StudyDesk:
         if not self._trainees.chosen:
             raise InputError(_("Choose a trainee in the section Trainees first."))
         place = StudyProgress(self._trainees.study).enroll(self._trainees.chosen)
-        self.changed.emit()
+        self._leadOn(self._trainees.chosen)
         return place
 
     def progress(self) -> Progress | None:
@@ -104,17 +116,11 @@ class StudyDesk:
         return study.progress(name)
 
     def minutesOver(self, progress: Progress) -> float:
-        """Return how much of the next step's time is over: of a trial run, or of a break; min."""
-        step = progress.next_step
-        if step is None or step.kind not in (StepKind.TRIAL_RUN, StepKind.BREAK):
-            return 0.0
-        if step.kind is StepKind.BREAK:
-            since = datetime.fromisoformat(progress.since_utc)
-            return max(0.0, (self._now() - since).total_seconds() / 60.0)
-        running = 0.0
-        if self._practicing == (self._trainees.chosen, step.name):
-            running = self._clock() - self._since
-        return (progress.practiced_s + running) / 60.0
+        """Return how much of the chosen trainee's trial run or break is over; min."""
+        step, minutes = progress.next_step, progress.minutes_over(self._now())
+        if step is None or step.kind is not StepKind.TRIAL_RUN:
+            return minutes
+        return minutes + self._watch.unkept(self._trainees.chosen, step.mode) / 60.0
 
     def startTrial(self, task: str, mode: str) -> None:
         """Start a trial for the chosen trainee, unless the study asks for something else first.
@@ -158,16 +164,10 @@ class StudyDesk:
         Raises:
             InputError: none comes next, or an answer is missing.
         """
-        self._finish({"answers": list(answers)})
-
-    def finishStep(self) -> None:
-        """End the trial run or the break that comes next, once its time is over.
-
-        Raises:
-            InputError: it is not, or something else comes next.
-        """
-        self._keep()
-        self._finish({"minutes": self.minutesOver(self._progress())})
+        step = self._next()
+        details = {"answers": list(answers)}
+        StudyProgress(self._trainees.study).finish(self._trainees.chosen, step.name, details)
+        self._leadOn(self._trainees.chosen)
 
     def skipStep(self, reason: str) -> None:
         """Leave the next step out, for a reason that goes into the report.
@@ -175,15 +175,14 @@ class StudyDesk:
         Raises:
             InputError: there is no reason of ten characters.
         """
-        self._keep()
+        self._watch.keep()
         step = self._next()
         StudyProgress(self._trainees.study).skip(self._trainees.chosen, step.name, reason)
-        self.changed.emit()
+        self._leadOn(self._trainees.chosen)
 
-    def _finish(self, details: dict) -> None:
-        step = self._next()
-        StudyProgress(self._trainees.study).finish(self._trainees.chosen, step.name, details)
-        self.changed.emit()
+    def countTrial(self, record: TrialRecord) -> None:
+        """Count a trial that has just been stored, if it is what the study asks its trainee for."""
+        self._leadOn(record.trainee)
 
     def _progress(self) -> Progress:
         progress = self.progress()
@@ -197,65 +196,76 @@ class StudyDesk:
             raise InputError(_("All steps of the study are done."))
         return step
 
-    def _count(self) -> None:
-        """Count the trials of the chosen trainee that have arrived meanwhile."""
-        # Who looks at the study is told what is wrong with it; the trials are kept.
+    def _takeAnswers(self, value: Mapping[str, Any]) -> None:
+        """Keep what was answered at the simulator, which repeats it until told of another step."""
+        try:
+            answers = StepAnswers.from_json(value)
+            study = StudyProgress(self._trainees.study)
+            if answers.trainee not in study.enrolled():
+                return
+            progress = study.progress(answers.trainee)
+            if answers.belong_to(StudyStep.of(answers.trainee, progress, self._now())):
+                details = {"answers": answers.answers}
+                study.finish(answers.trainee, progress.next_step.name, details)
+        except InputError as error:
+            logging.error("What was answered at the simulator is not kept: %s", error)
+        else:
+            self._leadAgain(answers.trainee)
+
+    def _leadOn(self, name: str) -> None:
+        """Lead one trainee, of whom something is new, and let all see it."""
         with contextlib.suppress(InputError):
-            if self.progress() is not None:
-                StudyProgress(self._trainees.study).count_played(self._trainees.chosen)
+            if name in StudyProgress(self._trainees.study).enrolled():
+                self._lead(name)
         self.changed.emit()
 
-    def _tellAll(self) -> None:
-        """Tell the simulator, which may know nothing yet, what comes next for everybody."""
-        self._told.clear()
-        with contextlib.suppress(InputError):
-            self._toldStudy = self._trainees.study
-            for name in StudyProgress(self._toldStudy).enrolled():
-                self._tell(name)
+    def _leadAgain(self, name: str) -> None:
+        """Lead one trainee, and tell the simulator even what it was told already."""
+        self._told.pop(name, None)
+        self._leadOn(name)
 
-    def _tellNews(self) -> None:
-        """Tell the simulator what is new of the chosen trainee, and who is led no more."""
+    def _followTrainees(self) -> None:
+        """Lead the chosen trainee and who is new, or everybody where it is another study."""
+        # Who looks at the study is told what is wrong with it.
         with contextlib.suppress(InputError):
             enrolled = StudyProgress(self._trainees.study).enrolled()
             for name in [name for name in self._told if name not in enrolled]:
                 self._send(StudyStep(name))
                 del self._told[name]
-            if self._trainees.study is not self._toldStudy:
-                self._tellAll()
-            elif self._trainees.chosen in enrolled:
-                self._tell(self._trainees.chosen)
+                self._breaks.pop(name, None)
+            isSame = self._trainees.study is self._ledStudy
+            self._ledStudy = self._trainees.study
+            known = self._told.keys() - {self._trainees.chosen} if isSame else ()
+            for name in [name for name in enrolled if name not in known]:
+                with contextlib.suppress(InputError):
+                    self._lead(name)
+        self.changed.emit()
 
-    def _tell(self, name: str) -> None:
-        step = StudyStep.of(name, StudyProgress(self._trainees.study).progress(name))
+    def _tellAll(self) -> None:
+        """Tell the simulator, which may know nothing yet, what comes next for everybody."""
+        self._told.clear()
+        self._followTrainees()
+
+    def _lead(self, name: str) -> None:
+        """Count the trials of a trainee that have arrived, and tell what comes next if it is new.
+
+        Raises:
+            InputError: the study cannot be read.
+        """
+        progress = StudyProgress(self._trainees.study).count_played(name)
+        self._noteBreak(name, progress)
+        step = StudyStep.of(name, progress, self._now())
         if self._told.get(name) != step:
             self._told[name] = step
             self._send(step)
 
+    def _noteBreak(self, name: str, progress: Progress) -> None:
+        self._breaks.pop(name, None)
+        step = progress.next_step
+        if step is not None and step.kind is StepKind.BREAK:
+            since = datetime.fromisoformat(progress.since_utc)
+            self._breaks[name] = since + timedelta(minutes=step.minutes)
+
     def _send(self, step: StudyStep) -> None:
         # Without a connection nothing is sent; whoever connects is told everything.
         self._link.send(CommandName.STUDY_STEP, step.arguments())
-
-    def _practice(self) -> None:
-        """Take the time while the trial run that comes next is being practiced."""
-        trial = self._training.progress
-        runs = trial.phase == Phase.RUNNING.value and trial.task == TRIAL_RUN
-        key = (trial.trainee, f"{trial.mode}/{TRIAL_RUN}") if runs else None
-        if key != self._practicing:
-            self._keep()
-            self._practicing, self._since = key, self._clock()
-        elif key is not None and self._clock() - self._since >= KEPT_EVERY_S:
-            self._keep()
-
-    def _keep(self) -> None:
-        """Put what was practiced into the study's file."""
-        if self._practicing is None:
-            return
-        (name, step), seconds = self._practicing, self._clock() - self._since
-        self._since += seconds
-        try:
-            study = StudyProgress(self._trainees.study)
-            upcoming = study.progress(name).next_step if name in study.enrolled() else None
-            if upcoming is not None and upcoming.name == step:
-                study.practice(name, step, seconds)
-        except InputError:
-            self._practicing = None

@@ -44,6 +44,7 @@ class TrialDesk:
     """Takes in the trials that a link hands over.
 
     Attributes:
+        trialKept: emits each `TrialRecord` that comes in, once it is in the study.
         trialScored: emits each `ScoredTrial`, once its truth is in the study.
         problemFound: emits a sentence about a trial that could not be kept or scored.
         received: UUIDs of the trials that came in and are safe, in their order.
@@ -68,6 +69,7 @@ class TrialDesk:
             cohort: what CTPS compares with.
             records: folder of the simulator's journals, if it is on this computer.
         """
+        self.trialKept = Signal()
         self.trialScored = Signal()
         self.problemFound = Signal()
         self.received: list[str] = []
@@ -119,6 +121,7 @@ class TrialDesk:
         self._acknowledge(record)
         if record.trial_id not in self.received:
             self.received.append(record.trial_id)
+            self.trialKept.emit(record)
         if analysis is not None and not isRevealed and record.trial_id not in self._told:
             self._show(analysis)
             self._tellScore(with_progress(analysis, study), self._complain)
