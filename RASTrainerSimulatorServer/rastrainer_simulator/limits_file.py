@@ -13,8 +13,9 @@ from rastrainer_simulator.view_server.limits import ViewLimits
 
 FILE_NAME = "limits.json"
 MOST_BYTES = 2**14
-LARGEST = 2**30
-"""No count, time or size is larger: a limit that limits nothing is a mistake."""
+LARGEST = {"_share": 1, "_bytes": 2**30, "_per_s": 2**20, "_s": 86_400}
+"""By how a limit's name ends: a limit that limits nothing is a mistake."""
+LARGEST_COUNT = 2**16
 
 T = TypeVar("T")
 
@@ -57,7 +58,8 @@ def _limits(path: Path, group: str, kind: type[T], values: Any) -> T:
         raise InputError(f"{path}: {group} must be a JSON object with any of {listed}.")
     for name, value in values.items():
         is_whole = isinstance(defaults[name], int)
-        if type(value) not in ((int,) if is_whole else (int, float)) or not 0 < value <= LARGEST:
+        most = next((most for end, most in LARGEST.items() if name.endswith(end)), LARGEST_COUNT)
+        if type(value) not in ((int,) if is_whole else (int, float)) or not 0 < value <= most:
             what = "whole number" if is_whole else "number"
-            raise InputError(f"{path}: {group}.{name} must be a {what} above 0, up to {LARGEST}.")
+            raise InputError(f"{path}: {group}.{name} must be a {what} above 0, up to {most}.")
     return kind(**values)

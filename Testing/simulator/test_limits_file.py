@@ -48,6 +48,13 @@ def test_what_the_file_leaves_out_is_as_by_default(tmp_path):
         ({"clients": {"slow_client_s": -1}}, "clients.slow_client_s must be a number above 0"),
         ({"clients": {"slow_client_s": "5"}}, "clients.slow_client_s must be a number above 0"),
         ({"clients": {"waiting_bytes": 2**40}}, "up to 1073741824"),
+        (
+            {"clients": {"clients": 10**6}},
+            "clients.clients must be a whole number above 0, up to 65",
+        ),
+        ({"clients": {"reading_share": 1.5}}, "reading_share must be a number above 0, up to 1."),
+        ({"clients": {"silent_peer_s": 1e9}}, "silent_peer_s must be a number above 0, up to 864"),
+        ({"views": {"requests_per_s": 1e9}}, "requests_per_s must be a number above 0, up to 104"),
         ('{"clients": {"slow_client_s": NaN}}', "limits.json"),
     ],
 )

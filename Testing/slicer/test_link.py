@@ -74,6 +74,15 @@ def test_silence_is_told_and_a_long_one_ends_the_half_open_connection(link, simu
     assert simulator.commands[1][0] == "Hello"
 
 
+def test_a_connection_that_was_dead_before_the_first_heartbeat_is_made_anew(link, simulator, clock):
+    link.connectTo(port=simulator.port)
+    run_link_until(link, lambda: simulator.commands)
+    clock.now += RECONNECT_AFTER_S + 1.0
+    run_link_until(link, lambda: len(simulator.commands) == 2)
+    beat(simulator)
+    run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
+
+
 def test_a_simulator_of_another_version_is_named_and_gets_no_commands(link, simulator):
     connect(link, simulator)
     beat(simulator, PROTOCOL_VERSION + 1)

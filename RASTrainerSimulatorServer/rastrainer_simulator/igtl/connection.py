@@ -71,12 +71,14 @@ class Connection(asyncio.BufferedProtocol):
         name: what the peer called itself, at first its address.
         host: the peer's, for the log.
         header_version: what the peer speaks.
+        is_silent: it has not sent a single message.
         closed: set when the connection has ended.
     """
 
     def __init__(self, owner: ConnectionOwner):
         self.name = self.host = "a client"
         self.header_version = 2
+        self.is_silent = True
         self.closed = asyncio.Event()
         self._owner = owner
         self._limits = owner.limits
@@ -150,6 +152,7 @@ class Connection(asyncio.BufferedProtocol):
     def _read(self, nbytes: int) -> None:
         for message in self._reader.feed(self._piece[:nbytes]):
             self.header_version = message.version
+            self.is_silent = False
             self._open()
             self._owner.received(self, message)
         if self._reader.errors:

@@ -10,7 +10,8 @@ class Limits:
     """Limits of the OpenIGTLink server; the largest message is `rastrainer.igtl`'s own limit.
 
     Attributes:
-        clients: connections at once; further ones are closed at once.
+        clients: connections at once; one more takes the place of the oldest that has never sent a
+            message, and is closed at once where all have.
         new_clients_per_s: connections that are taken in a second; further ones wait.
         message_bytes: body of a message that is waited for; a longer one is passed over.
         reading_share: of one core for reading; the connections share it evenly.

@@ -42,7 +42,7 @@ class IgtlServer:
         self.limits = limits or Limits()
         self._handler = handler
         self._log = LinkLog()
-        self._connections: set[Connection] = set()
+        self._connections: dict[Connection, None] = {}
         self._opened: set[Connection] = set()
         self._listener: Listener | None = None
 
@@ -106,11 +106,15 @@ class IgtlServer:
         self._log.close()
 
     def connected(self, connection: Connection) -> None:
-        """Accept a connection, unless there are too many."""
+        """Accept a connection; where there are too many, the oldest silent one yields to it."""
         if len(self._connections) >= self.limits.clients:
-            connection.drop(f"There are {self.limits.clients} clients already.")
-            return
-        self._connections.add(connection)
+            silent = next((each for each in self._connections if each.is_silent), None)
+            if silent is None:
+                connection.drop(f"There are {self.limits.clients} clients already.")
+                return
+            del self._connections[silent]
+            silent.drop("It has said nothing, and its place was needed.")
+        self._connections[connection] = None
 
     def opened(self, connection: Connection) -> None:
         """Hand on a connection that may be sent to."""
@@ -130,7 +134,7 @@ class IgtlServer:
         """Forget a connection."""
         if reason:
             self._log.note(f"{connection.host} was disconnected: {reason}")
-        self._connections.discard(connection)
+        self._connections.pop(connection, None)
         if connection in self._opened:
             self._opened.discard(connection)
             self._handler.disconnected(connection)

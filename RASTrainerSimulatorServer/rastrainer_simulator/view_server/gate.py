@@ -32,6 +32,7 @@ class Gate:
         sessions: Sessions,
         code: PairingCode,
         note: Callable[[web.Request], None],
+        note_key: Callable[[web.Request], None],
         turnstile: Turnstile,
     ) -> None:
         """Make a gate.
@@ -39,13 +40,15 @@ class Gate:
         Args:
             sessions: whose keys open it.
             code: that a new session is given for.
-            note: is told of every request that arrives.
+            note: is told of every request that arrives, and
+            note_key: of every one that shows a session's key.
             turnstile: every request waits for its turn at it.
         """
         self._turnstile = turnstile
         self._sessions = sessions
         self._code = code
         self._note = note
+        self._note_key = note_key
 
     @web.middleware
     async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
@@ -53,7 +56,9 @@ class Gate:
         self._note(request)
         await self._turnstile.passed()
         check_origin(request)
-        if not _is_public(request) and not self._sessions.knows(_key(request)):
+        if self._sessions.knows(_key(request)):
+            self._note_key(request)
+        elif not _is_public(request):
             raise web.HTTPUnauthorized(text=PAIR_FIRST)
         return await handler(request)
 

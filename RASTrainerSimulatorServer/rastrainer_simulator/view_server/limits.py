@@ -11,7 +11,8 @@ class ViewLimits:
 
     Attributes:
         views: streams at once; further ones are refused.
-        connections: of any kind at once; further ones are closed at once.
+        connections: of any kind at once; one more takes the place of the oldest that has shown no
+            key, and is closed at once where all have.
         new_connections_per_s: that are taken in a second; further ones wait.
         requests_per_s: of all connections together; further ones wait for their turn.
         sessions: keys that are remembered; the oldest is forgotten.

@@ -147,7 +147,8 @@ class ViewServer:
 
     def _application(self) -> web.Application:
         turnstile = Turnstile(self._limits.requests_per_s)
-        gate = Gate(self.sessions, self.code, self._connections.note, turnstile)
+        connections = self._connections
+        gate = Gate(self.sessions, self.code, connections.note, connections.note_key, turnstile)
         app = web.Application(middlewares=[gate.check], client_max_size=LARGEST_BODY)
         app.on_response_prepare.append(add_security_headers)
         app.add_routes(

@@ -172,12 +172,31 @@ def test_message_left_half_sent_ends_the_connection(start):
 
 def test_one_client_too_many_is_turned_away(start):
     server = start(PlainServer, clients=2)
-    with connect(server.port) as first, connect(server.port):
-        server.handler.wait_until(lambda: len(server.handler.connections) == 2)
+    with connect(server.port) as first, connect(server.port) as second:
+        for peer in (first, second):
+            peer.sendall(pack(PROBE))
+        server.handler.wait_for_messages(2)
         with connect(server.port) as third:
             assert read_to_end(third) == b""
         first.sendall(pack(PROBE))
+        server.handler.wait_for_messages(3)
+
+
+def test_the_oldest_client_that_never_said_a_word_yields_when_its_place_is_needed(start):
+    server = start(PlainServer, clients=3)
+    with connect(server.port) as talking, contextlib.ExitStack() as stack:
+        talking.sendall(pack(PROBE))
         server.handler.wait_for_messages(1)
+        silent = [stack.enter_context(connect(server.port)) for _ in range(2)]
+        server.handler.wait_until(lambda: len(server.handler.connections) == 3)
+        for number in range(2):
+            newcomer = stack.enter_context(connect(server.port))
+            newcomer.sendall(pack(PROBE))
+            server.handler.wait_for_messages(2 + number)
+            assert read_to_end(silent[number]) == b""
+        talking.sendall(pack(PROBE))
+        server.handler.wait_for_messages(4)
+        assert len(server.server.clients) == 3
 
 
 def test_fifty_clients_get_their_echo(link_server):

@@ -1,10 +1,12 @@
 import asyncio
+import contextlib
 import json
 import socket
 
 import aiohttp
 import pytest
 
+from rastrainer_simulator.view_server import view_server as view_server_module
 from Testing.simulator.igtl.servers import HOST
 from Testing.simulator.view_server.served import HELLO
 
@@ -140,6 +142,35 @@ def test_connections_beyond_the_limit_are_closed(serve, connect):
     with pytest.raises(aiohttp.ClientError):
         connect(served)
     assert view.next("state")["type"] == "state"
+
+
+def asking(port: int, path: str) -> socket.socket:
+    """Return a connection that asks for a file, and does not read it."""
+    stranger = socket.create_connection((HOST, port), 10)
+    stranger.sendall(f"GET {path} HTTP/1.1\r\nHost: {HOST}:{port}\r\n\r\n".encode())
+    assert stranger.recv(12) == b"HTTP/1.1 200"
+    return stranger
+
+
+def test_strangers_that_ask_and_never_read_keep_nobody_out(
+    serve, connect, tmp_path, monkeypatch, caplog
+):
+    (tmp_path / "index.html").write_text("the page")
+    (tmp_path / "page.js").write_bytes(bytes(20_000_000))
+    monkeypatch.setattr(view_server_module, "page_folder", lambda: tmp_path)
+    served = serve(connections=3)
+    paired = connect(served)
+    paired.join()
+    with contextlib.ExitStack() as stack:
+        strangers = [stack.enter_context(asking(served.port, "/page.js")) for _ in range(2)]
+        for stranger in strangers:
+            connect(served).join()
+            while stranger.recv(1_000_000):
+                pass
+        with pytest.raises(aiohttp.ClientError):
+            connect(served)
+    assert paired.next("state")["type"] == "state"
+    assert caplog.text == ""
 
 
 STRANGE_REQUESTS = [

@@ -103,8 +103,8 @@ class Connection:
             self.peerVersion = None
             self._lastSign = self._clock()
         self._hearHeartbeat()
-        if self._isHeard and self._clock() - self._lastSign > RECONNECT_AFTER_S:
-            # Half-open: nothing will ever come over this connection again.
+        if self._clock() - self._lastSign > RECONNECT_AFTER_S:
+            # Half-open: nothing will ever come over this connection again, if anything ever did.
             self.connector.Stop()
             self.connector.Start()
             self.isOpen = False
