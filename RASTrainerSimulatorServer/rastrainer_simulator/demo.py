@@ -49,7 +49,8 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
         states = _play(port, scenario, seed, speed)
         print("Slicer's side registers, scores, stores and draws ...", flush=True)
         _wait_for(slicer, output / "slicer.log")
-    trials = json.loads((output / "results.json").read_text())["trials"]
+    lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
+    trials = [json.loads(line) for line in lines]
     _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
     for trial in trials:
         print("\n" + trial_summary(trial, scenario.task(trial["task"]).title))

@@ -9,7 +9,7 @@ from rastrainer.ctps import CTPS_WARNING
 
 
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
-    """Return what a person wants to know of one trial; `trial` is an entry of results.json."""
+    """Return what a person wants to know of one trial; `trial` is a line of results.jsonl."""
     truth, target = trial["truth"], trial["target"]["name"]
     rigid = trial["fits"]["rigid"]
     low, high = rigid["tre_interval_mm"]

@@ -89,7 +89,8 @@ def test_a_trial_is_played_to_its_files(colin_record, tmp_path, capfd):
     assert [line["label"] for line in points] == [str(number) for number in range(1, 16)]
     assert lines_of(text, "status")[-2]["state"] in ("greeting", "connected")
     (trial,) = lines_of(text, "trial")
-    (written,) = json.loads((tmp_path / "results.json").read_text())["trials"]
+    (line,) = (tmp_path / "results.jsonl").read_text().splitlines()
+    written = json.loads(line)
     assert trial["results"] == written
     assert written["truth"]["true_tre_mm"] < 2.0
     assert written["ctps"]["equation_3"] == written["ctps"]["published"] / 2

@@ -202,12 +202,14 @@ def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTri
         f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND latest IS NOT NULL "
         "ORDER BY started_utc, trials.rowid",
         (pseudonym,),
-    ).fetchall()
-    scores = [decoded(latest, TrialScore.from_json) for *_, latest in rows]
-    return tuple(
-        PastTrial(*row[:-1], score.score, score.acceptable)
-        for row, score in zip(rows, scores, strict=True)
     )
+    # Row by row: the texts of all trials of a busy trainee are never in memory together.
+    return tuple(_past_trial(*row) for row in rows)
+
+
+def _past_trial(trial_id: str, task: str, mode: str, seconds: float, latest: str) -> PastTrial:
+    score = decoded(latest, TrialScore.from_json)
+    return PastTrial(trial_id, task, mode, seconds, score.score, score.acceptable)
 
 
 def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:

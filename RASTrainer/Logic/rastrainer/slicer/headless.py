@@ -7,7 +7,8 @@ Every line on standard output is one JSON object with the key `event`:
     status  state, sentence, remedy              the link, whenever it changes
     point   label, count, positionMm             a touch has appeared in the scene
     removed count                                touches have gone: taken back, or a new trial began
-    trial   results                              a trial is registered, scored and kept
+    trial   results                              a trial is registered, scored and kept; the same
+                                                 object is a line of results.jsonl
     problem sentence                             something is wrong with a trial
     output  scene, picture, results, study       paths of the files, at the end
 
@@ -30,7 +31,7 @@ from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.scenario import load_scenario
 from rastrainer.slicer.control_points import labelsOf, localPoints
 from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.headless_output import writeOutput
+from rastrainer.slicer.headless_output import appendResults, writeOutput
 from rastrainer.slicer.headless_scene import HeadlessScene
 from rastrainer.slicer.heartbeat import LinkStatus
 from rastrainer.slicer.link import Link
@@ -55,14 +56,15 @@ class HeadlessHost:
         application: the scene and what it needs.
         link: to the simulator.
         latest: the trial that was scored last.
-        results: the numbers of each scored trial as JSON, in the order in which they came.
+        scored: how many trials were scored; their numbers are in the output folder, not here.
     """
 
     def __init__(self, shelf: ScenarioShelf, output: Path, cohort: Path | None) -> None:
         self.application = HeadlessScene()
         self.link = Link(self.application.scene, headlessKit, client="headless Slicer")
         self.latest: ScoredTrial | None = None
-        self.results: list[str] = []
+        self.scored = 0
+        self._output = output
         self._touches = 0
         self._desk = TrialDesk(
             self.application.scene,
@@ -81,12 +83,13 @@ class HeadlessHost:
 
         Raises:
             TrialsMissingError: they did not come in time.
+            InputError: a trial's numbers cannot be written into the output folder.
         """
         end = time.monotonic() + timeoutS
-        while len(self.results) < count:
+        while self.scored < count:
             if time.monotonic() > end:
                 raise TrialsMissingError(
-                    f"{len(self.results)} of {count} trials came within {timeoutS:g} s. "
+                    f"{self.scored} of {count} trials came within {timeoutS:g} s. "
                     f"{self.link.status.sentence} {self.link.status.remedy}".rstrip()
                 )
             if self.link.connector is not None:
@@ -111,10 +114,10 @@ class HeadlessHost:
         self._touches = len(labels)
 
     def _tellTrial(self, trial: ScoredTrial) -> None:
-        # Of a day's trials only the numbers are kept.
         results = results_json(trial.analysis, trial.truth)
+        appendResults(self._output, results)
         self.latest = trial
-        self.results.append(json.dumps(results, allow_nan=False))
+        self.scored += 1
         tell("trial", results=results)
 
 
@@ -157,7 +160,7 @@ def _run(arguments: argparse.Namespace) -> None:
         host.run(arguments.trials, arguments.timeout)
     finally:
         host.close()
-    files = writeOutput(arguments.output, host.application, scenario, host.latest, host.results)
+    files = writeOutput(arguments.output, host.application, scenario, host.latest)
     tell("output", **files, study=str(arguments.output / STUDY_FILE))
 
 

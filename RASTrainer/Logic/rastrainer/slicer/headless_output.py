@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import os
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from rastrainer.files import write_text
+from rastrainer.errors import InputError
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.scenario import Scenario
 from rastrainer.slicer.headless_scene import HeadlessScene
@@ -16,26 +18,34 @@ from rastrainer.slicer.trial_desk import ScoredTrial
 
 SCENE = "trial.mrb"
 PICTURE = "residuals.png"
-RESULTS = "results.json"
+RESULTS = "results.jsonl"
+
+
+def appendResults(folder: Path, results: Mapping[str, Any]) -> None:
+    """Add a trial's `results_json` to the file of results, as one line that is on the disk then.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    path = folder / RESULTS
+    try:
+        with path.open("a", encoding="utf-8", newline="\n") as file:
+            file.write(json.dumps(results, allow_nan=False) + "\n")
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise InputError(f"The file {path} cannot be written: {error.strerror}.") from None
 
 
 def writeOutput(
-    folder: Path,
-    application: HeadlessScene,
-    scenario: Scenario,
-    latest: ScoredTrial,
-    results: Sequence[str],
+    folder: Path, application: HeadlessScene, scenario: Scenario, latest: ScoredTrial
 ) -> dict[str, str]:
-    """Write scene and picture of the latest trial and the numbers of all; return the files' paths.
-
-    `results` is each trial's `results_json` as text.
+    """Write scene and picture of the latest trial; return the paths of all files.
 
     Raises:
         InputError: a file cannot be written.
     """
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
-    values = [json.loads(text) for text in results]
-    write_text(files["results"], json.dumps({"trials": values}, indent=2, allow_nan=False) + "\n")
     application.save(files["scene"])
     _writePicture(files["picture"], scenario, latest)
     return {name: str(path) for name, path in files.items()}
