@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 import time
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,10 +13,14 @@ from rastrainer.igtl.client import Client
 from Testing.benchmarks.bare_loop import BareLoop
 from Testing.benchmarks.process_cost import resident_mb
 
-MOST_GROWTH_MB = 48.0
+MOST_GROWTH_MB = 8.0
+"""What an attack leaves behind after another like it has warmed the process up."""
 MOST_MORE_DESCRIPTORS = 4
 """An attack may have started a trial, whose journal is then open."""
+MOST_MORE_MISSED = 0.2
+"""Share of the ticks that may be missed beyond those of a loop that does nothing."""
 PATIENCE_S = 30.0
+COUNTED = re.compile(r"(\d+) × 127\.0\.0\.1: ([^;\n]+)")
 
 
 @dataclass(frozen=True)
@@ -50,17 +56,36 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
             return cost
 
 
+def on_time(before: Cost, after: Cost) -> float:
+    """Return the share of the ticks that were on time, 0…1, of those that were due."""
+    ticks = after.ticks - before.ticks
+    late = after.late - before.late
+    return (ticks - late) / max(1, ticks + after.skipped - before.skipped)
+
+
 def told(before: Cost, after: Cost, bare: BareLoop) -> str:
     """Return in words what has changed, the share of ticks on time among it.
 
     `bare` is a loop that did nothing beside it: where that is late, the machine is to blame.
     """
-    ticks = after.ticks - before.ticks
-    late = after.late - before.late
-    due = ticks + after.skipped - before.skipped
     return (
-        f"{100.0 * (ticks - late) / max(1, due):.3f} % of {due} ticks on time "
+        f"{100.0 * on_time(before, after):.3f} % of {after.ticks - before.ticks} ticks on time "
         f"({100.0 * bare.punctuality.on_time:.3f} % of a loop that does nothing), "
         f"{after.resident_mb - before.resident_mb:+.1f} MB, "
         f"{after.descriptors - before.descriptors:+d} descriptors"
     )
+
+
+def check_unharmed(before: Cost, after: Cost, bare: BareLoop) -> None:
+    """Check that an attack has left nothing behind and has not kept the loop from its ticks."""
+    assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
+    assert after.resident_mb - before.resident_mb <= MOST_GROWTH_MB
+    assert on_time(before, after) >= bare.punctuality.on_time - MOST_MORE_MISSED
+
+
+def counted_in_log(said: str) -> Counter[str]:
+    """Return how often the link's log tells of each trouble."""
+    counts: Counter[str] = Counter()
+    for times, trouble in COUNTED.findall(said):
+        counts[trouble] += int(times)
+    return counts

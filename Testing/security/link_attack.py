@@ -5,33 +5,46 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+from collections import Counter
 
+from rastrainer.igtl.message import CONTENTS
+from rastrainer.igtl.stream import MessageReader, StreamError
+from rastrainer_simulator.igtl.limits import Limits
 from Testing.security.mutated_messages import MutatedMessages
 from Testing.security.wire_police import WirePolice
 
 HOST = "127.0.0.1"
 MESSAGES_A_CONNECTION = 200
 PIECE = 8
+SWALLOWED = 3
+"""So many messages in a row that complete nothing are taken for the body of one before them."""
 PATIENCE_S = 120.0
 
 
 class LinkAttack:
     """Sends mutated messages; every byte that comes back is checked for what harms Slicer.
 
+    A message that claims to be long swallows those after it: then the attack goes on with another
+    connection, so that the server has to do with nearly all of them.
+
     Attributes:
         sent: messages that were handed to open connections.
+        mutated: of these, such as are not valid.
+        decoded: messages that a reader like the server's takes from the same bytes.
+        refused: how often it refuses something of them, by the kind of trouble.
         connections: that were made.
         ended: of these, ended by the server before all was sent.
     """
 
     def __init__(self, port: int, count: int, seed: int, clients: int = 4, policed: int = 1):
-        """Prepare to send `count` messages; the answers on every `policed`-th connection count."""
+        """Prepare for `count` mutated messages; answers on every `policed`-th connection count."""
         self._port = port
         self._count = count
         self._seeds = itertools.count(seed)
         self._clients = clients
         self._policed = policed
-        self.sent = self.connections = self.ended = 0
+        self.sent = self.mutated = self.decoded = self.connections = self.ended = 0
+        self.refused: Counter[StreamError] = Counter()
         self.seen: dict[bytes, int] = {}
 
     def run(self) -> None:
@@ -42,10 +55,10 @@ class LinkAttack:
         await asyncio.gather(*(self._attack() for _ in range(self._clients)))
 
     async def _attack(self) -> None:
-        while self.sent < self._count:
+        while self.mutated < self._count:
             self.connections += 1
             is_policed = self.connections % self._policed == 0
-            messages = MutatedMessages(next(self._seeds))
+            messages = _Messages(next(self._seeds))
             reader, writer = await asyncio.open_connection(HOST, self._port)
             reading = asyncio.create_task(self._read(reader, is_policed))
             try:
@@ -57,9 +70,10 @@ class LinkAttack:
                 writer.close()
                 with contextlib.suppress(ConnectionError):
                     await writer.wait_closed()
+            self._count_in(messages)
 
     async def _send(
-        self, messages: MutatedMessages, reading: asyncio.Task, writer: asyncio.StreamWriter
+        self, messages: _Messages, reading: asyncio.Task, writer: asyncio.StreamWriter
     ) -> None:
         try:
             writer.write(messages.first())
@@ -67,9 +81,10 @@ class LinkAttack:
                 if reading.done():
                     self.ended += 1
                     return
-                writer.write(b"".join(messages.next() for _ in range(PIECE)))
-                self.sent += PIECE
+                writer.write(messages.next_piece())
                 await writer.drain()
+                if messages.are_swallowed:
+                    break
                 if number % 8 == 0:
                     await asyncio.sleep(0)
             if next(self._seeds) % 4 == 0:
@@ -86,3 +101,53 @@ class LinkAttack:
                     police.feed(piece)
         for kind, times in police.seen.items():
             self.seen[kind] = self.seen.get(kind, 0) + times
+
+    def _count_in(self, messages: _Messages) -> None:
+        self.sent += messages.sent
+        self.mutated += messages.mutated
+        self.decoded += messages.decoded
+        self.refused += messages.refused
+
+
+class _Messages:
+    """What one connection sends, and what a reader like the server's takes from it."""
+
+    def __init__(self, seed: int) -> None:
+        self._messages = MutatedMessages(seed)
+        self._reader = MessageReader(dict.fromkeys(CONTENTS, Limits().message_bytes))
+        self._swallowed = 0
+        self.sent = self.decoded = 0
+
+    @property
+    def mutated(self) -> int:
+        return self._messages.mutated
+
+    @property
+    def refused(self) -> Counter[StreamError]:
+        return self._reader.errors
+
+    @property
+    def are_swallowed(self) -> bool:
+        """Whether the server would still wait for the rest of another message, or for nothing."""
+        return self._swallowed >= SWALLOWED
+
+    def first(self) -> bytes:
+        return self._fed(self._messages.first())
+
+    def next_piece(self) -> bytes:
+        piece = bytearray()
+        for _ in range(PIECE):
+            self.sent += 1
+            piece += self._fed(self._messages.next())
+            if self.are_swallowed:
+                break
+        return bytes(piece)
+
+    def fatal(self) -> bytes:
+        return self._fed(self._messages.fatal())
+
+    def _fed(self, data: bytes) -> bytes:
+        before = self._reader.taken
+        self.decoded += len(self._reader.feed(data))
+        self._swallowed = 0 if self._reader.taken > before else self._swallowed + 1
+        return data

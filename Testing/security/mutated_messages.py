@@ -38,6 +38,7 @@ COMMANDS = {
         "details": {"version": "1"},
     },
     "PlanTarget": {"positionMm": [500, 0, 300], "entryMm": [500, 0, 400], "name": "target"},
+    "StudyStep": {"trainee": "P01", "kind": "trial", "number": 2, "count": 9, "task": "task-1"},
     "GetTrial": {"trialId": TRIAL},
     "AcknowledgeTrial": {"trialId": TRIAL},
 }
@@ -75,9 +76,14 @@ def valid_messages() -> list[bytes]:
 
 
 class MutatedMessages:
-    """An endless stream of messages, valid and damaged; the same seed gives the same."""
+    """An endless stream of messages, valid and damaged; the same seed gives the same.
+
+    Attributes:
+        mutated: how many were given that are none of the valid ones.
+    """
 
     def __init__(self, seed: int) -> None:
+        self.mutated = 0
         self._random = random.Random(seed)
         self._valid = valid_messages()
         self._bodies = [json.dumps(arguments) for arguments in COMMANDS.values()]
@@ -106,7 +112,9 @@ class MutatedMessages:
     def next(self) -> bytes:
         """Return the next message."""
         way = self._random.choice(self._ways)
-        return way(bytearray(self._random.choice(self._valid)))
+        message = way(bytearray(self._random.choice(self._valid)))
+        self.mutated += message not in self._valid
+        return message
 
     def fatal(self) -> bytes:
         """Return a message that must end its connection."""

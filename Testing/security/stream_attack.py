@@ -48,7 +48,8 @@ class StreamAttack:
     """Sends damaged messages to the stream of a view server, one view after the other.
 
     Attributes:
-        sent: messages that were handed to open connections.
+        good: messages that were sent to bring a view into some state.
+        mutated: damaged messages that were sent after those, one a view.
         closed: views that the server has closed.
     """
 
@@ -57,21 +58,20 @@ class StreamAttack:
         self._key = key
         self._random = random.Random(seed)
         self._good = [json.dumps(message).encode() for message in MESSAGES]
-        self.sent = self.closed = 0
+        self.good = self.mutated = self.closed = 0
 
     def run(self, count: int) -> None:
-        """Send so many messages."""
-        goal = self.sent + count
-        while self.sent < goal:
+        """Send so many damaged messages, each to a view of its own: many end theirs."""
+        for _ in range(count):
             with socket.create_connection((HOST, self._port), PATIENCE_S) as peer:
                 self._join(peer)
                 with suppress(OSError):  # It was ended on the other side.
-                    while self.sent < goal and self._random.random() < 0.7:
-                        peer.sendall(self._next())
-                        self.sent += 1
+                    while self._random.random() < 0.7:
+                        peer.sendall(frame(TEXT, self._random.choice(self._good[1:])))
+                        self.good += 1
                     peer.sendall(self._bad())
-                    self.sent += 1
                     peer.shutdown(socket.SHUT_WR)
+                self.mutated += 1
                 self._read_to_the_end(peer)
 
     def _join(self, peer: socket.socket) -> None:
@@ -94,9 +94,6 @@ class StreamAttack:
         assert answer.startswith(b"HTTP/1.1 101"), answer
         if self._random.random() < 0.9:
             peer.sendall(frame(TEXT, self._good[0]))
-
-    def _next(self) -> bytes:
-        return frame(TEXT, self._random.choice(self._good[1:]))
 
     def _bad(self) -> bytes:
         """Return a frame or several of which something is wrong, most often."""

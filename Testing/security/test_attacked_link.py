@@ -7,19 +7,22 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
+from rastrainer.protocol import COMMAND_ARGUMENTS, check_arguments
 from Testing.benchmarks.bare_loop import BareLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.security.attacked_process import (
-    MOST_GROWTH_MB,
-    MOST_MORE_DESCRIPTORS,
+    check_unharmed,
     cost_of,
+    counted_in_log,
     settled,
     told,
 )
 from Testing.security.link_attack import LinkAttack
-from Testing.security.mutated_messages import MutatedMessages, valid_messages
+from Testing.security.mutated_messages import COMMANDS, MutatedMessages, valid_messages
 from Testing.security.wire_police import SENT_TYPES
 
+MOST_READ = 0.75
+"""Share of the messages that the server must have decoded or refused one by one."""
 PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)))
 
 
@@ -30,7 +33,8 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> None:
         Client(port=simulator.port) as good,
     ):
         good.wait_for("SimServer", timeout=20)
-        LinkAttack(simulator.port, warm_up, seed=1, policed=policed).run()
+        warming = LinkAttack(simulator.port, warm_up, seed=1, policed=policed)
+        warming.run()
         quiet = cost_of(simulator.pid, good)
         before = settled(simulator.pid, good, quiet)
         attacked = LinkAttack(simulator.port, count, seed=10**6, policed=policed)
@@ -39,22 +43,26 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> None:
         after = settled(simulator.pid, good, before)
         with capsys.disabled():
             print(
-                f"\n{attacked.sent} mutated messages on {attacked.connections} connections "
-                f"({attacked.ended} ended early): "
+                f"\n{attacked.mutated} mutated messages of {attacked.sent} on "
+                f"{attacked.connections} connections ({attacked.ended} ended early), "
+                f"{attacked.decoded} decoded, {attacked.refused.total()} refused: "
                 f"{told(before, after, bare)}"
             )
-        assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
-        assert after.resident_mb - before.resident_mb < MOST_GROWTH_MB
+        check_unharmed(before, after, bare)
         good.send(PROBE)
         assert good.wait_for("Probe").content == PROBE.content
         assert good.send_command("ListTasks").ok
-        assert attacked.sent >= count
+        assert attacked.mutated >= count
+        # The rest are pieces of others, such as what follows a message that was cut.
+        assert attacked.decoded + attacked.refused.total() >= MOST_READ * attacked.sent
         assert attacked.seen.keys() <= SENT_TYPES
         assert {b"RTS_COMMAND", b"TRANSFORM", b"STATUS"} <= attacked.seen.keys()
         status, errors = simulator.stop()
     assert status == 0
     assert "Traceback" not in errors
     assert " ERROR " not in errors
+    refused = warming.refused + attacked.refused
+    assert counted_in_log(errors) == {kind.value: times for kind, times in refused.items()}
 
 
 def test_five_thousand_mutated_messages_harm_nobody_else(tmp_path, capsys):
@@ -71,3 +79,9 @@ def test_the_same_seed_gives_the_same_attack_and_every_valid_message_is_in_it():
     drawn = [first.next() for _ in range(3_000)]
     assert drawn == [second.next() for _ in range(3_000)]
     assert set(valid_messages()) <= set(drawn)
+
+
+def test_every_command_that_may_come_is_among_those_that_are_mutated():
+    assert COMMANDS.keys() == COMMAND_ARGUMENTS.keys()
+    for name, arguments in COMMANDS.items():
+        check_arguments(name, arguments)

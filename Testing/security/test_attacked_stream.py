@@ -9,13 +9,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from Testing.benchmarks.bare_loop import BareLoop
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.security.attacked_process import (
-    MOST_GROWTH_MB,
-    MOST_MORE_DESCRIPTORS,
-    cost_of,
-    settled,
-    told,
-)
+from Testing.security.attacked_process import check_unharmed, cost_of, settled, told
 from Testing.security.stream_attack import StreamAttack
 from Testing.simulator.igtl.servers import LoopThread
 from Testing.simulator.view_server.served import ViewClient
@@ -39,10 +33,10 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
             attacked.run(count)
         after = settled(simulator.pid, slicer, before)
         with capsys.disabled():
-            messages = f"{attacked.sent} messages of {attacked.closed} views"
+            messages = f"{attacked.mutated} damaged and {attacked.good} good messages"
             print(f"\n{messages}: {told(before, after, bare)}")
-        assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
-        assert after.resident_mb - before.resident_mb < MOST_GROWTH_MB
+        assert attacked.closed == attacked.mutated == warm_up + count
+        check_unharmed(before, after, bare)
         assert view.next("state")["type"] == "state"
         status, errors = simulator.stop()
     assert status == 0
