@@ -10,7 +10,8 @@ from rastrainer.errors import InputError
 from rastrainer.scenario_library import ListedScenario, list_scenarios, user_library
 from rastrainer.tasks import is_task_name
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.control_loop import TRIAL_IS_OPEN, ControlLoop
+from rastrainer_simulator.flow.session import OPEN
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer
 
@@ -49,12 +50,12 @@ class ScenarioLoader:
         """Load a scenario by its name, or by the path of its folder.
 
         Names are those of the scenarios that come with us and of those in the user's library.
-        While one is being loaded, which is costly, no other is.
+        While one is being loaded, which is costly, no other is; in a trial none is.
         """
+        if self._control_loop.latest.training.phase in OPEN:
+            return _refused(TRIAL_IS_OPEN)
         if self._loading is not None and not self._loading.done():
-            busy: Future[Answer] = Future()
-            busy.set_result(Answer(0, False, BUSY))
-            return busy
+            return _refused(BUSY)
         self._loading = self._worker.submit(self._load, folder)
         return self._loading
 
@@ -109,3 +110,9 @@ class ScenarioLoader:
                 "computer loads no other folder."
             )
         return Path(folder)
+
+
+def _refused(sentence: str) -> Future[Answer]:
+    refusal: Future[Answer] = Future()
+    refusal.set_result(Answer(0, False, sentence))
+    return refusal

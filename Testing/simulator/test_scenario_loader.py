@@ -8,8 +8,10 @@ from types import SimpleNamespace
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import Phase
 from rastrainer.scenario_writer import new_folder, write_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.control_loop import TRIAL_IS_OPEN
 from rastrainer_simulator.scenario_loader import BUSY, ScenarioLoader
 from rastrainer_simulator.state import Answer
 from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
@@ -21,6 +23,7 @@ class Loop:
     def __init__(self):
         self.answer = Answer(0, True)
         self.simulations = []
+        self.latest = SimpleNamespace(training=SimpleNamespace(phase=Phase.IDLE))
 
     def replace_simulation(self, simulation):
         self.simulations.append(simulation)
@@ -110,6 +113,18 @@ def test_while_a_scenario_is_being_loaded_no_further_one_is(make):
     assert [loader.load("colin27").result(10) for _ in range(3)] == [Answer(0, False, BUSY)] * 3
     handover.set_result(loop.answer)
     assert first.result(10).ok
+    assert loader.load("colin27").result(10).ok
+
+
+@pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE])
+def test_in_a_trial_nothing_is_read_of_a_scenario(make, phase):
+    loop = Loop()
+    loop.latest.training.phase = phase
+    loop.replace_simulation = None
+    loader = make(loop, may_be_anywhere=True)
+    assert loader.load("colin27").result(0) == Answer(0, False, TRIAL_IS_OPEN)
+    loop.latest.training.phase = Phase.REGISTERED
+    loop.replace_simulation = Loop().replace_simulation
     assert loader.load("colin27").result(10).ok
 
 
