@@ -136,6 +136,7 @@ class SimulatorServer:
             unacknowledged=self._control_loop.unacknowledged,
             health=self._health,
             limits=self._limits.clients,
+            answers=self._study.untaken_answers,
         )
         feed = StateFeed(link.publisher.is_due, link.tell, loop)
         unsubscribe = self._control_loop.subscribe(feed)

@@ -257,7 +257,8 @@ class Session:
 
     def step_sentence(self, step: StudyStep) -> str:
         """Return what the trainee is told of a study's step."""
-        return step_sentence(self.texts, step, self.task_title(step.task))
+        left = self.study.break_left_s(step.trainee)
+        return step_sentence(self.texts, step, self.task_title(step.task), self.duration(left))
 
     def label(self, control: ControlName) -> str:
         """Return the first input of a control on what the operator has in their hands."""

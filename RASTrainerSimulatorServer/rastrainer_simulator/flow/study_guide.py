@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from rastrainer.experiment.step_answers import StepAnswers
 from rastrainer.experiment.study_step import StudyStep
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.questionnaires.catalog import QUESTIONNAIRES
@@ -12,27 +15,47 @@ from rastrainer_simulator.texts.texts import Texts
 MOST_TRAINEES = 1000
 """Of whom steps are kept; the oldest news is forgotten first."""
 
-PLAYED = "played"
-"""In place of a step's kind: its trial is registered, and Slicer will tell what comes after it."""
+PLAYED, ANSWERED = "played", "answered"
+"""In place of a step's kind: it was done here, and Slicer will tell what comes after it."""
 
 
 class StudyGuide:
-    """Keeps the last news of each trainee; whoever is not told of practices freely."""
+    """Keeps the last news of each trainee; whoever is not told of practices freely.
 
-    def __init__(self) -> None:
+    Nothing of it outlives the process: Slicer, which keeps the study, tells everything anew as soon
+    as it is connected again. Answers that it has not taken until then are asked for again.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
         self._steps: dict[str, StudyStep] = {}
+        self._told_at: dict[str, float] = {}
+        self._answers: dict[str, StepAnswers] = {}
 
     def take(self, step: StudyStep) -> None:
         """Take note of what Slicer tells."""
-        self._steps.pop(step.trainee, None)
+        name = step.trainee
+        answers = self._answers.get(name)
+        if answers is not None and not answers.belong_to(step):
+            del self._answers[name]
+        self._steps.pop(name, None)
         if step.kind != FREE:
-            self._steps[step.trainee] = step
+            self._steps[name] = replace(step, kind=ANSWERED) if name in self._answers else step
+            self._told_at[name] = self._clock()
         if len(self._steps) > MOST_TRAINEES:
-            del self._steps[next(iter(self._steps))]
+            self._forget(next(iter(self._steps)))
 
     def step_of(self, trainee: str) -> StudyStep | None:
         """Return what comes next for a trainee; None for who practices freely."""
         return self._steps.get(trainee)
+
+    def break_left_s(self, trainee: str) -> float:
+        """Return how long the trainee's break still lasts, in s; 0 for who has none."""
+        step = self._steps.get(trainee)
+        if step is None or step.kind != StepKind.BREAK:
+            return 0.0
+        passed = self._clock() - self._told_at[trainee]
+        return max(0.0, 60.0 * (step.minutes - step.over) - passed)
 
     def note_registered(self, trainee: str, task: str, mode: str) -> None:
         """Take note of a trial: what the study has asked for is not begun twice."""
@@ -41,9 +64,31 @@ class StudyGuide:
         if step is not None and (step.kind, step.task, step.mode) == wanted:
             self._steps[trainee] = replace(step, kind=PLAYED)
 
+    def answer(self, trainee: str, answers: Sequence[int]) -> None:
+        """Keep the answers of the questionnaire that comes next, until Slicer goes on from there.
 
-def step_sentence(texts: Texts, step: StudyStep, task_title: str) -> str:
-    """Return what the trainee is told of a step."""
+        Raises:
+            InputError: an answer is missing or none that it allows.
+        """
+        step = self._steps.get(trainee)
+        if step is not None and step.kind == StepKind.QUESTIONNAIRE:
+            told = {"number": step.number, "questionnaire": step.questionnaire}
+            self._answers[trainee] = StepAnswers.from_json(
+                {"trainee": trainee, "answers": list(answers), **told}
+            )
+            self._steps[trainee] = replace(step, kind=ANSWERED)
+
+    def untaken_answers(self) -> tuple[StepAnswers, ...]:
+        """Return the answers that Slicer is still to be told of."""
+        return tuple(self._answers.values())
+
+    def _forget(self, trainee: str) -> None:
+        for kept in (self._steps, self._told_at, self._answers):
+            kept.pop(trainee, None)
+
+
+def step_sentence(texts: Texts, step: StudyStep, task_title: str, left: str) -> str:
+    """Return what the trainee is told of a step; `left` is the time that a break still lasts."""
     asked = QUESTIONNAIRES.get(step.questionnaire)
     return texts.say(
         f"study.{step.kind}",
@@ -52,5 +97,6 @@ def step_sentence(texts: Texts, step: StudyStep, task_title: str) -> str:
         task=task_title,
         mode=texts.say(f"study.{step.mode}") if step.mode else "",
         minutes=step.minutes,
+        left=left,
         questionnaire=step.questionnaire if asked is None else asked.title,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from rastrainer.experiment.study_step import StudyStep
 from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, Proximity, StepKind
 from rastrainer_simulator.controls.control_name import ControlName
 from rastrainer_simulator.flow.pages.start import StartPage
@@ -42,6 +43,8 @@ class Working:
         self._is_within_reach = True
         self._was_refused = False
         self._was_practice_over_told = False
+        self._practice_step: StudyStep | None = None
+        self._practice_end_s = TRIAL_RUN_S
 
     def take(self, event: Event) -> None:
         """Take note of what happened."""
@@ -59,10 +62,17 @@ class Working:
 
     @property
     def _practice_s(self) -> float:
-        """How long the trial run is free: a study says that of its own."""
-        step = self._session.study.step_of(self._session.training.trainee)
+        """The trial's time at which the trial run's minutes are over: a study tells its own.
+
+        It stays when Slicer goes on with the study, a moment before or after it.
+        """
+        state = self._session.state
+        step = self._session.study.step_of(state.training.trainee)
         is_asked = step is not None and step.kind == StepKind.TRIAL_RUN
-        return 60.0 * step.minutes if is_asked else TRIAL_RUN_S
+        if is_asked and step is not self._practice_step:
+            self._practice_step = step
+            self._practice_end_s = state.elapsed + 60.0 * (step.minutes - step.over)
+        return self._practice_end_s
 
     def end_of_practice_to_tell(self) -> bool:
         """Return whether the trial run's minutes have just passed; true once a trial."""
@@ -77,6 +87,7 @@ class Working:
         self._center = center
         self._is_beside = self._was_refused = self._was_practice_over_told = False
         self._obstacle, self._is_within_reach = "", True
+        self._practice_step, self._practice_end_s = None, TRIAL_RUN_S
 
     def pressed(self, control: ControlName) -> None:
         """Do what a control is for while the arm is driven."""

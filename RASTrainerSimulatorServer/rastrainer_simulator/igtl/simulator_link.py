@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from typing import Any
 
 import rastrainer
 from rastrainer.errors import InputError
+from rastrainer.experiment.step_answers import StepAnswers
 from rastrainer.igtl.command import Command
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
@@ -50,6 +52,7 @@ class SimulatorLink:
         unacknowledged: Callable[[], Sequence[TrialRecord]],
         health: Callable[[], Mapping[str, Any]] = dict,
         limits: Limits | None = None,
+        answers: Callable[[], Sequence[StepAnswers]] = tuple,
     ):
         """Make a link, in the event loop's thread.
 
@@ -60,6 +63,7 @@ class SimulatorLink:
             unacknowledged: gives the records of the trials that no client has acknowledged.
             health: gives what the heartbeat tells of the simulator, ready for JSON.
             limits: what clients may cost.
+            answers: gives a study's answers that Slicer has not taken yet.
         """
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
@@ -67,6 +71,7 @@ class SimulatorLink:
         self._told = Phase.IDLE
         self._submit_command = submit
         self._health = health
+        self._answers = answers
         self._commands = CommandHandler(self._submit, self.server.limits)
 
     def connected(self, connection: Connection) -> None:
@@ -105,9 +110,16 @@ class SimulatorLink:
             beat = self._heartbeat()
             for connection in self.server.clients:
                 connection.send_latest(beat)
+            self._tell_answers()
             seconds += 1
             if seconds % Rate.OFFER_PERIOD_S == 0:
                 self.offers.repeat()
+
+    def _tell_answers(self) -> None:
+        for number, answers in enumerate(self._answers(), start=1):
+            command = Command(number, CommandName.STEP_ANSWERED, json.dumps(answers.to_json()))
+            for connection in self.server.clients:
+                connection.send(Outgoing(Message(Device.COMMAND, command)))
 
     def _heartbeat(self) -> Outgoing:
         clients = len(self.server.clients)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from rastrainer_simulator.texts.questionnaires import ENGLISH_ITEMS
+
 ENGLISH: Mapping[str, str] = MappingProxyType(
     {
         # What the trainee reads at the top of the picture.
@@ -112,15 +114,25 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "3D Slicer and with a reason.",
         # What a study that Slicer leads asks for next.
         "study.questionnaire": "Step {number} of {count}: answer the questionnaire "
-        "{questionnaire}; your instructor gives it to you.",
+        "{questionnaire}, here or where 3D Slicer runs.",
+        "study.answered": "Your answers to {questionnaire} are on their way to 3D Slicer, which "
+        "will say what comes next.",
         "study.trial-run": "Step {number} of {count}: get to know the trial run {mode} for "
         "{minutes:g} minutes.",
         "study.trial": "Step {number} of {count}: play {task} {mode}.",
-        "study.break": "Step {number} of {count}: take a break of at least {minutes:g} minutes.",
+        "study.break": "Step {number} of {count}: take a break of at least {minutes:g} minutes, "
+        "{left} more. Then 3D Slicer will say what comes next.",
         "study.all-done": "All steps of the study are done. Thank you!",
         "study.played": "{task} is done. 3D Slicer will say what comes next.",
         "study.desktop": "on the desktop screen",
         "study.hmd": "with the headset",
+        "experiment.answer": "Answer the questionnaire",
+        "questionnaire.text": "{trainee}, answer every line: {lowest} is {low}, {highest} is "
+        "{high}. Your instructor has the form with the full wording.",
+        "questionnaire.open": "Some lines are not answered yet.",
+        "questionnaire.keep": "Done",
+        "questionnaire.back": "Back, without answers",
+        **ENGLISH_ITEMS,
         "experiment.scenario": "Head",
         "experiment.back": "Back",
         "scenario.title": "Heads",
@@ -156,6 +168,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "abort.abort": "Abort",
         "practice.title": "The time to practice is over",
         "practice.text": "{trainee}, you can go on to Task 1 now, or practice as long as you like.",
+        "practice.study": "{trainee}, end the trial run to go on with the study, or practice on.",
         "practice.finish": "End the trial run",
         "practice.resume": "Practice on",
         "complete.title": "All points are touched",

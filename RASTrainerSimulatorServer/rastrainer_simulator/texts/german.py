@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from rastrainer_simulator.texts.questionnaires import GERMAN_ITEMS
+
 GERMAN: Mapping[str, str] = MappingProxyType(
     {
         # What the trainee reads at the top of the picture.
@@ -118,16 +120,26 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "experiment.study": "Jetzt nicht. {step} Nur die Kursleitung kann einen Schritt auslassen, "
         "in 3D Slicer und mit einem Grund.",
         "study.questionnaire": "Schritt {number} von {count}: Beantworte den Fragebogen "
-        "{questionnaire}; die Kursleitung gibt ihn dir.",
+        "{questionnaire}, hier oder dort, wo 3D Slicer läuft.",
+        "study.answered": "Deine Antworten zu {questionnaire} sind auf dem Weg zu 3D Slicer, das "
+        "sagen wird, was als Nächstes kommt.",
         "study.trial-run": "Schritt {number} von {count}: Lerne {mode} {minutes:g} Minuten lang "
         "den Probelauf kennen.",
         "study.trial": "Schritt {number} von {count}: Spiele {task} {mode}.",
-        "study.break": "Schritt {number} von {count}: Mach mindestens {minutes:g} Minuten Pause.",
+        "study.break": "Schritt {number} von {count}: Mach mindestens {minutes:g} Minuten Pause, "
+        "noch {left}. Dann wird 3D Slicer sagen, was als Nächstes kommt.",
         "study.all-done": "Alle Schritte der Studie sind getan. Danke!",
         "study.played": "{task} ist erledigt. 3D Slicer wird sagen, was als Nächstes kommt.",
         "study.desktop": "am Bildschirm",
         "study.hmd": "mit dem Headset",
         "experiment.scenario": "Kopf",
+        "experiment.answer": "Den Fragebogen beantworten",
+        "questionnaire.text": "{trainee}, beantworte jede Zeile: {lowest} ist {low}, {highest} ist "
+        "{high}. Deine Kursleitung hat den Bogen mit dem vollen Wortlaut.",
+        "questionnaire.open": "Einige Zeilen sind noch nicht beantwortet.",
+        "questionnaire.keep": "Fertig",
+        "questionnaire.back": "Zurück, ohne Antworten",
+        **GERMAN_ITEMS,
         "experiment.back": "Zurück",
         "scenario.title": "Köpfe",
         "scenario.text": "An welchem Kopf möchtest du üben?",
@@ -163,6 +175,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "practice.title": "Die Zeit zum Üben ist vorbei",
         "practice.text": "{trainee}, du kannst jetzt zu Aufgabe 1 übergehen oder so lange üben, "
         "wie du magst.",
+        "practice.study": "{trainee}, beende den Probelauf, um mit der Studie weiterzumachen, oder "
+        "übe weiter.",
         "practice.finish": "Probelauf beenden",
         "practice.resume": "Weiter üben",
         "complete.title": "Alle Punkte sind berührt",

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from rastrainer.experiment.step_answers import StepAnswers
 from rastrainer.experiment.study_step import StudyStep
-from rastrainer_simulator.flow.study_guide import MOST_TRAINEES, StudyGuide
+from rastrainer_simulator.flow.study_guide import ANSWERED, MOST_TRAINEES, StudyGuide
 
 TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
 
@@ -74,7 +77,10 @@ def test_in_another_mode_nothing_can_be_begun(menu, guide):
             StudyStep("P07", "questionnaire", 1, 19, mode="hmd", questionnaire="nasa-tlx"),
             "Step 1 of 19: answer the questionnaire NASA-TLX (raw)",
         ),
-        (StudyStep("P07", "break", 4, 9, minutes=10.0), "take a break of at least 10 minutes"),
+        (
+            StudyStep("P07", "break", 4, 9, minutes=10.0, over=9.9),
+            "take a break of at least 10 minutes, 00:0",
+        ),
         (StudyStep("P07", "all-done", 9, 9), "All steps of the study are done"),
     ],
 )
@@ -92,12 +98,97 @@ def test_other_trainees_and_those_who_are_led_no_more_practice_freely(menu, guid
     assert enabled(menu) == ["trial-run"]
 
 
-def test_the_trial_run_is_as_long_as_the_study_says(menu, guide):
-    tell(menu, guide, StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0))
+TRIAL_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0)
+
+
+def test_the_trial_run_lasts_for_what_is_left_of_the_studys_minutes(menu, guide):
+    tell(menu, guide, replace(TRIAL_RUN, over=6.0))
     menu.choose("trial-run")
     menu.until_menu(None)
     # Time goes on while the disk keeps the start.
-    assert menu.desk.screen.status[2].startswith(("08:00", "07:5"))
+    assert menu.desk.screen.status[2].startswith(("02:00", "01:5"))
+
+
+def test_the_trial_run_is_over_when_the_studys_minutes_are_though_slicer_went_on_before(
+    menu, guide
+):
+    tell(menu, guide, replace(TRIAL_RUN, over=7.99))
+    menu.choose("trial-run")
+    menu.until_menu(None)
+    guide.take(TASK_2)
+    menu.until_menu("practice")
+    assert "end the trial run to go on with the study" in menu.menu.paragraphs[0]
+    menu.choose("finish")
+    menu.until_menu("experiment")
+    assert enabled(menu) == ["task-2"]
+
+
+SUS = StudyStep("P07", "questionnaire", 5, 19, mode="desktop", questionnaire="sus")
+
+
+@pytest.fixture
+def form(menu, guide):
+    """The trainee before the empty form of the SUS."""
+    tell(menu, guide, SUS)
+    menu.choose("answer")
+    menu.until_menu("questionnaire")
+    return menu
+
+
+def mark(form, number, *directions):
+    form.focus(f"sus_{number}")
+    form.tap(*directions)
+    form.step(20)
+
+
+def test_a_questionnaire_is_answered_line_by_line_and_handed_over_only_when_all_are(form, guide):
+    assert [item.value for item in form.menu.items[:10]] == ["–"] * 10
+    assert "1 is strongly disagree, 5 is strongly agree" in form.menu.paragraphs[0]
+    for number in range(1, 10):
+        mark(form, number, "right", "right")
+    assert not form.item("keep").is_enabled
+    assert guide.untaken_answers() == ()
+    mark(form, 10, "left", "left", "left")
+    form.choose("keep")
+    form.until_menu("experiment")
+    (answers,) = guide.untaken_answers()
+    assert answers == StepAnswers("P07", 5, "sus", (2,) * 9 + (3,))
+    assert form.menu.paragraphs == (
+        "Your answers to SUS are on their way to 3D Slicer, which will say what comes next.",
+    )
+
+
+def test_answers_wait_until_slicer_goes_on_and_are_forgotten_then(guide):
+    guide.take(SUS)
+    guide.answer("P07", [3] * 10)
+    guide.take(SUS)
+    assert [answers.number for answers in guide.untaken_answers()] == [5]
+    assert guide.step_of("P07").kind == ANSWERED
+    guide.take(TASK_2)
+    assert (guide.untaken_answers(), guide.step_of("P07")) == ((), TASK_2)
+
+
+def test_a_form_closes_when_the_study_goes_on_without_it(form, guide):
+    guide.take(TASK_2)
+    form.until_menu("experiment")
+    assert enabled(form) == ["task-2"]
+
+
+def test_a_questionnaire_that_this_version_does_not_know_is_said(menu, guide):
+    tell(menu, guide, replace(SUS, questionnaire="dance"))
+    menu.choose("answer")
+    menu.step(20)
+    assert any("There is no questionnaire" in w.text for w in menu.desk.screen.warnings)
+
+
+def test_a_break_is_counted_down_from_what_was_over_when_it_was_told():
+    now = [100.0]
+    guide = StudyGuide(lambda: now[0])
+    guide.take(StudyStep("P07", "break", 4, 9, minutes=10.0, over=4.0))
+    now[0] += 59.0
+    assert guide.break_left_s("P07") == 301.0
+    now[0] += 600.0
+    assert (guide.break_left_s("P07"), guide.break_left_s("P08")) == (0.0, 0.0)
 
 
 def test_a_trial_that_was_asked_for_is_not_begun_twice_before_slicer_says_what_follows(menu, guide):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from rastrainer.protocol import CommandName, Mode
+from rastrainer.errors import InputError
+from rastrainer.experiment.study_step import StudyStep
+from rastrainer.protocol import CommandName, Mode, StepKind
 from rastrainer_simulator.controls.source import SourceKind
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.keyboard import KeyboardPage
+from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
 from rastrainer_simulator.flow.pages.scenario import ScenarioPage
 from rastrainer_simulator.flow.screen import Item, ItemKind, Menu
 from rastrainer_simulator.flow.session import Session
@@ -37,12 +40,14 @@ class ExperimentPage(Page):
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
         scenario = self.button("scenario", value=session.scenario.title)
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
-        step = session.study.step_of(session.trainee.strip())
+        step = self._step()
+        is_asked = step is not None and step.kind == StepKind.QUESTIONNAIRE
+        answer = (self.button("answer"),) if is_asked else ()
         return Menu(
             self.name,
             self.say("experiment.title"),
             () if step is None else (session.step_sentence(step),),
-            items=(trainee, mode, scenario, *tasks, self.button("back")),
+            items=(*answer, trainee, mode, scenario, *tasks, self.button("back")),
         )
 
     def accept(self, item: str) -> None:
@@ -51,6 +56,8 @@ class ExperimentPage(Page):
             self.back()
         elif item == "scenario":
             self.session.pages.open(ScenarioPage(self.session))
+        elif item == "answer":
+            self._answer()
         elif item == "trainee":
             if self.session.is_typing_possible(_TYPES):
                 self.session.pages.move(1)
@@ -91,7 +98,7 @@ class ExperimentPage(Page):
             return self.say("experiment.no trainee")
         if session.is_being_set_up:
             return self.say("experiment.being set up")
-        step = session.study.step_of(trainee)
+        step = self._step()
         if step is not None:
             is_asked = step.is_played and (step.task, step.mode) == (name, session.mode)
             sentence = session.step_sentence(step)
@@ -102,6 +109,15 @@ class ExperimentPage(Page):
         order = [task.name for task in scenario.tasks]
         missing = session.progress.missing_before(trainee, scenario.name, name, order)
         return self.say("experiment.order", task=session.task_title(missing)) if missing else ""
+
+    def _step(self) -> StudyStep | None:
+        return self.session.study.step_of(self.session.trainee.strip())
+
+    def _answer(self) -> None:
+        try:
+            self.session.pages.open(QuestionnairePage(self.session, self._step()))
+        except InputError as error:
+            self.session.complain(str(error))
 
     def _begin(self, task: str) -> None:
         session = self.session

@@ -88,7 +88,9 @@ class PracticePage(Page):
     def menu(self) -> Menu:
         """Return the choice."""
         items = (self.button("finish"), self.button("resume"))
-        text = self.say("practice.text", trainee=self.session.training.trainee)
+        trainee = self.session.training.trainee
+        is_led = self.session.study.step_of(trainee) is not None
+        text = self.say("practice.study" if is_led else "practice.text", trainee=trainee)
         return Menu(self.name, self.say("practice.title"), (text,), items=items)
 
     def accept(self, item: str) -> None:
