@@ -171,12 +171,16 @@ def test_a_damaged_study_is_told(tmp_path):
         Study.open(path)
 
 
-def test_a_value_that_we_did_not_write_is_told(tmp_path):
+@pytest.mark.parametrize(
+    "change",
+    ["'[1]'", """replace(record_json, '{', '{"a": NaN, ')""", "replace(record_json, '{', '[')"],
+)
+def test_a_value_that_we_did_not_write_is_told(tmp_path, change):
     path = tmp_path / "study.db"
     with Study.open(path) as study:
         study.add_trial(make_record())
     connection = sqlite3.connect(path)
-    connection.execute("UPDATE trials SET record_json = '[1]'")
+    connection.execute(f"UPDATE trials SET record_json = {change}")
     connection.commit()
     connection.close()
     with Study.open(path) as study, pytest.raises(InputError, match="did not write"):

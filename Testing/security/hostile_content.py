@@ -14,6 +14,7 @@ HOSTILE_JSON = {
     "nothing": b"null",
     "deep lists": b"[" * 200_000 + b"]" * 200_000,
     "deep objects": b'{"a":' * 100_000 + b"1" + b"}" * 100_000,
+    "deeper than any of ours": b'{"a":' * 65 + b"1" + b"}" * 65,
     "NaN": b'{"formatVersion": NaN}',
     "infinite": b'{"formatVersion": Infinity}',
     "too large a number": b'{"formatVersion": 1e999}',

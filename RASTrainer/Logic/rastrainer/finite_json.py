@@ -6,17 +6,37 @@ import json
 import math
 from typing import Any
 
+DEEPEST = 64
+"""Lists and objects in one another; how many the interpreter takes differs with its version."""
 
-def decode_finite_json(text: str) -> Any:
+
+def decode_finite_json(text: str, deepest: int = DEEPEST) -> Any:
     """Return the decoded JSON; its numbers are finite.
 
     Raises:
-        ValueError: not JSON, too deeply nested, or with a number that is not finite.
+        ValueError: not JSON, nested more than `deepest` levels, or with a number that is not
+            finite.
     """
     try:
-        return json.loads(text, parse_constant=_refuse_constant, parse_float=_finite_float)
+        value = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite_float)
     except RecursionError:
         raise ValueError("too deeply nested") from None
+    # Most texts have too few brackets to be deep, and need no second look.
+    if text.count("[") + text.count("{") > deepest and _is_deeper_than(deepest, value):
+        raise ValueError("too deeply nested")
+    return value
+
+
+def _is_deeper_than(deepest: int, value: Any) -> bool:
+    level = [value] if isinstance(value, (dict, list)) else []
+    for _ in range(deepest):
+        level = [
+            item
+            for each in level
+            for item in (each.values() if isinstance(each, dict) else each)
+            if isinstance(item, (dict, list))
+        ]
+    return bool(level)
 
 
 def _refuse_constant(word: str) -> float:

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from rastrainer import protocol, study_trainees
 from rastrainer.ctps import Trial
 from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_finite_json
 from rastrainer.registration import RIGID, Registration
 from rastrainer.scoring import TrialScore
 from rastrainer.study_clock import utc_now
@@ -268,8 +269,8 @@ def json_text(value: object) -> str:
 def decoded(text: str, read: Callable[[Any], Value]) -> Value:
     """Return what stored JSON holds; raise `InputError` where it is not what was stored."""
     try:
-        return read(json.loads(text))
-    except (TypeError, ValueError, KeyError, AttributeError, RecursionError):
+        return read(decode_finite_json(text))
+    except (TypeError, ValueError, KeyError, AttributeError):
         raise InputError("The study holds a value that RASTrainer did not write.") from None
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import gc
+import json
 
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.finite_json import DEEPEST
 from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
 from rastrainer.journal.journal_reader import Integrity, read_journal
-from rastrainer.protocol import CommandName
+from rastrainer.protocol import CommandName, check_arguments, decode_json_object
 from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.stamps import stamp
@@ -106,6 +108,21 @@ def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(
     write_trial(tmp_path)
     TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
     assert TrialArchive(tmp_path).unacknowledged() == (RECORD,)
+
+
+def test_a_score_as_deep_as_a_message_may_be_leaves_a_journal_that_can_be_read(tmp_path):
+    path = write_trial(tmp_path)
+    levels = DEEPEST - 2
+    details = '{"a":' * levels + "1" + "}" * levels
+    score = json.dumps({**SCORE, "details": "here"}).replace('"here"', f'{{"b":{details}}}')
+    arguments = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(score))
+    TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, arguments, NOW)
+    assert read_journal(path).integrity is Integrity.INTACT
+    told = TrialArchive(tmp_path).answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert told["phase"] == "scored"
+    deeper = score.replace(details, f"[{details}]")
+    with pytest.raises(InputError, match="one JSON object"):
+        decode_json_object(deeper)
 
 
 def test_a_trial_is_found_behind_any_number_of_later_lines(tmp_path):

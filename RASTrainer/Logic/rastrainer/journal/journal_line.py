@@ -12,13 +12,15 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.finite_json import DEEPEST, decode_finite_json
 
 FORMAT = "rastrainer-trial-journal"
 FORMAT_VERSION = 1
 NO_LINE = "0" * 64
 """What the first line carries in place of a hash."""
 LONGEST_LINE = 1 << 20
+DEEPEST_LINE = DEEPEST + 8
+"""Levels of a line: it holds what came in a message, which may be as deep as any."""
 
 FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT}",'.encode()
 """How every journal begins."""
@@ -60,7 +62,7 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     if seal != _SEAL + digest.encode("ascii") + b'"}':
         raise DamagedLineError("its bytes do not match its hash")
     try:
-        entry = decode_finite_json(line.decode("ascii"))
+        entry = decode_finite_json(line.decode("ascii"), DEEPEST_LINE)
     except ValueError:
         raise DamagedLineError("it is not JSON") from None
     if not isinstance(entry, dict) or not isinstance(entry.get("kind"), str):

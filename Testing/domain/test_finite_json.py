@@ -1,0 +1,37 @@
+"""JSON from anywhere: how deep it may be is ours to say, and not the interpreter's."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.finite_json import DEEPEST, decode_finite_json
+
+
+def nested(levels: int, opening: str, closing: str) -> str:
+    return opening * levels + "1" + closing * levels
+
+
+@pytest.mark.parametrize(("opening", "closing"), [("[", "]"), ('{"a":', "}"), ('[{"a":[', "]}]")])
+def test_json_up_to_64_levels_is_taken_and_one_level_more_refused(opening, closing):
+    times, rest = divmod(DEEPEST, len(closing))
+    text = "[" * rest + nested(times, opening, closing) + "]" * rest
+    assert decode_finite_json(text) is not None
+    with pytest.raises(ValueError, match="too deeply nested"):
+        decode_finite_json(f"[{text}]")
+
+
+@pytest.mark.parametrize("levels", [1000, 100_000])
+def test_json_beyond_what_the_interpreter_takes_is_refused_in_the_same_words(levels):
+    with pytest.raises(ValueError, match="too deeply nested"):
+        decode_finite_json(nested(levels, "[", "]"))
+
+
+def test_what_is_wide_or_a_text_of_brackets_is_not_deep():
+    assert len(decode_finite_json("[" + ",".join(["[{}]"] * 1000) + "]")) == 1000
+    assert decode_finite_json('"' + "[" * 1000 + '"') == "[" * 1000
+
+
+@pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999"])
+def test_a_number_that_is_not_finite_is_refused(number):
+    with pytest.raises(ValueError, match=number.lstrip("-")):
+        decode_finite_json(f"[{number}]")
