@@ -37,8 +37,8 @@ def made_up_scenario():
     setup = SetUp()
     points = np.random.default_rng(4).uniform(-90, 90, (2, 15, 3)).round(4)
     tasks = tuple(
-        Task(f"task-{row + 1}", f"Task {row + 1}", LABELS, points[row], 10.0 + row)
-        for row in range(2)
+        Task(f"task-{row + 1}", f"Task {row + 1}", LABELS, points[row], 10.0 + row, shortest)
+        for row, shortest in enumerate((500.0, None))
     )
     return Scenario(
         folder=Path(),

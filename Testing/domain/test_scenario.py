@@ -27,7 +27,13 @@ SCENARIO = {
     "perturbation": {"translationMm": 15, "yawDeg": 8, "tiltDeg": 3},
     "tasks": [
         {"name": "trial-run", "title": "Trial run", "file": "tasks/a.mrk.json", "complexity": 3.5},
-        {"name": "task-1", "title": "Task 1", "file": "tasks/b.mrk.json", "complexity": 7},
+        {
+            "name": "task-1",
+            "title": "Task 1",
+            "file": "tasks/b.mrk.json",
+            "complexity": 7,
+            "shortestPathMm": 612.5,
+        },
     ],
     "cameras": {"close-up": CAMERA, "far": {**CAMERA, "positionMm": [240, -2000, 1000]}},
     "table": {"centerMm": [300, 0], "sizeMm": [1300, 1000, 40]},
@@ -70,6 +76,7 @@ def test_a_scenario_is_read_whole(folder):
     assert scenario.head_to_world[:3, 3].tolist() == [480, -17, 218]
     assert [task.name for task in scenario.tasks] == ["trial-run", "task-1"]
     assert scenario.task("task-1").complexity == 7.0
+    assert [task.shortest_path_mm for task in scenario.tasks] == [None, 612.5]
     assert np.array_equal(scenario.task("trial-run").fiducials, POINTS)
     assert scenario.cameras["close-up"].view_up.tolist() == [0, 0, 1]
     assert scenario.cameras["far"].position.tolist() == [240, -2000, 1000]
@@ -147,6 +154,7 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
         ("tasks.1.file", "../../b.mrk.json", r"tasks\[1\].file must be the path of a file inside"),
         ("tasks.1.file", "tasks/none.mrk.json", "none.mrk.json"),
         ("tasks.1.complexity", None, r"tasks\[1\].complexity must be a number"),
+        ("tasks.1.shortestPathMm", 0, r"tasks\[1\].shortestPathMm must be a number from 1"),
         ("cameras.far", None, "cameras.far must be an object"),
         ("cameras.far.viewUp", [0, 0, 0], "cameras.far.viewUp must be a direction across"),
         ("cameras.close-up.viewAngleDeg", 0, "cameras.close-up.viewAngleDeg must be a number"),

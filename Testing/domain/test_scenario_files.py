@@ -29,6 +29,7 @@ def test_what_is_written_is_read_back_with_targets_and_trajectory(tmp_path):
     assert (scenario.name, scenario.title, scenario.target_name) == ("ball", "A ball", "Tumor")
     assert np.allclose(scenario.head_to_world, wanted.head_to_world)
     assert [task.complexity for task in scenario.tasks] == [10.0, 11.0]
+    assert [task.shortest_path_mm for task in scenario.tasks] == [500.0, None]
     assert np.array_equal(scenario.tasks[1].fiducials, wanted.tasks[1].fiducials)
     assert scenario.targets[0].name == "Cyst"
     assert scenario.targets[0].position.tolist() == [10, 20, 30]

@@ -1,6 +1,7 @@
 """Motion metrics of a whole trial, on movements whose numbers follow by hand."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,9 +10,9 @@ from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.definitions import DEFINITIONS
-from rastrainer.motion.shortest_ways import shortest_ways
+from rastrainer.motion.shortest_path import shortest_path_mm
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
-from rastrainer.motion.trial_motion import trial_motion, with_path_efficiency
+from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.surface_path import SurfaceGraph
 from Testing.domain.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
@@ -56,15 +57,24 @@ def test_path_speed_and_rest_of_minimum_jerk_reaches(trajectory):
     assert motion["sparc"] == pytest.approx(-1.5, abs=0.2)
 
 
+def whole(trajectory, **more):
+    """The trajectory of a trial in which the last fiducial was touched, and its task is known."""
+    known = {str(i + 1): point + 0.1 * i**2 for i, point in enumerate(CORNERS)}
+    return replace(trajectory, fiducials_mm=known, shortest_path_mm=350.0, **more)
+
+
 def test_detours_lower_the_path_efficiency(trajectory):
-    ways = [100.0, 80.0, 80.0, 90.0]
-    direct = with_path_efficiency(trial_motion(trajectory), ways)
-    assert direct["path_efficiency"] == pytest.approx(1.0, abs=2e-3)
+    assert trial_motion(whole(trajectory))["path_efficiency"] == pytest.approx(1.0, abs=2e-3)
     times, tip, touches = reaches(np.insert(CORNERS, 1, [0, 120, 0], axis=0))
     around = Trajectory(times, tip, np.full(len(times), 30.0), (touches[0], *touches[2:]))
-    metrics = with_path_efficiency(trial_motion(around), ways)
-    assert metrics["path_efficiency"] < 0.7
-    assert "path_efficiency" not in with_path_efficiency({}, ways)
+    assert trial_motion(whole(around))["path_efficiency"] < 0.7
+
+
+def test_a_part_of_a_trial_and_an_unmeasured_task_have_no_path_efficiency(trajectory):
+    part = whole(trajectory, touches=trajectory.touches[:3])
+    unmeasured = replace(whole(trajectory), shortest_path_mm=None)
+    for told in (part, unmeasured):
+        assert "path_efficiency" not in trial_motion(told)
 
 
 def test_tremor_lowers_smoothness(trajectory):
@@ -123,15 +133,7 @@ def test_a_trial_that_has_just_begun_has_counts_only():
 
 
 def test_every_metric_has_a_definition_and_every_definition_a_metric(trajectory):
-    known = {str(i + 1): point + 0.1 * i**2 for i, point in enumerate(CORNERS)}
-    whole = Trajectory(
-        trajectory.times_s,
-        trajectory.tip_mm,
-        trajectory.clearance_mm,
-        trajectory.touches,
-        fiducials_mm=known,
-    )
-    motion = with_path_efficiency(trial_motion(whole), [100.0, 80.0, 80.0, 90.0])
+    motion = trial_motion(whole(trajectory))
     assert set(motion) == set(DEFINITIONS)
     assert all(np.isfinite(value) for value in motion.values())
 
@@ -140,8 +142,8 @@ def test_the_shortest_way_leads_over_a_bulge_and_straight_across_a_hollow():
     mesh = sphere_mesh()
     angle = np.arccos(on_sphere(0, 20) @ on_sphere(90, 20) / RADIUS_MM**2)
     ends = np.array([on_sphere(0, 20), on_sphere(90, 20)])
-    assert shortest_ways(ends, mesh, SurfaceGraph(mesh)) == pytest.approx(
-        [RADIUS_MM * angle], rel=0.04
+    assert shortest_path_mm(ends, mesh, SurfaceGraph(mesh)) == pytest.approx(
+        RADIUS_MM * angle, rel=0.04
     )
     from_top = np.arccos(mesh.vertices[:, 2] / RADIUS_MM)
     hollow = HeadMesh(
@@ -150,7 +152,7 @@ def test_the_shortest_way_leads_over_a_bulge_and_straight_across_a_hollow():
     wall = np.flatnonzero(np.abs(from_top - np.radians(25)) < 0.03)
     ends = hollow.vertices[wall[[0, np.argmin(mesh.vertices[wall] @ mesh.vertices[wall[0]])]]]
     straight = np.linalg.norm(ends[1] - ends[0])
-    assert shortest_ways(ends, hollow, SurfaceGraph(hollow)) == pytest.approx([straight])
+    assert shortest_path_mm(ends, hollow, SurfaceGraph(hollow)) == pytest.approx(straight)
 
 
 def entry(kind, time, **more):

@@ -9,6 +9,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.complexity import complexity
 from rastrainer.head_mesh import read_head_mesh
+from rastrainer.motion.shortest_path import shortest_path_mm
 from rastrainer.registration import register
 from rastrainer.scenario import load_scenario
 from rastrainer.surface_path import SurfaceGraph
@@ -25,17 +26,17 @@ from rastrainer_simulator.robot.model import load_robot
 FOLDER = asset_path("scenarios", "colin27")
 SCENARIO = load_scenario(FOLDER)
 MESH = read_head_mesh(SCENARIO.head_mesh)
+GRAPH = SurfaceGraph(MESH)
 TASK_NAMES = ["trial-run", "task-1", "task-2", "task-3", "task-4", "task-5"]
 
 
 @pytest.fixture(scope="module")
 def computed():
     """The complexity of each task, computed anew."""
-    graph = SurfaceGraph(MESH)
     eye = transforms.apply(
         transforms.inverse(SCENARIO.head_to_world), SCENARIO.cameras["close-up"].position
     )
-    return [complexity(task.fiducials, MESH, graph, eye) for task in SCENARIO.tasks]
+    return [complexity(task.fiducials, MESH, GRAPH, eye) for task in SCENARIO.tasks]
 
 
 def test_the_head_is_one_closed_body_without_tunnels():
@@ -106,6 +107,13 @@ def test_complexity_rises_from_task_to_task_and_is_what_the_files_say(computed):
     indices = [parts.index for parts in computed]
     assert all(harder > 1.05 * easier for easier, harder in pairwise(indices))
     assert [task.complexity for task in SCENARIO.tasks] == pytest.approx(indices, abs=0.01)
+
+
+@pytest.mark.parametrize("name", ["trial-run", "task-5"])
+def test_the_shortest_path_is_what_the_files_say(name):
+    task = SCENARIO.task(name)
+    shortest = shortest_path_mm(task.fiducials, MESH, GRAPH)
+    assert task.shortest_path_mm == pytest.approx(shortest, abs=0.051)
 
 
 def test_the_readme_has_the_same_numbers(computed):

@@ -21,8 +21,10 @@ from rastrainer.files import write_text
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.head_pose import Perturbation, perturbed_pose
 from rastrainer.markups import write_markups
+from rastrainer.motion.shortest_path import shortest_path_mm
 from rastrainer.point_list import PointList
 from rastrainer.scenario import FILE_NAME
+from rastrainer.surface_path import SurfaceGraph
 from rastrainer.surface_queries import outward_normal
 from rastrainer.tasks import LABELS
 from rastrainer_simulator.collision.collision import Collision
@@ -58,6 +60,7 @@ class Workbench:
 
     def __init__(self) -> None:
         self.mesh = read_head_mesh(FOLDER / "head.ply")
+        self.graph = SurfaceGraph(self.mesh)
         self.center = self.mesh.centroid.round(4)
         self.head_to_world = head_to_world(self.center)
         self.eye = transforms.apply(transforms.inverse(self.head_to_world), CLOSE_UP_MM)
@@ -82,7 +85,7 @@ def main() -> int:
     proposals = proposed(bench)
     for proposal in proposals:
         write_markups(FOLDER / _file(proposal), PointList(LABELS, proposal.fiducials))
-    content = scenario_json(bench.center, [entry(proposal) for proposal in proposals])
+    content = scenario_json(bench.center, [entry(proposal, bench) for proposal in proposals])
     write_text(FOLDER / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
     table = table_of(proposals, bench.center)
     before, _, rest = README.read_text(encoding="utf-8").partition(TABLE_START)
@@ -113,7 +116,7 @@ def is_touchable(bench: Workbench, proposal: Proposal) -> bool:
     return not missed
 
 
-def entry(proposal: Proposal) -> dict[str, Any]:
+def entry(proposal: Proposal, bench: Workbench) -> dict[str, Any]:
     """Return a task's entry in `scenario.json`; the parts of the complexity are for readers."""
     parts = proposal.complexity
     return {
@@ -121,6 +124,7 @@ def entry(proposal: Proposal) -> dict[str, Any]:
         "title": proposal.plan.title,
         "file": _file(proposal),
         "complexity": round(parts.index, 2),
+        "shortestPathMm": round(shortest_path_mm(proposal.fiducials, bench.mesh, bench.graph), 1),
         "complexityParts": {
             "pathLengthMm": round(parts.path_length_mm),
             "turningDeg": round(parts.turning_deg),

@@ -30,6 +30,7 @@ FORMAT_VERSION = 1
 CAMERAS = ("close-up", "far")
 MOST_TASKS = 20
 SKULL_KINDS = ("bone", "approximation")
+UNKNOWN_LICENSE = "Not to be given away: nothing is known about its license."
 
 
 @dataclass(frozen=True)
@@ -199,7 +200,9 @@ def _tasks(fields: Fields) -> tuple[Task, ...]:
         if not is_task_name(name) or name in tasks:
             raise entry.error("name", "lower-case letters, digits and hyphens, each name once")
         title, complexity = entry.text("title", 60), entry.number("complexity", 0, 1000)
-        tasks[name] = read_task(entry.file("file"), name, title, complexity)
+        is_measured = "shortestPathMm" in entry.names()
+        shortest = entry.number("shortestPathMm", 1, 1e5) if is_measured else None
+        tasks[name] = read_task(entry.file("file"), name, title, complexity, shortest)
     return tuple(tasks.values())
 
 

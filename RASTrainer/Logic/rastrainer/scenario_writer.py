@@ -127,8 +127,11 @@ def scenario_json(scenario: Scenario, has_skull: bool) -> dict[str, Any]:
 
 
 def _task_entry(task: Task) -> dict[str, Any]:
-    complexity = round(task.complexity, 2)
-    return {"name": task.name, "title": task.title, "file": _file(task), "complexity": complexity}
+    entry = {"name": task.name, "title": task.title, "file": _file(task)}
+    entry["complexity"] = round(task.complexity, 2)
+    if task.shortest_path_mm is not None:
+        entry["shortestPathMm"] = round(task.shortest_path_mm, 1)
+    return entry
 
 
 def _file(task: Task) -> str:

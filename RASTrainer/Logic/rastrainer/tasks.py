@@ -27,6 +27,7 @@ class Task:
         labels: "1" to "15", in the order to touch.
         fiducials: (15, 3) float, RAS mm, in that order.
         complexity: the index of `rastrainer.complexity`.
+        shortest_path_mm: of `rastrainer.motion.shortest_path`; None where it was not measured.
     """
 
     name: str
@@ -34,9 +35,12 @@ class Task:
     labels: tuple[str, ...]
     fiducials: np.ndarray
     complexity: float
+    shortest_path_mm: float | None = None
 
 
-def read_task(path: Path, name: str, title: str, complexity: float) -> Task:
+def read_task(
+    path: Path, name: str, title: str, complexity: float, shortest_path_mm: float | None = None
+) -> Task:
     """Read a task's fiducials from a `.mrk.json` file.
 
     Raises:
@@ -55,7 +59,7 @@ def read_task(path: Path, name: str, title: str, complexity: float) -> Task:
     if len(np.unique(fiducials, axis=0)) != FIDUCIAL_COUNT:
         raise InputError(f"{path} has two points at the same place.")
     fiducials.setflags(write=False)
-    return Task(name, title, LABELS, fiducials, complexity)
+    return Task(name, title, LABELS, fiducials, complexity, shortest_path_mm)
 
 
 def is_task_name(name: str) -> bool:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -16,13 +16,9 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.cohort.jobs import TrialJob
-from rastrainer.head_mesh import read_head_mesh
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.motion.shortest_ways import shortest_ways
-from rastrainer.motion.trial_motion import with_path_efficiency
 from rastrainer.protocol import Mode
 from rastrainer.scoring import ScoreReference
-from rastrainer.surface_path import SurfaceGraph
 from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.operator_input import OperatorInput
@@ -95,8 +91,6 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     record = TrialRecord.from_json(watch.record_entry(entries)["record"])
     if settings.records is not None:
         _write_journal(settings.records, entries, job.started)
-    ways = _ways(settings.scenario, job.task)
-    record = replace(record, motion=with_path_efficiency(record.motion, ways))
     scenario = simulation.setup.scenario
     analysis = analyze_trial(record, scenario, references=settings.references)
     target = scenario.target_position
@@ -157,15 +151,3 @@ def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetim
 def _simulation(scenario: Path | None) -> Simulation:
     """Return this process's simulation, which is made once."""
     return Simulation(load_setup(scenario), seed=0)
-
-
-@functools.lru_cache(maxsize=1)
-def _graph(scenario: Path | None) -> tuple[Any, SurfaceGraph]:
-    mesh = read_head_mesh(_simulation(scenario).setup.scenario.head_mesh)
-    return mesh, SurfaceGraph(mesh)
-
-
-@functools.lru_cache(maxsize=32)
-def _ways(scenario: Path | None, task: str) -> tuple[float, ...]:
-    fiducials = _simulation(scenario).setup.scenario.task(task).fiducials
-    return shortest_ways(fiducials, *_graph(scenario))

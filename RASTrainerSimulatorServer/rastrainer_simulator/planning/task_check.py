@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import combinations, pairwise
 
 import numpy as np
 
 from rastrainer.complexity import complexity
+from rastrainer.motion.shortest_path import shortest_path_mm
 from rastrainer.surface_queries import nearest_on_mesh, outward_normal
 from rastrainer.tasks import Task
 from rastrainer_simulator.planning.task_proposal import target_spread
@@ -22,11 +24,15 @@ WORST_SPREAD = 1.0
 
 POSES_TRIED = 12
 COMPLEXITY_TOLERANCE = 0.02
+SHORTEST_PATH_TOLERANCE = 0.01
+"""As a share of the path."""
 
 
-def measured(bench: Workbench, task: Task) -> float:
-    """Return a task's complexity index."""
-    return round(complexity(task.fiducials, bench.mesh, bench.graph, bench.eye).index, 2)
+def measured(bench: Workbench, task: Task) -> Task:
+    """Return a task with its complexity index and its shortest path."""
+    index = complexity(task.fiducials, bench.mesh, bench.graph, bench.eye).index
+    shortest = shortest_path_mm(task.fiducials, bench.mesh, bench.graph)
+    return replace(task, complexity=round(index, 2), shortest_path_mm=round(shortest, 1))
 
 
 def check_tasks(bench: Workbench, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
@@ -40,7 +46,7 @@ def check_tasks(bench: Workbench, tasks: Iterable[Task], first_seed: int = 0) ->
         wrong += _wrong_places(bench, task) or [
             *_untouchable(bench, task, first_seed),
             *_unreadable(skin, task),
-            *_wrong_complexity(bench, task),
+            *_wrong_measures(task, measured(bench, task)),
         ]
     for easier, harder in pairwise(tasks):
         if harder.complexity <= easier.complexity:
@@ -107,11 +113,19 @@ def _unreadable(skin: Skin, task: Task) -> list[str]:
     ]
 
 
-def _wrong_complexity(bench: Workbench, task: Task) -> list[str]:
-    index = measured(bench, task)
-    if abs(index - task.complexity) <= COMPLEXITY_TOLERANCE:
-        return []
-    return [f"{task.title}: its complexity is {index:.2f}, not {task.complexity:.2f}."]
+def _wrong_measures(task: Task, right: Task) -> list[str]:
+    wrong = []
+    if abs(right.complexity - task.complexity) > COMPLEXITY_TOLERANCE:
+        wrong.append(
+            f"{task.title}: its complexity is {right.complexity:.2f}, not {task.complexity:.2f}."
+        )
+    told, shortest = task.shortest_path_mm, right.shortest_path_mm
+    if told is None or abs(shortest - told) > SHORTEST_PATH_TOLERANCE * shortest:
+        instead = "none" if told is None else f"{told:.1f} mm"
+        wrong.append(
+            f"{task.title}: its shortest path is {shortest:.1f} mm; shortestPathMm tells {instead}."
+        )
+    return wrong
 
 
 def _listed(labels: list[str]) -> str:

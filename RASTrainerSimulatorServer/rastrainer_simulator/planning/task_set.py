@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.face_removal import face_vertices
+from rastrainer.motion.shortest_path import shortest_path_mm
 from rastrainer.surface_queries import outward_normals
 from rastrainer.tasks import LABELS, Task
 from rastrainer_simulator.planning.skin_places import smooth_places
@@ -83,7 +84,7 @@ class TaskSetProposer:
             except InputError as error:
                 problem = str(error)
                 continue
-            return tuple(_task(proposal) for proposal in proposals)
+            return tuple(_task(proposal, bench) for proposal in proposals)
         raise InputError(problem)
 
     @cached_property
@@ -143,8 +144,13 @@ def _plans(attempt: int) -> list[TaskPlan]:
     ]
 
 
-def _task(proposal: Proposal) -> Task:
-    plan = proposal.plan
+def _task(proposal: Proposal, bench: Workbench) -> Task:
+    plan, fiducials = proposal.plan, proposal.fiducials
     return Task(
-        plan.name, plan.title, LABELS, proposal.fiducials, round(proposal.complexity.index, 2)
+        plan.name,
+        plan.title,
+        LABELS,
+        fiducials,
+        round(proposal.complexity.index, 2),
+        round(shortest_path_mm(fiducials, bench.mesh, bench.graph), 1),
     )

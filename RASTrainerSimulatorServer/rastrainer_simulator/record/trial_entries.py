@@ -57,6 +57,7 @@ class TrialEntries:
         """Begin with the header; `before` is the state in which StartTask was carried out."""
         state = result.state
         training = state.training
+        task = simulation.setup.scenario.task(training.task)
         times = stamp(state.tick, state.sim_time)
         entries = cls(simulation, training.trial_id, times["utc"], dt)
         entries._append(
@@ -68,6 +69,7 @@ class TrialEntries:
                 "trialId": training.trial_id,
                 "trainee": training.trainee,
                 "task": training.task,
+                "shortestPathMm": task.shortest_path_mm,
                 "mode": training.mode,
                 "seed": entries._seed,
                 "tickS": dt,

@@ -152,7 +152,7 @@ def _placed_tasks(
         task = read_task(path, plan.name, plan.title, 0.0)
         if np.abs(task.fiducials).max() > LIMIT_MM:
             raise InputError(f"{path} has a point outside of the patient.")
-        tasks.append(replace(task, complexity=measured(bench, task)))
+        tasks.append(measured(bench, task))
     wrong = check_tasks(bench, tasks)
     if wrong:
         raise InputError(" ".join(wrong))

@@ -13,7 +13,6 @@ from rastrainer.report.report import report_html
 from rastrainer.report.study_data import read_study_data
 from rastrainer.scripted_trainee import STUCK_AFTER_S
 from rastrainer.study import Study
-from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import main
 from rastrainer_simulator.cohort.cohort import DATABASE, RECORDS, TRUTH, simulate_cohort
 from rastrainer_simulator.cohort.engines import run_jobs
@@ -49,8 +48,7 @@ def test_the_cohort_is_stored_like_a_real_study_and_reported(data):
 def test_the_path_efficiency_is_measured_again_from_the_journal(played, data, capsys):
     trial = data.trials[0]
     (path,) = (played / RECORDS).glob(f"*{trial.trial_id}.journal")
-    folder = asset_path("scenarios", "colin27")
-    assert main(["measure", str(path), "--scenario", str(folder), "--json"]) == 0
+    assert main(["measure", str(path), "--json"]) == 0
     efficiency = json.loads(capsys.readouterr().out)["path_efficiency"]
     assert efficiency == trial.values["path_efficiency"]
 

@@ -42,6 +42,7 @@ def test_the_record_holds_the_metrics_that_the_journal_gives_to_the_last_bit(jou
     assert record.motion["completion_time_s"] == pytest.approx(record.completion_time_s, abs=1e-9)
     assert record.motion["undone_touches"] == record.undone_touches
     assert record.motion["contacts"] >= 15
+    assert 0.2 < record.motion["path_efficiency"] < 1.0
 
 
 def test_metrics_of_a_part_are_those_of_the_trial_until_then(journal):

@@ -89,6 +89,9 @@ def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(bench, tasks):
     )
     assert "must be above" in check_tasks(bench, [first, run])[-1]
     assert "its complexity is" in check_tasks(bench, [replace(run, complexity=3.0)])[0]
+    unmeasured, wrong = (replace(run, shortest_path_mm=told) for told in (None, 5.0))
+    assert "shortestPathMm tells none" in check_tasks(bench, [unmeasured])[0]
+    assert "shortestPathMm tells 5.0 mm" in check_tasks(bench, [wrong])[0]
 
 
 def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(bench):

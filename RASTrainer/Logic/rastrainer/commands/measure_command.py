@@ -7,14 +7,10 @@ import json
 from pathlib import Path
 
 from rastrainer.commands.text_table import text_table
-from rastrainer.head_mesh import read_head_mesh
 from rastrainer.journal.journal_reader import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.definitions import DEFINITIONS
-from rastrainer.motion.shortest_ways import shortest_ways
-from rastrainer.motion.trial_motion import trial_motion, with_path_efficiency
-from rastrainer.scenario import load_scenario
-from rastrainer.surface_path import SurfaceGraph
+from rastrainer.motion.trial_motion import trial_motion
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -25,12 +21,6 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         description="The numbers are those of the trial's record, to the last bit.",
     )
     parser.add_argument("journal", type=Path, metavar="JOURNAL")
-    parser.add_argument(
-        "--scenario",
-        type=Path,
-        metavar="DIR",
-        help="the scenario's folder, for the path efficiency",
-    )
     parser.add_argument("--explain", action="store_true", help="tell what each metric means")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=run)
@@ -40,16 +30,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the metrics and return the exit status.
 
     Raises:
-        InputError: the journal or the scenario cannot be read.
+        InputError: the journal cannot be read.
     """
     reading = read_journal(arguments.journal)
     motion = trial_motion(Recording.of(reading.entries).trajectory())
-    if arguments.scenario is not None:
-        scenario = load_scenario(arguments.scenario)
-        mesh = read_head_mesh(scenario.head_mesh)
-        fiducials = scenario.task(str(reading.header.get("task"))).fiducials
-        ways = shortest_ways(fiducials, mesh, SurfaceGraph(mesh))
-        motion = with_path_efficiency(motion, ways)
     if arguments.json:
         print(json.dumps(motion, indent=1, allow_nan=False))
         return 0

@@ -35,6 +35,7 @@ class Recording:
         self._contacts: list[Interval] = []
         self._state, self._near_since, self._contact_since = Proximity.FREE, 0.0, 0.0
         self._fiducials: dict[str, np.ndarray] = {}
+        self._shortest_path: float | None = None
 
     @classmethod
     def of(cls, entries: Iterable[Mapping[str, Any]]) -> Recording:
@@ -86,6 +87,7 @@ class Recording:
             camera_switches=self._cameras,
             pauses=self._pauses,
             fiducials_mm=self._fiducials,
+            shortest_path_mm=self._shortest_path,
         )
 
     def _trial_time(self, sim_time: float) -> float:
@@ -98,6 +100,8 @@ class Recording:
     def _header(self, entry: Mapping[str, Any]) -> None:
         self._tick_s = entry["tickS"]
         self._start_s = entry["simTime"] - self._tick_s
+        # Absent where the scenario does not tell, and in journals of before it was told.
+        self._shortest_path = entry.get("shortestPathMm")
 
     def _touch(self, entry: Mapping[str, Any]) -> None:
         self._touches.append(self._touch_of(entry))

@@ -50,6 +50,7 @@ class Trajectory:
         camera_switches: how often the view was changed.
         pauses: how often the trial was interrupted.
         fiducials_mm: label → (3,) position in World; empty as long as that is a secret.
+        shortest_path_mm: the shortest free way through the task's fiducials; None where unknown.
     """
 
     times_s: np.ndarray
@@ -63,6 +64,7 @@ class Trajectory:
     camera_switches: int = 0
     pauses: int = 0
     fiducials_mm: Mapping[str, np.ndarray] = field(default_factory=dict)
+    shortest_path_mm: float | None = None
 
     @property
     def touch_times_s(self) -> np.ndarray:

@@ -8,7 +8,6 @@ equal samples give equal numbers.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -49,24 +48,9 @@ def trial_motion(trajectory: Trajectory) -> dict[str, float]:
     }
     if len(trajectory.touches) > 1:
         metrics |= _of_movements(trajectory, times, tip, speed)
+        metrics |= _efficiency(trajectory, metrics["path_between_touches_mm"])
         metrics |= _throughput(trajectory)
     return metrics
-
-
-def with_path_efficiency(
-    motion: Mapping[str, float], shortest_mm: Sequence[float]
-) -> dict[str, float]:
-    """Return the metrics with `path_efficiency`, if they tell of a path between touches.
-
-    Args:
-        motion: Of `trial_motion`.
-        shortest_mm: The shortest way from each fiducial of the task to the next
-            (`rastrainer.motion.shortest_ways`).
-    """
-    actual = motion.get("path_between_touches_mm", 0.0)
-    if actual <= 0:
-        return dict(motion)
-    return {**motion, "path_efficiency": path_efficiency(actual, sum(shortest_mm))}
 
 
 def _counts(trajectory: Trajectory) -> dict[str, float]:
@@ -140,6 +124,14 @@ def _dwell(touch: Touch, times: np.ndarray, tip: np.ndarray) -> float:
     is_far = np.linalg.norm(tip[:until] - touch.position_mm, axis=1) > DWELL_RADIUS_MM
     left = np.flatnonzero(is_far)
     return (until - 1 - int(left[-1]) if len(left) else until) / RATE_HZ
+
+
+def _efficiency(trajectory: Trajectory, actual_mm: float) -> dict[str, float]:
+    """Return the path efficiency, which only a whole trial has."""
+    is_whole = 0 < len(trajectory.fiducials_mm) == len(trajectory.touches)
+    if not is_whole or trajectory.shortest_path_mm is None or actual_mm <= 0:
+        return {}
+    return {"path_efficiency": path_efficiency(actual_mm, trajectory.shortest_path_mm)}
 
 
 def _throughput(trajectory: Trajectory) -> dict[str, float]:

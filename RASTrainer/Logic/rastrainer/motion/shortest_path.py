@@ -1,4 +1,4 @@
-"""How far it is at least from each fiducial to the next without going through the head."""
+"""How far it is at least from the first fiducial through all to the last, around the head."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from rastrainer.surface_path import SurfaceGraph
 from rastrainer.surface_queries import hides, outward_normal
 
 
-def shortest_ways(fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph) -> tuple[float, ...]:
-    """Return the length of the shortest free way between neighbors of (n, 3) fiducials, in mm.
+def shortest_path_mm(fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph) -> float:
+    """Return the length of the shortest free path through (n, 3) fiducials in their order, in mm.
 
-    It is the straight line where the head is not in the way, else the way over the skin, which
-    the graph makes about 2.5 % too long.
+    From each to the next it is the straight line where the head is not in the way, else the way
+    over the skin, which the graph makes about 2.5 % too long. It takes about half a second.
     """
     fiducials = np.asarray(fiducials, dtype=float)
     normals = [outward_normal(mesh, point) for point in fiducials]
-    return tuple(
+    return sum(
         float(np.linalg.norm(fiducials[i + 1] - fiducials[i]))
         if _is_free(mesh, fiducials[i : i + 2], normals[i : i + 2])
         else graph.distance(fiducials[i], fiducials[i + 1])
