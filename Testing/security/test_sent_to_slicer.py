@@ -20,7 +20,9 @@ from rastrainer.igtl.points import Point, Points
 from rastrainer_simulator.igtl.outgoing import Outgoing, OutgoingQueue
 from Testing.security.wire_police import SENT_TYPES, OffenseError, WirePolice
 
-LINK = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator/igtl"
+SIMULATOR = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator"
+LINK = SIMULATOR / "igtl"
+SENDING = ("sendall", "sendto", "sock_sendall", "writelines", "create_connection")
 # Whatever may go wrong in the calling code: any text, any number, with what is at the edges.
 NUMBERS = some.floats(width=64) | some.sampled_from([3.4e38, 3.5e38, 1e308])
 TEXTS = some.text(max_size=300) | some.sampled_from(["", "\0", "x" * 65_535, "x" * 65_536])
@@ -124,22 +126,38 @@ def test_every_type_that_the_gate_knows_is_one_that_slicer_takes():
     assert {kind.encode() for kind in CONTENTS} == SENT_TYPES
 
 
+def calls_in(path):
+    """Give the name and the node of each call in a file."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call):
+            yield getattr(node.func, "attr", getattr(node.func, "id", "")), node
+
+
 def test_bytes_reach_a_client_in_one_place_and_only_from_the_gate():
     writes, queued, packs = [], [], []
     for path in sorted(LINK.glob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if not isinstance(node, ast.Call):
-                continue
-            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        for name, call in calls_in(path):
             if name in ("write", "writelines", "sendall", "sendto", "sock_sendall"):
-                writes.append((path.name, ast.unparse(node.args[0])))
+                writes.append((path.name, ast.unparse(call.args[0])))
             if name in ("put", "put_latest"):
-                queued.append((path.name, ast.unparse(node.args[-1])))
+                queued.append((path.name, ast.unparse(call.args[-1])))
             if name == "pack":
                 packs.append(path.name)
     assert writes == [("connection.py", "self._queue.take(self._limits.buffer_bytes)")]
     assert set(queued) == {("connection.py", "data")}
     assert set(packs) == {"outgoing.py"}
+
+
+def test_no_other_part_of_the_simulator_packs_messages_or_sends_over_sockets_of_its_own():
+    packing, sending = set(), set()
+    for path in SIMULATOR.rglob("*.py"):
+        place = path.relative_to(SIMULATOR).as_posix()
+        sending |= {(place, name) for name, _call in calls_in(path) if name in SENDING}
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module == "rastrainer.igtl.message":
+                packing |= {place for alias in node.names if alias.name == "pack"}
+    assert packing == {"igtl/outgoing.py"}
+    assert sending == {("igtl/server.py", "create_connection")}
 
 
 def test_the_queue_gives_whole_messages_only():
