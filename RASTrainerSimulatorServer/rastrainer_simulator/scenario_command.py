@@ -8,10 +8,9 @@ import sys
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.scenario import UNKNOWN_LICENSE
 from rastrainer.scenario_library import list_scenarios, user_library
 from rastrainer.scenario_package import pack, unpack
-
-OUR_OWN = "Not to be given away: nothing is known about its license."
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -73,7 +72,7 @@ def _add_wishes(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="a new one")
     parser.add_argument("--title", help="default: the name of the new folder")
     parser.add_argument("--source", help="where the images come from (default: the volume's name)")
-    parser.add_argument("--license", default=OUR_OWN, help="under which it may be used")
+    parser.add_argument("--license", default=UNKNOWN_LICENSE, help="under which it may be used")
     parser.add_argument("--setup", type=Path, metavar="JSON", help="head, table and robot base")
     parser.add_argument("--seed", type=int, default=1, help="of the proposed tasks (default: 1)")
     parser.add_argument(
@@ -82,7 +81,7 @@ def _add_wishes(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar=("NAME", "R", "A", "S"),
-        help="a planned target, RAS mm; may be given several times",
+        help="a planned target, RAS mm; may be given several times: the error is told at the first",
     )
     parser.add_argument(
         "--trajectory",
@@ -117,6 +116,7 @@ def _build(arguments: argparse.Namespace) -> int:
             arguments.output,
             lambda step, share: _tell(step, 0.5 + 0.5 * share),
             None if arguments.no_skull else process.whole,
+            _warn,
         )
     print(
         f"{scenario.title} is in {arguments.output}; load it with: rastrainer simulator "
@@ -132,7 +132,7 @@ def _tasks(arguments: argparse.Namespace) -> int:
 
     _clear_away_when_terminated()
     wishes = wishes_of(arguments, "unknown")
-    make_scenario(read_draft(arguments.draft), wishes, arguments.output, _tell)
+    make_scenario(read_draft(arguments.draft), wishes, arguments.output, _tell, warn=_warn)
     return 0
 
 

@@ -12,12 +12,13 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.scenario_draft import HeadDraft
-from rastrainer.slicer.head.scenario_build import BuildRequest, finish_scenario
-from rastrainer.slicer.head.volume import Volume
+from rastrainer.scenario_writer import new_folder, write_scenario
+from rastrainer.slicer.head.scenario_build import build_scenario
 from rastrainer_simulator.scenarios.head_process import head_process
+from Testing.domain.made_up_scenario import ball_head, made_up_scenario
 from Testing.domain.spheres import sphere_mesh
 from Testing.slicer.head.phantoms import CT, phantom
-from Testing.slicer.head.volume_file import write_nrrd
+from Testing.slicer.head.volume_file import write_volume
 
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli"]
 
@@ -30,7 +31,7 @@ class CancelledError(Exception):
 def ct(tmp_path_factory):
     """A CT of a head, as a file."""
     scan = phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
-    return write_nrrd(tmp_path_factory.mktemp("ct") / "ct.nrrd", scan)
+    return write_volume(tmp_path_factory.mktemp("ct") / "ct.nrrd", scan)
 
 
 @pytest.fixture
@@ -62,7 +63,7 @@ def test_a_head_is_worked_with_before_its_skull_is_made(ct):
 
 def test_a_ct_without_bone_ends_with_a_sentence_once_its_skull_is_asked_for(tmp_path):
     soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
-    with head_process(write_nrrd(tmp_path / "soft.nrrd", soft), []) as process:
+    with head_process(write_volume(tmp_path / "soft.nrrd", soft), []) as process:
         assert wait_for_head(process).head.is_closed
         with pytest.raises(InputError, match="The CT shows no bone"):
             process.whole()
@@ -109,6 +110,28 @@ def test_a_file_that_is_no_volume_ends_the_build_with_one_sentence(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["noise.nrrd"]
 
 
+PLANNER = """
+import shutil, sys
+print(" 50%  Placing fiducials\\nWarning: The tumor lies too deep.\\n100%  Done")
+shutil.copytree({made!r}, sys.argv[sys.argv.index("-o") + 1])
+"""
+
+
+def test_what_the_planner_warns_of_is_told_beside_the_warnings_of_the_head(tmp_path):
+    made = tmp_path / "made"
+    with new_folder(made) as folder:
+        write_scenario(folder, made_up_scenario(), ball_head())
+    (tmp_path / "planner.py").write_text(PLANNER.format(made=str(made)))
+    scenario, warnings = build_scenario(
+        lambda _tell: (HeadDraft(ball_head(), "made up"), ["The slices are far apart."]),
+        tmp_path / "built",
+        (),
+        [sys.executable, str(tmp_path / "planner.py")],
+    )
+    assert scenario.folder == tmp_path / "built"
+    assert warnings == ["The slices are far apart.", "The tumor lies too deep."]
+
+
 def test_a_build_that_is_cancelled_leaves_nothing(tmp_path):
     def progress(step, _share):
         if step == "Finding what the robot can touch":
@@ -117,8 +140,8 @@ def test_a_build_that_is_cancelled_leaves_nothing(tmp_path):
     sphere = sphere_mesh(3)
     vertices = np.maximum(sphere.vertices, [-np.inf, -np.inf, -70.0])
     draft = HeadDraft(HeadMesh(vertices, sphere.triangles), "made up")
-    volume = Volume(np.zeros((1, 1, 1)), np.eye(4))
-    request = BuildRequest(volume, tmp_path / "made", "made up", "none needed")
     with pytest.raises(CancelledError):
-        finish_scenario(draft, request, RASTRAINER, progress=progress)
+        build_scenario(
+            lambda _tell: (draft, []), tmp_path / "made", (), RASTRAINER, progress=progress
+        )
     assert not list(tmp_path.iterdir())

@@ -138,11 +138,14 @@ def test_a_plan_in_the_scene_goes_into_the_scenario(host, tmp_path):
     host.check("handPlacedCheckBox", False)
     unfold(host, "adjustHeadGroupBox")
     host.check("skullCheckBox", False)
+    host.type("sourceLineEdit", "The Head Study")
+    host.type("licenseLineEdit", "CC BY 4.0")
     (panel,) = [
         each for each in host.widget._panels._panels if type(each).__name__ == "NewScenarioPanel"
     ]
     _volume, wishes = panel._wanted()
     assert not wishes.hasSkull
+    assert (wishes.source, wishes.license) == ("The Head Study", "CC BY 4.0")
     words = host.widget.logic.session.scenarioMaker._words(wishes, tmp_path)
     assert words[2:] == (
         *("--target", "Tumor", "1.0", "2.0", "3.0", "--target", "Cyst", "4.0", "5.0", "6.0"),

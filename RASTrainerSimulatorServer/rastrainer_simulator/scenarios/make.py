@@ -58,6 +58,7 @@ def make_scenario(
     folder: Path,
     progress: Progress = lambda _step, _share: None,
     wait_for_skull: Callable[[], HeadDraft] | None = None,
+    warn: Callable[[str], None] = lambda _sentence: None,
 ) -> Scenario:
     """Write the scenario of a head into a new folder and return it.
 
@@ -68,12 +69,13 @@ def make_scenario(
         progress: told each step's name and the share of the work done; may raise to cancel.
         wait_for_skull: returns the same draft with the skull, which is made meanwhile; None where
             `draft` is whole.
+        warn: told what is made otherwise than wished, one sentence each.
 
     Raises:
         InputError: the wishes cannot be met; the sentence says which. Nothing is written then.
     """
     with new_folder(folder) as made:
-        scenario = without_tasks(draft, wishes)
+        scenario = without_tasks(draft, wishes, warn)
         bench = Workbench(scenario, draft.head)
         wrong = check_plan(bench)
         if wrong:
@@ -87,15 +89,22 @@ def make_scenario(
         if wait_for_skull is not None:
             progress("Making the skull", 0.98)
             draft = wait_for_skull()
-        scenario = replace(without_tasks(draft, wishes), tasks=tasks)
+        scenario = replace(
+            scenario,
+            tasks=tasks,
+            provenance=replace(scenario.provenance, method=draft.method),
+            is_skull_approximate=draft.is_skull_approximate,
+        )
         write_scenario(made, scenario, draft.head, draft.skull)
         load_scenario(made)
         progress("Done", 1.0)
     return load_scenario(folder)
 
 
-def without_tasks(draft: HeadDraft, wishes: Wishes) -> Scenario:
-    """Return the scenario of a head without tasks.
+def without_tasks(
+    draft: HeadDraft, wishes: Wishes, warn: Callable[[str], None] = lambda _sentence: None
+) -> Scenario:
+    """Return the scenario of a head without tasks; `warn` is told of a target that lies too deep.
 
     Raises:
         InputError: the head would not be above the table.
@@ -120,10 +129,10 @@ def without_tasks(draft: HeadDraft, wishes: Wishes) -> Scenario:
         targets=wishes.targets,
         trajectory=wishes.trajectory,
     )
-    return _with_main_target(scenario, head)
+    return _with_main_target(scenario, head, warn)
 
 
-def _with_main_target(scenario: Scenario, head: HeadMesh) -> Scenario:
+def _with_main_target(scenario: Scenario, head: HeadMesh, warn: Callable[[str], None]) -> Scenario:
     """Return the scenario with the first planned target as its own, where trials can start so.
 
     A trial starts above the target: with one far below, the tip would start in the head.
@@ -137,8 +146,13 @@ def _with_main_target(scenario: Scenario, head: HeadMesh) -> Scenario:
         target_position=np.asarray(first.position, dtype=float),
         targets=tuple(others),
     )
-    is_free = start_clearance_mm(aimed, head) >= LEAST_START_CLEARANCE_MM
-    return aimed if is_free else scenario
+    if start_clearance_mm(aimed, head) >= LEAST_START_CLEARANCE_MM:
+        return aimed
+    warn(
+        f"{first.name} lies too deep for trials to start above it; the target error is told at "
+        f"{scenario.target_name}, and {first.name} stays a further target."
+    )
+    return scenario
 
 
 def _placed_tasks(

@@ -14,7 +14,8 @@ from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.start_posture import start_joints
 
 MM = 1000.0
-ENTRY_OUTSIDE_MM = 100.0
+ENTRY_OFF_SKIN_MM = 10.0
+"""Many plan the entry on the bone, below some 7 mm of scalp, or click a little beside the skin."""
 
 
 def check_plan(bench: Workbench) -> list[str]:
@@ -53,8 +54,13 @@ def _wrong_trajectory(bench: Workbench) -> list[str]:
     trajectory = bench.scenario.trajectory
     if trajectory is None:
         return []
-    if abs(_distance_mm(bench, trajectory.entry)) > ENTRY_OUTSIDE_MM:
-        return [f"{trajectory.name} enters far from the skin; its entry must be near it."]
+    off_skin = _distance_mm(bench, trajectory.entry)
+    if abs(off_skin) > ENTRY_OFF_SKIN_MM:
+        side = "above the skin" if off_skin > 0.0 else "below the skin, within the head"
+        return [
+            f"{trajectory.name} enters {abs(off_skin):.0f} mm {side}; its entry must be within "
+            f"{ENTRY_OFF_SKIN_MM:g} mm of the skin."
+        ]
     to_world = bench.scenario.head_to_world
     entry, target = (
         transforms.apply(to_world, point) / MM for point in (trajectory.entry, trajectory.target)

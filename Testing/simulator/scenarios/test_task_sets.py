@@ -103,6 +103,33 @@ def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(bench):
     assert "From below" in check_plan(Workbench(scenario, bench.mesh))[0]
 
 
+def test_a_first_target_too_deep_to_start_above_stays_a_further_one_and_that_is_told():
+    deep = PlannedTarget("Brainstem", np.array([0.0, -10.0, -60.0]))
+    warnings = []
+    wishes = replace(WISHES, targets=(deep, *WISHES.targets))
+    scenario = without_tasks(HeadDraft(egg(), "made up"), wishes, warnings.append)
+    assert scenario.target_name == "Center of the head"
+    assert [target.name for target in scenario.targets] == ["Brainstem", "Tumor"]
+    (sentence,) = warnings
+    assert sentence.startswith("Brainstem lies too deep for trials to start above it")
+    assert "told at Center of the head" in sentence
+
+
+@pytest.mark.parametrize(
+    ("height", "sentence"),
+    [
+        (60.0, "Biopsy enters 35 mm below the skin, within the head; its entry must be within 10"),
+        (125.0, "Biopsy enters 27 mm above the skin; its entry must be within 10 mm of the skin."),
+        (90.0, None),
+    ],
+)
+def test_a_trajectory_enters_through_the_skin(bench, height, sentence):
+    entry = np.array([10.0, 20.0, height])
+    trajectory = replace(WISHES.trajectory, entry=entry)
+    wrong = check_plan(Workbench(replace(bench.scenario, trajectory=trajectory), bench.mesh))
+    assert [each[: len(sentence or "")] for each in wrong] == ([sentence] if sentence else [])
+
+
 def test_a_head_that_stands_too_far_away_is_refused_and_leaves_nothing(tmp_path):
     far = Wishes("Far", "made up", "none", setup=SetUp(head_center=(1500.0, 0.0, 220.0)))
     with pytest.raises(InputError, match="robot") as caught:

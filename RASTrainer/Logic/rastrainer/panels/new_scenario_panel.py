@@ -88,6 +88,8 @@ class NewScenarioPanel:
         ui = self._ui
         return ui.scanComboBox.currentNode(), ScenarioWishes(
             title=ui.titleLineEdit.text,
+            source=ui.sourceLineEdit.text,
+            license=ui.licenseLineEdit.text,
             threshold=_chosen(ui.thresholdSpinBox),
             cutMm=_chosen(ui.cutSpinBox),
             hasSkull=ui.skullCheckBox.checked,

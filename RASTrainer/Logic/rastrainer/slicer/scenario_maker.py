@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.scenario import UNKNOWN_LICENSE, Scenario, load_scenario
 from rastrainer.scenario_package import unpack
 from rastrainer.scenario_setup import SetUp, write_setup
 from rastrainer.scenario_writer import scenario_name
@@ -27,7 +27,6 @@ from rastrainer.slicer.translation import _
 from rastrainer.tasks import LABELS
 
 SOURCE = "The volume {name} in 3D Slicer."
-LICENSE = "Not to be given away: nothing is known about its license."
 PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
 MOST_HAND_PLACED = 6
 
@@ -40,6 +39,8 @@ class ScenarioWishes:
 
     Attributes:
         title: for people; empty takes the volume's name.
+        source: where the images come from; empty names the volume.
+        license: under which the scenario may be used; empty says that nothing is known.
         threshold: value that parts air from skin; None finds it.
         cutMm: height (S) of the flat base; None finds it.
         hasSkull: whether the skull is wanted.
@@ -50,6 +51,8 @@ class ScenarioWishes:
     """
 
     title: str = ""
+    source: str = ""
+    license: str = ""
     threshold: float | None = None
     cutMm: float | None = None
     hasSkull: bool = True
@@ -121,25 +124,26 @@ class ScenarioMaker:
         Raises:
             InputError: something cannot be used; the sentence says what.
         """
-        from rastrainer.slicer.head.scenario_build import BuildRequest, build_scenario
+        from rastrainer.slicer.head.head_draft import make_draft
+        from rastrainer.slicer.head.scenario_build import build_scenario
 
-        volume = self._volume(volumeNode)
+        volume, segment = self._volume(volumeNode), self._segment(volumeNode)
+        settings = self._settings(wishes)
         command, environment = self._simulator.command([], ownProgram)
         title = wishes.title.strip() or volumeNode.GetName()
         folder = self._newFolder(title)
+        source = wishes.source.strip() or SOURCE.format(name=volumeNode.GetName())
+        terms = wishes.license.strip() or UNKNOWN_LICENSE
+        words = [f"--title={title}", f"--source={source}", f"--license={terms}"]
         with tempfile.TemporaryDirectory() as temporary:
-            request = BuildRequest(
-                volume,
+            made = build_scenario(
+                lambda tell: make_draft(volume, settings, wishes.hasSkull, tell, segment),
                 folder,
-                SOURCE.format(name=volumeNode.GetName()),
-                LICENSE,
-                title=title,
-                settings=self._settings(wishes),
-                has_skull=wishes.hasSkull,
-                words=self._words(wishes, Path(temporary)),
-                segment=self._segment(volumeNode),
+                [*words, *self._words(wishes, Path(temporary))],
+                command,
+                environment,
+                progress,
             )
-            made = build_scenario(request, command, environment, progress)
         self._shelf.refresh()
         return made
 

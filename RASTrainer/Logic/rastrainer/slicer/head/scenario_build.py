@@ -14,7 +14,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
@@ -22,46 +21,20 @@ from rastrainer.errors import InputError
 from rastrainer.scenario import Scenario, load_scenario
 from rastrainer.scenario_draft import HeadDraft, write_draft
 from rastrainer.slicer.child_process import ChildProcess
-from rastrainer.slicer.head.extraction import HeadSettings, Progress
-from rastrainer.slicer.head.head_draft import make_draft
-from rastrainer.slicer.head.volume import Volume
+from rastrainer.slicer.head.extraction import Progress
 
 T = TypeVar("T")
 
 HEAD_SHARE = 0.5
 PERIOD_S = 0.1
+_WARNING = "Warning: "
 _PROGRESS = re.compile(r"\s*(\d+)%  (.+)")
 
 
-@dataclass(frozen=True)
-class BuildRequest:
-    """What to build.
-
-    Attributes:
-        volume: of a volume node (`volume_from_node`).
-        folder: to be made; must be new or empty.
-        source: where the images come from, for the scenario's provenance.
-        license: under which the scenario may be used.
-        title: for people; None takes the folder's name.
-        settings: of the head's extraction.
-        has_skull: whether the skull is wanted too.
-        words: further arguments of `rastrainer scenario tasks`, such as `--setup FILE`.
-        segment: the head in the volume (`volume_of_segment`); None finds it.
-    """
-
-    volume: Volume
-    folder: Path
-    source: str
-    license: str
-    title: str | None = None
-    settings: HeadSettings = field(default_factory=HeadSettings)
-    has_skull: bool = True
-    words: tuple[str, ...] = ()
-    segment: Volume | None = None
-
-
 def build_scenario(
-    request: BuildRequest,
+    make: Callable[[Progress], tuple[HeadDraft, list[str]]],
+    folder: Path,
+    words: Sequence[str],
     command: Sequence[str],
     environment: Mapping[str, str] | None = None,
     progress: Progress = lambda _step, _share: None,
@@ -69,7 +42,9 @@ def build_scenario(
     """Build a scenario and return it with warnings, one sentence each.
 
     Args:
-        request: what to build.
+        make: makes the head with its warnings, such as `make_draft`, in a thread of its own.
+        folder: to be made; must be new or empty.
+        words: further arguments of `rastrainer scenario tasks`, such as `--title TITLE`.
         command: words that run `rastrainer` of the simulator's Python.
         environment: of that process; None is this one's.
         progress: told each step's name and the share of the work done, ten times a second; it may
@@ -78,13 +53,12 @@ def build_scenario(
     Raises:
         InputError: the volume, the folder or the simulator's program cannot be used.
     """
-    draft, warnings = in_background(
-        lambda tell: make_draft(
-            request.volume, request.settings, request.has_skull, tell, request.segment
-        ),
-        lambda step, share: progress(step, HEAD_SHARE * share),
-    )
-    return finish_scenario(draft, request, command, environment, progress), warnings
+    draft, warnings = in_background(make, lambda step, share: progress(step, HEAD_SHARE * share))
+    with tempfile.TemporaryDirectory() as temporary:
+        write_draft(Path(temporary), draft)
+        planner = [*command, "scenario", "tasks", temporary, "-o", str(folder), *words]
+        more = _run(planner, environment, progress)
+    return load_scenario(folder), [*warnings, *more]
 
 
 def in_background(work: Callable[[Progress], T], progress: Progress) -> T:
@@ -126,29 +100,13 @@ class _BrokenOffError(Exception):
     """Nobody waits for the work any more."""
 
 
-def finish_scenario(
-    draft: HeadDraft,
-    request: BuildRequest,
-    command: Sequence[str],
-    environment: Mapping[str, str] | None = None,
-    progress: Progress = lambda _step, _share: None,
-) -> Scenario:
-    """Build the scenario of a head that is made already; otherwise as `build_scenario`."""
-    folder = Path(request.folder).absolute()
-    with tempfile.TemporaryDirectory() as temporary:
-        write_draft(Path(temporary), draft)
-        words = ["scenario", "tasks", temporary, "-o", str(folder), *request.words]
-        words += ["--source", request.source, "--license", request.license]
-        if request.title:
-            words += ["--title", request.title]
-        _run([*command, *words], environment, progress)
-    return load_scenario(folder)
-
-
-def _run(command: Sequence[str], environment: Mapping[str, str] | None, progress: Progress) -> None:
-    """Run the planner of tasks to its end; where `progress` raises it is stopped."""
+def _run(
+    command: Sequence[str], environment: Mapping[str, str] | None, progress: Progress
+) -> list[str]:
+    """Run the planner of tasks to its end and return its warnings; `progress` may raise to stop."""
     child = ChildProcess(command, environment)
     step, share, last = "Placing fiducials", HEAD_SHARE, "it said nothing"
+    warnings: list[str] = []
     try:
         while True:
             status = child.exitStatus
@@ -157,6 +115,8 @@ def _run(command: Sequence[str], environment: Mapping[str, str] | None, progress
                 if told:
                     step = told.group(2)
                     share = HEAD_SHARE + (1.0 - HEAD_SHARE) * int(told.group(1)) / 100.0
+                if line.startswith(_WARNING):
+                    warnings.append(line.removeprefix(_WARNING))
                 last = line or last
             progress(step, share)
             if status is not None:
@@ -167,3 +127,4 @@ def _run(command: Sequence[str], environment: Mapping[str, str] | None, progress
         raise
     if status != 0:
         raise InputError(f"The tasks could not be made: {last.removeprefix('rastrainer: ')}")
+    return warnings
