@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName, Proximity, check_arguments
 from rastrainer_simulator.operator_input import Command
+from rastrainer_simulator.record.trial_order import newest_journal
 from rastrainer_simulator.state import StartingPoint
 from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED
 from rastrainer_simulator.training.training import Moment
@@ -107,18 +107,18 @@ class InterruptedTrial:
 
 
 def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | None:
-    """Return the newest journal of a folder with what there is to go on from.
+    """Return the journal of the trial begun last in a folder, with what there is to go on from.
 
-    None where the newest trial was registered or aborted: who has begun another trial since has
-    left an older one behind.
+    None where that trial was registered or aborted: who has begun another trial since has left an
+    older one behind.
 
     Raises:
-        InputError: the newest journal was altered, or cannot be read.
+        InputError: that journal was altered, or cannot be read.
     """
-    paths = sorted(folder.glob(f"*{SUFFIX}"))
-    if not paths or paths[-1].stat().st_size == 0:
+    path = newest_journal(folder)
+    if path is None or path.stat().st_size == 0:
         return None
-    reading = read_journal(paths[-1])
+    reading = read_journal(path)
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial cannot be continued.")
     trial = InterruptedTrial.of(reading.entries) if reading.entries else None

@@ -52,9 +52,17 @@ class TrialEntries:
 
     @classmethod
     def begun(
-        cls, simulation: Simulation, before: SimulationState, result: StepResult, dt: float
+        cls,
+        simulation: Simulation,
+        before: SimulationState,
+        result: StepResult,
+        dt: float,
+        number: int = 0,
     ) -> TrialEntries:
-        """Begin with the header; `before` is the state in which StartTask was carried out."""
+        """Begin with the header; `before` is the state in which StartTask was carried out.
+
+        `number` counts the trials of a folder; where none is recorded it is 0.
+        """
         state = result.state
         training = state.training
         task = simulation.setup.scenario.task(training.task)
@@ -65,6 +73,7 @@ class TrialEntries:
                 "kind": "header",
                 "format": FORMAT,
                 "version": FORMAT_VERSION,
+                "number": number,
                 **times,
                 "trialId": training.trial_id,
                 "trainee": training.trainee,
@@ -157,6 +166,10 @@ class TrialEntries:
         self.pending.append(entry)
         self._recording.add(entry)
 
+    def motion(self) -> dict[str, float]:
+        """Return the motion metrics of the trial so far."""
+        return trial_motion(self._recording.trajectory())
+
     def taken(self) -> list[dict[str, Any]]:
         """Return what is pending, which then counts as handed over."""
         taken, self.pending = self.pending, []
@@ -207,7 +220,7 @@ class TrialEntries:
             rejected_touches=training.rejected,
             undone_touches=training.undone,
             versions=self.versions,
-            motion=trial_motion(self._recording.trajectory()),
+            motion=self.motion(),
             display=self._display.summary(),
         )
 

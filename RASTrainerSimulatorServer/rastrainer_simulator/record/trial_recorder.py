@@ -16,6 +16,7 @@ from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.stamps import file_stamp, stamp
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
+from rastrainer_simulator.record.trial_order import newest_journal, number_of
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
 
@@ -57,6 +58,8 @@ class TrialRecorder:
         self._registering: Future[Any] | None = None
         self._is_stuck = False
         self._waiting: tuple[JournalReading, float] | None = None
+        newest = newest_journal(folder)
+        self._number = 0 if newest is None else number_of(newest)
 
     def take_up(self, simulation: Simulation, reading: JournalReading) -> None:
         """Go on with the journal of the trial that the simulation has just taken up.
@@ -111,7 +114,8 @@ class TrialRecorder:
         self._hand_over_and_leave()
 
     def _begin(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
-        self._entries = TrialEntries.begun(simulation, before, result, self._dt)
+        self._number += 1
+        self._entries = TrialEntries.begun(simulation, before, result, self._dt, self._number)
         name = f"{file_stamp(self._entries.started_utc)}_{self._entries.trial_id}{SUFFIX}"
         self._journal = Journal(self._folder / name)
         self._registering = None

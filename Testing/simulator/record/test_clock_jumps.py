@@ -14,6 +14,7 @@ from rastrainer.study import Study
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.record import stamps
+from rastrainer_simulator.record.interrupted_trial import find_interrupted
 from rastrainer_simulator.record.replay import replay
 from rastrainer_simulator.record.trial_archive import SUFFIX
 
@@ -67,3 +68,45 @@ def test_a_clock_that_jumps_in_a_trial_changes_no_duration(
     with Study.open(tmp_path / "study.db") as study:
         assert study.add_trial(record)
         assert study.history("P01")[0].record.completion_time_s == record.completion_time_s
+
+
+def play(loop, trainee, is_ended):
+    """Begin a trial and touch two points; return its ID."""
+    for command in (CommandName.ABORT, CommandName.START_TASK, *[CommandName.CAPTURE] * 2):
+        words = {"task": "task-1", "trainee": trainee}
+        arguments = words if command == CommandName.START_TASK else {}
+        answer = loop.submit(command, check_arguments(command, arguments)).result(PATIENCE_S)
+        assert answer.ok or command == CommandName.ABORT, answer.message
+    if is_ended:
+        assert loop.submit(CommandName.ABORT).result(PATIENCE_S).ok
+    return loop.latest.training.trial_id
+
+
+@pytest.mark.parametrize("minutes", [-5, -600_000])
+@pytest.mark.parametrize("restarts", [False, True], ids=["in one server", "with a restart between"])
+def test_the_trial_begun_last_is_gone_on_with_however_the_clock_was_set_back_before_it(
+    simulation, tmp_path, jumping, minutes, restarts
+):
+    with ControlLoop(simulation, tmp_path, speed=None) as first:
+        play(first, "P01", is_ended=True)
+        jumping.by += timedelta(minutes=minutes)
+        if not restarts:
+            last = play(first, "P02", is_ended=False)
+    if restarts:
+        with ControlLoop(simulation, tmp_path, speed=None) as second:
+            last = play(second, "P02", is_ended=False)
+    names = sorted(tmp_path.glob(f"*{SUFFIX}"))
+    assert last in names[0].name
+    reading, interrupted = find_interrupted(tmp_path)
+    assert reading.path == names[0]
+    assert interrupted.header["trainee"] == "P02"
+    assert [read_journal(path).header["number"] for path in names] == [2, 1]
+
+
+def test_a_journal_without_a_number_is_older_than_any_with_one(simulation, tmp_path):
+    with ControlLoop(simulation, tmp_path, speed=None) as loop:
+        play(loop, "P01", is_ended=False)
+    (path,) = tmp_path.glob(f"*{SUFFIX}")
+    header = path.read_bytes().splitlines(keepends=True)[0]
+    (tmp_path / f"29990101T000000Z_x{SUFFIX}").write_bytes(header.replace(b'"number":1,', b"", 1))
+    assert find_interrupted(tmp_path)[0].path == path
