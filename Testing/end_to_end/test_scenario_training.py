@@ -16,7 +16,7 @@ from rastrainer.scenario_writer import new_folder, write_scenario
 from Testing.domain.made_up_scenario import ball_head, made_up_scenario
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.head.phantoms import phantom
-from Testing.slicer.head.volume_file import write_nrrd
+from Testing.slicer.head.volume_file import write_volume
 
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli", "scenario"]
 
@@ -61,7 +61,7 @@ def test_a_scenario_of_the_library_is_trained_on_by_its_name(environment, tmp_pa
 def test_a_volume_is_built_loaded_and_trained_on_by_the_command_line(environment, tmp_path):
     options = ("--no-views", "--no-gamepad")
     with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
-        volume = write_nrrd(tmp_path / "head.nrrd", phantom(spacing=(1.0, 1.0, 1.2), noise=2.0))
+        volume = write_volume(tmp_path / "head.nrrd", phantom(spacing=(1.0, 1.0, 1.2), noise=2.0))
         folder = user_library() / "my-head"
         words = ["build", str(volume), "-o", str(folder), "--title", "My head"]
         subprocess.run([*RASTRAINER, *words], check=True, env=environment)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.slicer.head.volume import Volume
-from Testing.slicer.head.volume_file import write_nrrd
+from Testing.slicer.head.volume_file import write_volume
 
 COLIN27 = Path("/usr/share/mricron/templates/ch2.nii.gz")
 CT_PROJECT = Path("/usr/share/doc/invesalius-examples/examples/Cranium.inv3")
@@ -30,4 +30,4 @@ def write_ct(path: Path) -> Path:
     values = np.frombuffer(values, np.int16).reshape(shape)[:, ::-1].transpose(2, 1, 0)
     across, along, up = spacing
     # From LPS to RAS.
-    return write_nrrd(path, Volume(values, np.diag([-across, -along, up, 1.0])))
+    return write_volume(path, Volume(values, np.diag([-across, -along, up, 1.0])))

@@ -1,6 +1,7 @@
 """Heads of which everything is known: an egg with nose, skull and neck, as MRI or CT."""
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from rastrainer.slicer.head.volume import Volume
 
@@ -9,6 +10,9 @@ NOSE = np.array([0.0, 74.0, -22.0])
 SCALP_MM, SKULL_MM = 6.0, 6.0
 MRI = {"scalp": 100.0, "bone": 10.0, "brain": 75.0, "air": 0.0}
 CT = {"scalp": 40.0, "bone": 1100.0, "brain": 30.0, "air": -1000.0}
+DOUBLE_OBLIQUE = Rotation.from_euler("xyz", [12.0, -8.0, 15.0], degrees=True).as_matrix()
+SAGITTAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+"""Rows of a slice run to the back, its columns down, and slices from the left to the right."""
 
 
 def depth_mm(ras):
@@ -22,14 +26,28 @@ def depth_mm(ras):
     return np.maximum(np.maximum(egg, neck), nose)
 
 
-def phantom(values=MRI, spacing=(1.0, 1.0, 1.0), lowest=-62.0, turn_deg=0.0, noise=0.0):
-    """Return a head as a volume with partial volume at the skin."""
+def phantom(
+    values=MRI,
+    spacing=(1.0, 1.0, 1.0),
+    lowest=-62.0,
+    turn_deg=0.0,
+    noise=0.0,
+    axes=None,
+    shape=None,
+):
+    """Return a head as a volume with partial volume at the skin.
+
+    It is turned in the scanner about S, or stored along `axes`, the columns of (3, 3). As many
+    voxels as the head needs are there, or those of `shape`.
+    """
     spacing = np.array(spacing, dtype=float)
     low, high = np.array([-78.0, -92.0, lowest]), np.array([78.0, 98.0, 82.0])
-    shape = np.ceil((high - low) / spacing).astype(int)
     c, s = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
+    extent = high - low if axes is None else np.abs(axes).T @ (high - low)
+    axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) if axes is None else axes
+    shape = np.ceil(extent / spacing).astype(int) if shape is None else np.array(shape)
     matrix = np.eye(4)
-    matrix[:3, :3] = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.diag(spacing)
+    matrix[:3, :3] = axes @ np.diag(spacing)
     middle = (low + high) / 2.0
     matrix[:3, 3] = middle - matrix[:3, :3] @ ((shape - 1) / 2.0)
     ijk = np.indices(shape).reshape(3, -1).T

@@ -1,26 +1,29 @@
-"""Write a volume as a file that Slicer reads."""
+"""Write a volume as a file that Slicer reads, by Slicer's own writer."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
+import slicer
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.slicer.head.volume import Volume
 
 
-def write_nrrd(path: Path, volume: Volume) -> Path:
-    """Write a volume as an NRRD file of 16-bit integers and return its path."""
-    # NRRD tells places as LPS here, as Slicer's own writer does.
-    to_lps = np.diag([-1.0, -1.0, 1.0]) @ volume.ijk_to_ras[:3]
-    directions = " ".join("({},{},{})".format(*to_lps[:, axis]) for axis in range(3))
-    origin = "({},{},{})".format(*to_lps[:, 3])
-    sizes = " ".join(map(str, volume.values.shape))
-    header = (
-        "NRRD0005\ntype: short\ndimension: 3\nspace: left-posterior-superior\n"
-        f"sizes: {sizes}\nspace directions: {directions}\nspace origin: {origin}\n"
-        "endian: little\nencoding: raw\n\n"
-    )
-    values = np.ascontiguousarray(volume.values.transpose(2, 1, 0)).round().astype("<i2")
-    path.write_bytes(header.encode() + values.tobytes())
+def write_volume(path: Path, volume: Volume, is_compressed: bool = True) -> Path:
+    """Write a volume in the format that the name ends with, such as `.nii.gz`; return its path."""
+    image = vtk.vtkImageData()
+    image.SetDimensions(volume.values.shape)
+    image.GetPointData().SetScalars(numpy_to_vtk(volume.values.ravel(order="F"), deep=True))
+    matrix = vtk.vtkMatrix4x4()
+    matrix.DeepCopy(volume.ijk_to_ras.ravel().tolist())
+    scene = slicer.vtkMRMLScene()
+    node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
+    node.SetAndObserveImageData(image)
+    node.SetIJKToRASMatrix(matrix)
+    storage = slicer.vtkMRMLVolumeArchetypeStorageNode()
+    storage.SetFileName(str(path))
+    storage.SetUseCompression(is_compressed)
+    assert storage.WriteData(node)
     return path
