@@ -10,7 +10,9 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.scenario import UNKNOWN_LICENSE
 from rastrainer.scenario_library import list_scenarios, user_library
-from rastrainer.scenario_package import pack, unpack
+from rastrainer.scenario_package import unpack
+
+ALL_RIGHT = "Set-up, plan and fiducials can be used."
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -39,10 +41,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     check = parts.add_parser("check", help="say what is wrong with a scenario; status 1 if any")
     check.add_argument("folder", type=Path, metavar="DIR")
     check.set_defaults(run=_check)
-    packing = parts.add_parser("pack", help="write a scenario as one zip file, without the face")
+    packing = parts.add_parser(
+        "pack", help="write a scenario as one zip file, without face, title and source"
+    )
     packing.add_argument("folder", type=Path, metavar="DIR")
     packing.add_argument("package", type=Path, metavar="ZIP")
     packing.add_argument("--keep-face", action="store_true", help="the patient may be recognized")
+    packing.add_argument("--keep-names", action="store_true", help="title, name and source, too")
     packing.set_defaults(run=_pack)
     unpacking = parts.add_parser("unpack", help="unpack a scenario into your library")
     unpacking.add_argument("package", type=Path, metavar="ZIP")
@@ -97,21 +102,32 @@ def _add_wishes(parser: argparse.ArgumentParser) -> None:
         metavar="MRK_JSON",
         help="fiducials placed by hand: the trial run, Task 1, Task 2 …",
     )
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="only say whether set-up, plan and placed fiducials can be used; make nothing",
+    )
 
 
 def _build(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.scenarios.head_process import head_process
-    from rastrainer_simulator.scenarios.make import make_scenario
+    from rastrainer_simulator.scenarios.make import check_wishes, make_scenario
     from rastrainer_simulator.scenarios.wishes import wishes_of
 
     _clear_away_when_terminated()
     wishes = wishes_of(arguments, arguments.volume.name)
     if arguments.output.exists() and any(arguments.output.iterdir()):
         raise InputError(f"{arguments.output} is there already; name a folder that is new.")
-    options = [*_head_options(arguments), *(["--no-skull"] if arguments.no_skull else [])]
+    has_no_skull = arguments.no_skull or arguments.check
+    options = [*_head_options(arguments), *(["--no-skull"] if has_no_skull else [])]
     with head_process(arguments.volume, options) as process:
+        head = process.head(lambda step, share: _tell(step, 0.5 * share), _warn)
+        if arguments.check:
+            check_wishes(head, wishes, _tell, _warn)
+            print(ALL_RIGHT)
+            return 0
         scenario = make_scenario(
-            process.head(lambda step, share: _tell(step, 0.5 * share), _warn),
+            head,
             wishes,
             arguments.output,
             lambda step, share: _tell(step, 0.5 + 0.5 * share),
@@ -127,12 +143,16 @@ def _build(arguments: argparse.Namespace) -> int:
 
 def _tasks(arguments: argparse.Namespace) -> int:
     from rastrainer.scenario_draft import read_draft
-    from rastrainer_simulator.scenarios.make import make_scenario
+    from rastrainer_simulator.scenarios.make import check_wishes, make_scenario
     from rastrainer_simulator.scenarios.wishes import wishes_of
 
     _clear_away_when_terminated()
-    wishes = wishes_of(arguments, "unknown")
-    make_scenario(read_draft(arguments.draft), wishes, arguments.output, _tell, warn=_warn)
+    wishes, draft = wishes_of(arguments, "unknown"), read_draft(arguments.draft)
+    if arguments.check:
+        check_wishes(draft, wishes, _tell, _warn)
+        print(ALL_RIGHT)
+    else:
+        make_scenario(draft, wishes, arguments.output, _tell, warn=_warn)
     return 0
 
 
@@ -159,12 +179,12 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _pack(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.scenarios.export import pack_without_face
+    from rastrainer_simulator.scenarios.export import pack_for_others
 
-    packed = (pack if arguments.keep_face else pack_without_face)(
-        arguments.folder, arguments.package
-    )
-    print(f"{packed} ({packed.stat().st_size / 1e6:.1f} MB)")
+    package = arguments.package
+    taken = pack_for_others(arguments.folder, package, arguments.keep_face, arguments.keep_names)
+    print(f"{package} ({package.stat().st_size / 1e6:.1f} MB)")
+    print(taken)
     return 0
 
 

@@ -1,46 +1,84 @@
-"""Pack a scenario for others, without the patient's face unless it is wanted."""
+"""Pack a scenario for others, without what tells whose head it is unless that is wanted."""
 
 from __future__ import annotations
 
+import hashlib
+import shutil
 import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.face_removal import without_face
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.scenario import PREVIEW_NAME
+from rastrainer.head_mesh import HeadMesh, read_head_mesh
+from rastrainer.scenario import PREVIEW_NAME, Scenario
 from rastrainer.scenario_package import checked_scenario, pack
-from rastrainer.scenario_writer import write_scenario
+from rastrainer.scenario_writer import scenario_name, write_scenario
 from rastrainer.surface_queries import nearest_on_mesh
 from rastrainer_simulator.planning.task_check import ON_SKIN_MM
 from rastrainer_simulator.scenarios.picture import draw_preview
 
 FACELESS = " The face was taken off."
+NO_SOURCE = "Taken off before the scenario was given on."
 
 
-def pack_without_face(folder: Path, package: Path) -> Path:
-    """Write a scenario as one zip file in which head and picture have no face, and no skull is.
+def pack_for_others(
+    folder: Path, package: Path, keeps_face: bool = False, keeps_names: bool = False
+) -> str:
+    """Write a scenario as one zip file and return a sentence that says what was taken off.
+
+    Args:
+        folder: of the scenario, which stays as it is.
+        package: the new file.
+        keeps_face: leave the head, its picture and its skull as they are; else head and picture
+            have no face, and no skull is given on.
+        keeps_names: leave title, name and source, which often are the patient's name, as they
+            are; else the scenario is called by a number that is made of its head's surface.
 
     Raises:
         InputError: the scenario cannot be used, or has fiducials on the face.
     """
-    scenario = checked_scenario(folder)
-    head = without_face(read_head_mesh(scenario.head_mesh))
+    scenario, taken = checked_scenario(folder), []
+    head = read_head_mesh(scenario.head_mesh)
+    skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    preview = scenario.preview
+    if not keeps_face:
+        scenario, head, skull = *_faceless(scenario, head), None
+        taken += ["the face", "the skull"] if scenario.skull_mesh else ["the face"]
+    if not keeps_names:
+        scenario = _nameless(scenario, head)
+        taken += ["its title", "its name", "its source"]
+    with tempfile.TemporaryDirectory() as temporary:
+        clean = Path(temporary)
+        write_scenario(clean, scenario, head, skull)
+        if not keeps_face:
+            draw_preview(clean / PREVIEW_NAME, scenario, head)
+        elif preview:
+            shutil.copyfile(preview, clean / PREVIEW_NAME)
+        pack(clean, package)
+    if not taken:
+        return "Nothing was taken off."
+    return f"Taken off: {', '.join(taken)}. It is called {scenario.title} now."
+
+
+def _faceless(scenario: Scenario, head: HeadMesh) -> tuple[Scenario, HeadMesh]:
+    head = without_face(head)
     for task in scenario.tasks:
         away = [nearest_on_mesh(head, point).distance for point in task.fiducials]
         lost = [label for label, d in zip(task.labels, away, strict=True) if d > ON_SKIN_MM]
         if lost:
             raise InputError(
                 f"{task.title} has fiducials on the face ({', '.join(lost)}), which would be taken "
-                "off; move them, or pack with --keep-face."
+                "off; move them, or keep the face."
             )
     provenance = scenario.provenance
     if not provenance.method.endswith(FACELESS):
         provenance = replace(provenance, method=provenance.method + FACELESS)
-    scenario = replace(scenario, provenance=provenance, skull_mesh=None)
-    with tempfile.TemporaryDirectory() as temporary:
-        clean = Path(temporary)
-        write_scenario(clean, scenario, head)
-        draw_preview(clean / PREVIEW_NAME, scenario, head)
-        return pack(clean, package)
+    return replace(scenario, provenance=provenance), head
+
+
+def _nameless(scenario: Scenario, head: HeadMesh) -> Scenario:
+    number = hashlib.sha256(head.vertices.astype("<f4").tobytes()).hexdigest()[:6]
+    title = f"Head {number}"
+    provenance = replace(scenario.provenance, source=NO_SOURCE)
+    return replace(scenario, name=scenario_name(title), title=title, provenance=provenance)

@@ -1,5 +1,8 @@
-"""What leaves the house: without the face unless somebody wants it kept."""
+"""What leaves the house: without face and names unless somebody wants them kept."""
 
+import json
+import re
+import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -34,8 +37,13 @@ def folder(tmp_path):
     return written(tmp_path / "egg", np.argsort(-egg().vertices[:, 2])[:300:20])
 
 
-def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(folder, tmp_path):
+def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(
+    folder, tmp_path, capsys
+):
     assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 0
+    assert "Taken off: the face, the skull, its title, its name, its source." in (
+        capsys.readouterr().out
+    )
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
     head, before = read_head_mesh(given.head_mesh), egg()
     nose = before.vertices[face_vertices(before)][:, 1].max()
@@ -47,13 +55,35 @@ def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(fol
     assert max(away) < 0.05
 
 
-def test_the_face_is_kept_where_that_is_wanted(folder, tmp_path):
+def test_face_and_names_are_kept_where_that_is_wanted(folder, tmp_path, capsys):
     words = ["scenario", "pack", str(folder), str(tmp_path / "out.zip"), "--keep-face"]
-    assert main(words) == 0
+    assert main([*words, "--keep-names"]) == 0
+    assert "Nothing was taken off." in capsys.readouterr().out
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
     assert given.head_mesh.read_bytes() == (folder / "head.ply").read_bytes()
     assert given.skull_mesh is not None
     assert given.preview.read_bytes() == png()
+    before = load_scenario(folder)
+    assert (given.name, given.title) == (before.name, before.title)
+    assert given.provenance == before.provenance
+
+
+def test_by_default_nothing_in_the_file_tells_the_title_or_the_source(tmp_path):
+    folder = written(tmp_path / "egg", np.argsort(-egg().vertices[:, 2])[:300:20])
+    path = folder / "scenario.json"
+    content = json.loads(path.read_text())
+    content |= {"title": "Erika Mustermann", "name": "erika-mustermann"}
+    content["provenance"]["source"] = "mustermann_erika_t1.nii.gz"
+    path.write_text(json.dumps(content))
+    words = ["scenario", "pack", str(folder), str(tmp_path / "out.zip"), "--keep-face"]
+    assert main(words) == 0
+    with zipfile.ZipFile(tmp_path / "out.zip") as archive:
+        packed = [name.encode() + archive.read(name) for name in archive.namelist()]
+    assert b"mustermann" not in b"".join(packed).lower()
+    given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
+    assert re.fullmatch("head-[0-9a-f]{6}", given.name)
+    assert given.provenance.license == content["provenance"]["license"]
+    assert given.targets[0].name == "Cyst"
 
 
 def test_fiducials_on_the_face_are_told_and_nothing_is_written(tmp_path, capsys):

@@ -91,14 +91,19 @@ class ScenarioPanel:
         """Write the chosen scenario as a zip file."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not saved."), waitCursor=True):
             name = chosenData(self._ui.scenarioComboBox)
+            keepsFace = not self._ui.removeFaceCheckBox.checked
+            keepsNames = not self._ui.removeNamesCheckBox.checked
+            # A file that is called as the patient would tell the name, too.
+            proposed = f"{name}.zip" if keepsNames else "head.zip"
             path = qt.QFileDialog.getSaveFileName(
-                slicer.util.mainWindow(), _("Save the scenario"), f"{name}.zip", "Zip (*.zip)"
+                slicer.util.mainWindow(), _("Save the scenario"), proposed, "Zip (*.zip)"
             )
             if path:
                 own = self._ui.programPathLineEdit.currentPath
-                keepsFace = not self._ui.removeFaceCheckBox.checked
-                self._session.scenarioMaker.give(name, Path(path), keepsFace, own)
-                self._tell(_("{path} is written.").format(path=path))
+                taken = self._session.scenarioMaker.give(
+                    name, Path(path), keepsFace, keepsNames, own
+                )
+                self._tell(_("{path} is written.").format(path=path) + f" {taken}")
 
     def goOnWith(self, name: str) -> None:
         """Choose a scenario that has just been made, show it, and have the simulator take it."""

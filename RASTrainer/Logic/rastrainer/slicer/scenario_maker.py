@@ -157,21 +157,36 @@ class ScenarioMaker:
         self._shelf.refresh()
         return load_scenario(folder)
 
-    def give(self, name: str, package: Path, keepsFace: bool, ownProgram: str = "") -> None:
-        """Write a scenario as a zip file, without the face unless that is wanted.
+    def give(
+        self,
+        name: str,
+        package: Path,
+        keepsFace: bool = False,
+        keepsNames: bool = False,
+        ownProgram: str = "",
+    ) -> str:
+        """Write a scenario as a zip file and return a sentence that says what was taken off.
+
+        Args:
+            name: of the scenario.
+            package: the new file.
+            keepsFace: whether the head keeps its face and skull.
+            keepsNames: whether title, name and source stay, which may be the patient's name.
+            ownProgram: as in `make`.
 
         Raises:
             InputError: it cannot be written.
         """
         words = ["scenario", "pack", str(self._shelf.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else []
+        words += ["--keep-names"] if keepsNames else []
         command, environment = self._simulator.command(words, ownProgram)
         child = ChildProcess(command, environment)
         status = child.wait()
+        said = [line for line in child.takeLines() if line] or [_("it said nothing")]
         if status != 0:
-            said = [line for line in child.takeLines() if line]
-            reason = said[-1] if said else _("it said nothing")
-            raise InputError(reason.removeprefix("rastrainer: "))
+            raise InputError(said[-1].removeprefix("rastrainer: "))
+        return said[-1]
 
     def _newFolder(self, title: str) -> Path:
         """Return where a scenario of that title comes.
