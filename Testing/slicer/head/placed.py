@@ -16,9 +16,7 @@ def add_volume(scene, volume, name):
     """Return a volume node of the scene with an image of `Volume`."""
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", name)
     slicer.util.updateVolumeFromArray(node, volume.values.transpose(2, 1, 0).copy())
-    matrix = vtk.vtkMatrix4x4()
-    matrix.DeepCopy(volume.ijk_to_ras.ravel().tolist())
-    node.SetIJKToRASMatrix(matrix)
+    node.SetIJKToRASMatrix(vtk_matrix(volume.ijk_to_ras))
     return node
 
 
@@ -32,3 +30,19 @@ def fiducials():
         directions.append(np.stack([*ring, np.full(count, np.cos(polar))], axis=1))
     directions = np.concatenate(directions)
     return directions / np.linalg.norm(directions / SEMI_AXES, axis=1, keepdims=True)
+
+
+def add_transform(scene, shift):
+    """Return a linear transform node of the scene that shifts by (3,), RAS mm."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = shift
+    node = scene.AddNewNodeByClass("vtkMRMLLinearTransformNode", "Moved")
+    node.SetMatrixTransformToParent(vtk_matrix(matrix))
+    return node
+
+
+def vtk_matrix(values):
+    """Return a (4, 4) array as VTK's matrix."""
+    matrix = vtk.vtkMatrix4x4()
+    matrix.DeepCopy(values.ravel().tolist())
+    return matrix

@@ -1,12 +1,10 @@
-"""MRI, CT and edited segments of the same head give the same skin; the skull is what it is."""
+"""MRI and CT of the same head give the same skin; the skull is what it is."""
 
 import numpy as np
 import pytest
 
-from rastrainer.errors import InputError
-from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, extract_head, find_head
+from rastrainer.slicer.head.extraction import HeadSettings, find_head
 from rastrainer.slicer.head.head_draft import make_draft
-from rastrainer.slicer.head.segment import for_segment, show_segment, volume_of_segment
 from rastrainer.slicer.head.volume import Volume
 from Testing.slicer.head.phantoms import CT, NOSE, SCALP_MM, depth_mm, phantom
 
@@ -66,27 +64,3 @@ def test_a_scan_that_goes_on_below_the_neck_is_cut_200_mm_below_the_crown():
     scan = Volume(values, np.diag([3.0, 3.0, 3.0, 1.0]))
     found = find_head(scan, HeadSettings(), lambda _step, _share: None)
     assert found.base_mm == pytest.approx(245.0 - 200.0, abs=3.0)
-
-
-def test_the_head_goes_into_a_segment_and_comes_back(scene):
-    grid = np.indices((70, 70, 60)).transpose(1, 2, 3, 0) - [35.0, 35.0, 20.0]
-    distance = np.linalg.norm(grid, axis=3)
-    level = np.clip(30.0 - distance, -1.0, 1.0)
-    origin = np.array([-35.0, -30.0, -20.0])
-    found = HeadBody(level, level > 0, origin, -10.0, 50.0, False)
-    node = scene.AddNewNodeByClass("vtkMRMLSegmentationNode")
-    show_segment(node, found)
-    segment = show_segment(node, found)
-    assert node.GetSegmentation().GetNumberOfSegments() == 1
-    settings = for_segment(HeadSettings(base_mm=-10.0))
-    mesh = extract_head(volume_of_segment(node, segment), settings)
-    assert is_one_closed_body(mesh)
-    upper = mesh.vertices[mesh.vertices[:, 2] > -8.0]
-    away = np.linalg.norm(upper - [0.0, 5.0, 0.0], axis=1) - 30.0
-    assert np.abs(away).mean() < 0.5
-
-
-def test_an_empty_segment_is_answered_with_a_sentence(scene):
-    node = scene.AddNewNodeByClass("vtkMRMLSegmentationNode")
-    with pytest.raises(InputError, match="segment of the head is not there"):
-        volume_of_segment(node, "Segment_1")

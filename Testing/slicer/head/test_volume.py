@@ -4,7 +4,8 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.volume import read_volume, volume_from_node
+from rastrainer.slicer.head.volume import Volume, read_volume, volume_from_node
+from Testing.slicer.head.placed import add_transform, add_volume
 
 
 def test_a_voxel_is_found_where_slicer_says_that_it_is(scene):
@@ -21,6 +22,23 @@ def test_a_voxel_is_found_where_slicer_says_that_it_is(scene):
     volume = volume_from_node(node)
     assert np.argwhere(volume.values == 100).tolist() == [[1, 2, 3]]
     assert (volume.ijk_to_ras @ [1, 2, 3, 1])[:3].tolist() == [-10 - 6, 20 + 2, 30 + 12]
+
+
+def test_a_volume_lies_where_its_transforms_place_it(scene):
+    node = add_volume(scene, Volume(np.zeros((5, 6, 7), np.float32), np.eye(4)), "MRI")
+    outer, inner = add_transform(scene, [1.0, 2.0, 3.0]), add_transform(scene, [10.0, 0.0, 0.0])
+    inner.SetAndObserveTransformNodeID(outer.GetID())
+    node.SetAndObserveTransformNodeID(inner.GetID())
+    assert (volume_from_node(node).ijk_to_ras @ [1, 1, 1, 1])[:3].tolist() == [12, 3, 4]
+
+
+def test_a_transform_that_is_not_linear_is_refused_with_a_sentence(scene):
+    node = add_volume(scene, Volume(np.zeros((5, 6, 7), np.float32), np.eye(4)), "MRI")
+    bent = scene.AddNewNodeByClass("vtkMRMLGridTransformNode", "Bent")
+    bent.SetAndObserveTransformToParent(vtk.vtkThinPlateSplineTransform())
+    node.SetAndObserveTransformNodeID(bent.GetID())
+    with pytest.raises(InputError, match="under the transform Bent, which is not linear"):
+        volume_from_node(node)
 
 
 def test_a_missing_volume_is_named(tmp_path):

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from rastrainer.head_mesh import HeadMesh
 from rastrainer.scenario_draft import HeadDraft
 from rastrainer.slicer.head.dicom_series import read_dicom_folder
 from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, Progress, find_head, skin_of
@@ -46,16 +47,9 @@ def make_draft(
     Raises:
         InputError: the volume cannot be used, or there is no head in it or no bone in a CT.
     """
-    settings = settings or HeadSettings()
-    warnings = check_volume(volume)
-    if segment is not None:
-        settings = for_segment(settings)
-    searched = volume if segment is None else segment
-    found = find_head(searched, settings, lambda step, share: progress(step, 0.8 * share))
-    if segment is not None:
-        found = replace(found, is_ct=is_hounsfield(volume.values))
-    mesh = skin_of(found, settings, lambda step, share: progress(step, 0.8 * share))
-    check_head(mesh)
+    found, mesh, warnings = find_skin(
+        volume, settings, lambda step, share: progress(step, 0.8 * share), segment
+    )
     draft = HeadDraft(mesh, _head_method(found, segment is not None))
     head_made(draft, warnings)
     if has_skull:
@@ -64,6 +58,25 @@ def make_draft(
         draft = HeadDraft(mesh, method, skull_of(volume, found), not found.is_ct)
     progress("Done", 1.0)
     return draft, warnings
+
+
+def find_skin(
+    volume: Volume,
+    settings: HeadSettings | None = None,
+    progress: Progress = lambda _step, _share: None,
+    segment: Volume | None = None,
+) -> tuple[HeadBody, HeadMesh, list[str]]:
+    """Return a head as voxels and as a surface, and warnings; otherwise as `make_draft`."""
+    settings = settings or HeadSettings()
+    warnings = check_volume(volume)
+    if segment is not None:
+        settings = for_segment(settings)
+    found = find_head(volume if segment is None else segment, settings, progress)
+    if segment is not None:
+        found = replace(found, is_ct=is_hounsfield(volume.values))
+    mesh = skin_of(found, settings, progress)
+    check_head(mesh)
+    return found, mesh, warnings
 
 
 def _head_method(found: HeadBody, is_segment: bool) -> str:

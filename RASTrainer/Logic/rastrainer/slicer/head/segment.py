@@ -12,20 +12,31 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.extraction import SPACING_MM, HeadBody, HeadSettings
-from rastrainer.slicer.head.volume import Volume, matrix_of
+from rastrainer.slicer.head.volume import Volume, matrix_of, on_ras_grid, to_world
 
 SEGMENT_NAME = "Head"
+BASE_TAG = "RASTrainer.baseMm"
 EDITED_NOISE_MM = 0.8
+BELOW_BASE_MM = 3.0
+"""So far a segment goes on below the base: its own end is not yet felt where the base is cut."""
+
 _HALF = 0.5
+_AIR = 2
 
 
 def show_segment(node: Any, head: HeadBody) -> str:
-    """Put a head into a `vtkMRMLSegmentationNode` as a segment and return the segment's ID."""
+    """Put a head into a `vtkMRMLSegmentationNode` as a segment and return the segment's ID.
+
+    The segment ends 3 mm below the head's base, whose height (S) is kept in its tag `BASE_TAG`.
+    """
+    below = max(0, round((head.base_mm - BELOW_BASE_MM - head.origin[2]) / SPACING_MM))
+    body = head.body[:, :, below:]
     image = slicer.vtkOrientedImageData()
-    image.SetDimensions(head.body.shape)
+    image.SetDimensions(body.shape)
     image.SetSpacing([SPACING_MM] * 3)
-    image.SetOrigin(head.origin)
-    voxels = np.ascontiguousarray(head.body.transpose(2, 1, 0), np.uint8).ravel()
+    right, anterior, superior = head.origin
+    image.SetOrigin(right, anterior, superior + below * SPACING_MM)
+    voxels = np.ascontiguousarray(body.transpose(2, 1, 0), np.uint8).ravel()
     image.GetPointData().SetScalars(numpy_to_vtk(voxels, deep=True))
     segmentation = node.GetSegmentation()
     former = segmentation.GetSegmentIdBySegmentName(SEGMENT_NAME)
@@ -34,16 +45,21 @@ def show_segment(node: Any, head: HeadBody) -> str:
     name = slicer.vtkSegmentationConverter.GetSegmentationBinaryLabelmapRepresentationName()
     segment = slicer.vtkSegment()
     segment.SetName(SEGMENT_NAME)
+    segment.SetTag(BASE_TAG, repr(float(head.base_mm)))
     segment.AddRepresentation(name, image)
     segmentation.AddSegment(segment)
     return segmentation.GetSegmentIdBySegmentName(SEGMENT_NAME)
 
 
 def volume_of_segment(node: Any, segment_id: str) -> Volume:
-    """Return a segment as a volume of zeros and ones, for `extract_head` with `for_segment`.
+    """Return a segment as a volume of zeros and ones, for `find_head` with `for_segment`.
+
+    Its grid is of 1 mm along RAS, whatever grid the Segment Editor has given the segment. It
+    begins so that the base is cut where it was (to half a voxel) when the segment was shown, or,
+    where the segment ends higher by now, just above that end.
 
     Raises:
-        InputError: the segment is empty or not there.
+        InputError: the segment is empty or not there, or its transform is not linear.
     """
     image = slicer.vtkOrientedImageData()
     if not segment_id or not node.GetBinaryLabelmapRepresentation(segment_id, image):
@@ -54,15 +70,39 @@ def volume_of_segment(node: Any, segment_id: str) -> Volume:
     matrix = vtk.vtkMatrix4x4()
     image.GetImageToWorldMatrix(matrix)
     first = np.array(image.GetExtent()[::2], dtype=float)
-    to_ras = matrix_of(matrix)
-    to_ras[:3, 3] += to_ras[:3, :3] @ first
-    values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
+    to_ras = to_world(node) @ matrix_of(matrix)
     # The segment's image ends where the segment does: there has to be air around it.
-    padded = np.pad((values > 0).astype(np.float32), [(2, 2), (2, 2), (0, 2)])
-    to_ras[:3, 3] -= to_ras[:3, :3] @ [2.0, 2.0, 0.0]
-    return Volume(padded, to_ras)
+    to_ras[:3, 3] += to_ras[:3, :3] @ (first - _AIR)
+    values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
+    padded = np.pad((values > 0).astype(np.float32), _AIR)
+    grid = on_ras_grid(Volume(padded, to_ras), SPACING_MM)
+    return _from_base(grid, _base_of(node, segment_id))
 
 
 def for_segment(settings: HeadSettings) -> HeadSettings:
     """Return the settings for a segment's volume."""
     return replace(settings, threshold=_HALF, noise_mm=EDITED_NOISE_MM)
+
+
+def _base_of(node: Any, segment_id: str) -> float:
+    """Return the height (S) of the base that was shown with a segment, −∞ where none was."""
+    tag = vtk.reference("")
+    if not node.GetSegmentation().GetSegment(segment_id).GetTag(BASE_TAG, tag):
+        return -np.inf
+    bounds = [0.0] * 6
+    node.GetSegmentation().GetBounds(bounds)
+    middle = [np.mean(bounds[:2]), np.mean(bounds[2:4]), float(tag.get()), 1.0]
+    return float((to_world(node) @ middle)[2])
+
+
+def _from_base(grid: Volume, base_mm: float) -> Volume:
+    """Return a segment's volume without what is more than a voxel below its base."""
+    lowest = grid.ijk_to_ras[2, 3]
+    heights = lowest + SPACING_MM * np.arange(grid.values.shape[2])
+    is_wanted = (grid.values > _HALF).any(axis=(0, 1)) & (heights > base_mm - 1.5 * SPACING_MM)
+    if np.count_nonzero(is_wanted) < 2:
+        raise InputError("The segment of the head is empty above its base.")
+    start = int(is_wanted.argmax())
+    matrix = grid.ijk_to_ras.copy()
+    matrix[2, 3] += start * SPACING_MM
+    return Volume(grid.values[:, :, start:], matrix)

@@ -28,10 +28,10 @@ class Volume:
 
 
 def volume_from_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
-    """Return the image of a volume node.
+    """Return the image of a volume node where its transforms place it.
 
     Raises:
-        InputError: it has none, or one with colors.
+        InputError: it has none, or one with colors, or its transform is not linear.
     """
     image = node.GetImageData()
     if image is None:
@@ -42,7 +42,24 @@ def volume_from_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
     if array is None or array.GetNumberOfComponents() != 1:
         raise InputError("The volume must have one value a voxel, not none and not a color.")
     values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    return Volume(values.astype(np.float32), matrix_of(matrix))
+    return Volume(values.astype(np.float32), to_world(node) @ matrix_of(matrix))
+
+
+def to_world(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
+    """Return the (4, 4) matrix, mm, of the transforms that a node stands under.
+
+    Raises:
+        InputError: they are not linear.
+    """
+    parent, matrix = node.GetParentTransformNode(), vtk.vtkMatrix4x4()
+    if parent is not None:
+        if not parent.IsTransformToWorldLinear():
+            raise InputError(
+                f"{node.GetName()} stands under the transform {parent.GetName()}, which is not "
+                "linear: harden it, or take it off."
+            )
+        parent.GetMatrixTransformToWorld(matrix)
+    return matrix_of(matrix)
 
 
 def matrix_of(matrix: vtk.vtkMatrix4x4) -> np.ndarray:

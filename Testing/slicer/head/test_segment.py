@@ -1,0 +1,121 @@
+"""A head that is found becomes a segment; what the Segment Editor makes of it becomes the head."""
+
+import numpy as np
+import pytest
+import slicer
+import vtk
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, extract_head
+from rastrainer.slicer.head.segment import for_segment, show_segment, volume_of_segment
+from Testing.slicer.head.placed import add_transform, vtk_matrix
+
+BASE = -40.3
+CENTER, RADIUS, NECK = np.array([0.0, 5.0, 0.0]), 30.0, 20.0
+
+
+@pytest.fixture
+def found():
+    """A ball on a neck, which goes on below the base as `find_head` lets it."""
+    origin = np.array([-35.0, -30.0, BASE - 15.0])
+    grid = np.indices((70, 70, 95)).transpose(1, 2, 3, 0) + origin - CENTER
+    ball = RADIUS - np.linalg.norm(grid, axis=3)
+    neck = NECK - np.linalg.norm(grid[..., :2], axis=3)
+    level = np.clip(np.maximum(ball, np.where(grid[..., 2] < 0.0, neck, -1.0)), -1.0, 1.0)
+    return HeadBody(level, level > 0, origin, BASE, 50.0, False)
+
+
+@pytest.fixture
+def node(scene):
+    return scene.AddNewNodeByClass("vtkMRMLSegmentationNode", "Segmentation")
+
+
+def lay_on_grid(node, segment, to_ras, shape):
+    """Lay a segment on another grid, as the Segment Editor does with the first edit."""
+    shown, grid, laid = (slicer.vtkOrientedImageData() for _ in range(3))
+    node.GetBinaryLabelmapRepresentation(segment, shown)
+    grid.SetDimensions(shape)
+    grid.SetImageToWorldMatrix(vtk_matrix(to_ras))
+    grid.AllocateScalars(vtk.VTK_UNSIGNED_CHAR, 1)
+    resample = slicer.vtkOrientedImageDataResample
+    resample.ResampleOrientedImageToReferenceOrientedImage(shown, grid, laid)
+    labelmap = slicer.vtkSegmentationConverter.GetSegmentationBinaryLabelmapRepresentationName()
+    node.GetSegmentation().GetSegment(segment).AddRepresentation(labelmap, laid)
+
+
+def ball_errors(mesh):
+    """Return how far the vertices above the neck are from the ball, mm, (n,)."""
+    upper = mesh.vertices[mesh.vertices[:, 2] > 0.0]
+    return np.abs(np.linalg.norm(upper - CENTER, axis=1) - RADIUS)
+
+
+def test_a_head_comes_back_from_its_segment_with_the_base_that_was_shown(node, found):
+    show_segment(node, found)
+    segment = show_segment(node, found)
+    assert node.GetSegmentation().GetNumberOfSegments() == 1
+    mesh = extract_head(volume_of_segment(node, segment), for_segment(HeadSettings()))
+    assert mesh.is_closed
+    assert mesh.vertices[:, 2].min() == pytest.approx(BASE, abs=0.001)
+    assert ball_errors(mesh).mean() < 0.5
+
+
+def test_the_cut_that_is_wished_counts_more_than_the_base_that_was_shown(node, found):
+    segment = show_segment(node, found)
+    settings = for_segment(HeadSettings(base_mm=-10.0))
+    mesh = extract_head(volume_of_segment(node, segment), settings)
+    assert mesh.vertices[:, 2].min() == pytest.approx(-10.0, abs=0.001)
+
+
+def test_hardly_more_is_shown_than_what_is_above_the_base(node, found):
+    show_segment(node, found)
+    bounds = [0.0] * 6
+    node.GetSegmentation().GetBounds(bounds)
+    assert BASE - 4.0 < bounds[4] < BASE
+
+
+@pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0)], ids=["axial", "sagittal"])
+def test_the_base_stays_where_an_edit_lays_the_segment_on_an_oblique_grid(node, found, axes):
+    segment = show_segment(node, found)
+    c, s = np.cos(np.radians(12.0)), np.sin(np.radians(12.0))
+    to_ras = np.eye(4)
+    to_ras[:3, :3] = 1.7 * np.array([[1, 0, 0], [0, c, -s], [0, s, c]])[:, axes]
+    to_ras[:3, 3] = CENTER - to_ras[:3, :3] @ [35.0, 35.0, 35.0]
+    lay_on_grid(node, segment, to_ras, (70, 70, 70))
+    mesh = extract_head(volume_of_segment(node, segment), for_segment(HeadSettings()))
+    base = mesh.vertices[:, 2].min()
+    assert base == pytest.approx(BASE, abs=0.51)
+    rim = mesh.vertices[mesh.vertices[:, 2] < base + 0.001]
+    np.testing.assert_allclose(np.ptp(rim[:, :2], axis=0), 2 * NECK, atol=1.5)
+    assert ball_errors(mesh).mean() < 0.5
+
+
+def test_a_neck_that_is_erased_is_not_in_the_head(node, found):
+    found.body[:, :, : round(-33.0 - found.origin[2])] = False
+    segment = show_segment(node, found)
+    mesh = extract_head(volume_of_segment(node, segment), for_segment(HeadSettings()))
+    assert mesh.vertices[:, 2].min() == pytest.approx(-32.0, abs=1.0)
+
+
+def test_a_segment_that_is_moved_moves_its_head(scene, node, found):
+    segment = show_segment(node, found)
+    node.SetAndObserveTransformNodeID(add_transform(scene, [5.0, -7.0, 11.0]).GetID())
+    mesh = extract_head(volume_of_segment(node, segment), for_segment(HeadSettings()))
+    assert mesh.vertices[:, 2].min() == pytest.approx(BASE + 11.0, abs=0.001)
+    mesh.vertices[:] -= [5.0, -7.0, 11.0]
+    assert ball_errors(mesh).mean() < 0.5
+
+
+def test_an_empty_segment_is_answered_with_a_sentence(node, found):
+    with pytest.raises(InputError, match="segment of the head is not there"):
+        volume_of_segment(node, "Segment_1")
+    found.body[:] = False
+    segment = show_segment(node, found)
+    with pytest.raises(InputError, match="segment of the head is empty"):
+        volume_of_segment(node, segment)
+
+
+def test_a_segment_of_the_neck_alone_is_answered_with_a_sentence(node, found):
+    found.body[:, :, round(BASE - found.origin[2]) :] = False
+    segment = show_segment(node, found)
+    with pytest.raises(InputError, match="empty above its base"):
+        volume_of_segment(node, segment)
