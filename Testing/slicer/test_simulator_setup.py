@@ -21,7 +21,8 @@ def main():
     if "--lan" in sys.argv:
         print("RASTrainer simulator serves views on http://127.0.0.1:18945, pairing code 012345")
         print("RASTrainer simulator serves the local network on https://192.0.2.7:18946 or "
-              "https://192.0.2.8:18946; the browser warns of a certificate made here")
+              "https://192.0.2.8:18946; the browser warns of a certificate made here: "
+              "compare its SHA-256 fingerprint, AB:01")
         print("RASTrainer simulator has a new pairing code for views: 678901")
     sys.stdout.flush()
     if "--close" in sys.argv:
@@ -99,11 +100,12 @@ def test_how_a_headset_is_paired_is_told_until_the_simulator_ends(setup, wheels)
     program.stop()
     here = "In a browser or a headset open http://127.0.0.1:18945"
     everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
+    warning = "The browser warns of a certificate made here; its SHA-256 fingerprint is AB:01."
     assert told == [
         "",
         f"{here} and enter the code 012345.",
-        f"{everywhere} and enter the code 012345.",
-        f"{everywhere} and enter the code 678901.",
+        f"{everywhere} and enter the code 012345. {warning}",
+        f"{everywhere} and enter the code 678901. {warning}",
         "",
     ]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import socket
 import ssl
@@ -12,6 +13,8 @@ from ipaddress import ip_address
 from pathlib import Path
 
 import trustme
+
+from rastrainer.errors import InputError
 
 VALID_DAYS = 90
 RENEWED_BEFORE_DAYS = 14
@@ -23,16 +26,34 @@ def tls_context(folder: Path) -> ssl.SSLContext:
     """Return TLS with this machine's certificate, made anew when it is old or has moved.
 
     The file holds the private key: only its owner can read it, and it leaves the machine never.
+
+    Raises:
+        InputError: the file cannot be read or written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     file, names_file = folder / FILE_NAME, folder / NAMES_NAME
     names = own_names()
-    if not _is_usable(file, names_file, names):
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if _is_usable(file, names_file, names):
+            # Torn, as by a full disk, it is made anew.
+            with contextlib.suppress(ssl.SSLError):
+                return _context(file)
         _make(file, names_file, names)
-    context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
-    context.minimum_version = ssl.TLSVersion.TLSv1_2
-    context.load_cert_chain(file)
-    return context
+        return _context(file)
+    except OSError as error:
+        raise InputError(
+            f"The certificate for the local network cannot be kept in {folder}: {error.strerror}. "
+            "Allow writing to it, or choose another folder with --config."
+        ) from None
+
+
+def fingerprint(folder: Path) -> str:
+    """Return the SHA-256 fingerprint of the certificate that `tls_context` uses, as browsers do."""
+    content = (folder / FILE_NAME).read_text(encoding="ascii")
+    _before, begin, rest = content.partition(ssl.PEM_HEADER)
+    certificate, end, _after = rest.partition(ssl.PEM_FOOTER)
+    digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(begin + certificate + end))
+    return digest.digest().hex(":").upper()
 
 
 def own_names() -> tuple[str, ...]:
@@ -52,6 +73,13 @@ def own_addresses() -> tuple[str, ...]:
         found += [entry[4][0] for entry in socket.getaddrinfo(socket.gethostname(), None)]
     usable = [text.partition("%")[0] for text in found]
     return tuple(dict.fromkeys(text for text in usable if not ip_address(text).is_loopback))
+
+
+def _context(file: Path) -> ssl.SSLContext:
+    context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    context.load_cert_chain(file)
+    return context
 
 
 def _is_usable(file: Path, names_file: Path, names: tuple[str, ...]) -> bool:

@@ -43,7 +43,8 @@ async def open_views(
     `ViewLimits` unless a site has its own.
 
     Raises:
-        InputError: the port cannot be listened on, or the key is no key.
+        InputError: the port cannot be listened on, the key is no key, or the certificate cannot be
+            kept.
     """
 
     def tell_new_code(code: str) -> None:
@@ -68,18 +69,21 @@ async def open_views(
 async def _listen_in_network(
     server: ViewServer, local: int, certificates: Path, tell: Callable[[str], None]
 ) -> None:
-    from rastrainer_simulator.view_server.certificate import own_addresses, tls_context
+    from rastrainer_simulator.view_server import certificate
 
-    tls = await asyncio.to_thread(tls_context, certificates)
+    tls = await asyncio.to_thread(certificate.tls_context, certificates)
     try:
         found = await server.listen_in_network(local + 1, tls)
     except InputError:
         found = await server.listen_in_network(0, tls)
-    addresses = [address for address in own_addresses() if ":" not in address]
+    addresses = [address for address in certificate.own_addresses() if ":" not in address]
     pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
     server.announce(*pages)
     where = " or ".join(pages)
-    tell(f"serves the local network on {where}; the browser warns of a certificate made here")
+    tell(
+        f"serves the local network on {where}; the browser warns of a certificate made here: "
+        f"compare its SHA-256 fingerprint, {certificate.fingerprint(certificates)}"
+    )
     tell(
         f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "
         f"http://localhost:{local} in its browser"

@@ -152,7 +152,9 @@ def test_the_own_names_are_known(served, host):
 def test_every_answer_tells_the_browser_what_to_refuse(served):
     for path in ("/", SCENE, "/missing"):
         headers = request(served.url, path)[1]
-        assert "frame-ancestors 'none'" in headers["Content-Security-Policy"]
+        policy = headers["Content-Security-Policy"].split("; ")
+        assert {"default-src 'self'", "object-src 'none'", "frame-ancestors 'none'"} <= set(policy)
+        assert headers["Referrer-Policy"] == "no-referrer"
         assert headers["X-Content-Type-Options"] == "nosniff"
         assert headers["Cross-Origin-Resource-Policy"] == "same-origin"
 

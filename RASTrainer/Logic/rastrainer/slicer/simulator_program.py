@@ -12,7 +12,10 @@ from rastrainer.slicer.translation import _
 
 _READY = re.compile(r"RASTrainer simulator ready on (\S+):(\d+)$")
 _VIEWS = re.compile(r"RASTrainer simulator serves views on (\S+), pairing code (\d+)$")
-_NETWORK = re.compile(r"RASTrainer simulator serves the local network on (.+); the browser warns")
+_NETWORK = re.compile(
+    r"RASTrainer simulator serves the local network on (.+); the browser warns"
+    r"(?:.* fingerprint, (\S+))?$"
+)
 _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: (\d+)$")
 
 
@@ -33,6 +36,7 @@ class SimulatorProgram:
         port: on which it listens, once it is ready.
         sentence: what happened last, for people.
         pageAddresses: where a browser or a headset finds the simulator's page.
+        fingerprint: SHA-256 of the certificate of the pages in the local network; empty without.
         pairingCode: that a browser or a headset is let in for; only whoever started it knows.
         changed: emits nothing, whenever `state` has changed.
         pairingChanged: emits nothing, whenever an address or the code has.
@@ -44,6 +48,7 @@ class SimulatorProgram:
         self.port = 0
         self.sentence = _("No simulator was started from here.")
         self.pageAddresses: list[str] = []
+        self.fingerprint = ""
         self.pairingCode = ""
         self.changed = Signal()
         self.pairingChanged = Signal()
@@ -61,9 +66,16 @@ class SimulatorProgram:
         """How a browser or a headset is paired; empty while there is nothing to pair with."""
         if not (self.isRunning and self.pairingCode):
             return ""
-        return _("In a browser or a headset open {addresses} and enter the code {code}.").format(
-            addresses=_(" or ").join(self.pageAddresses), code=self.pairingCode
-        )
+        sentence = _(
+            "In a browser or a headset open {addresses} and enter the code {code}."
+        ).format(addresses=_(" or ").join(self.pageAddresses), code=self.pairingCode)
+        if not self.fingerprint:
+            return sentence
+        warning = _(
+            "The browser warns of a certificate made here; its SHA-256 fingerprint is "
+            "{fingerprint}."
+        ).format(fingerprint=self.fingerprint)
+        return f"{sentence} {warning}"
 
     def start(self, command: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         """Start the process; a second time does nothing while it runs.
@@ -125,8 +137,10 @@ class SimulatorProgram:
 
     def _readPairing(self, line: str) -> None:
         if views := _VIEWS.match(line):
+            self.fingerprint = ""
             self._pair([views.group(1)], views.group(2))
         elif network := _NETWORK.match(line):
+            self.fingerprint = network.group(2) or ""
             self._pair([*self.pageAddresses, *network.group(1).split(" or ")], self.pairingCode)
         elif code := _NEW_CODE.match(line):
             self._pair(self.pageAddresses, code.group(1))
