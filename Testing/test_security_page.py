@@ -41,6 +41,7 @@ def test_every_test_of_attacks_stands_in_the_page():
 
 OF_THE_TESTS_THEMSELVES = {
     "test_the_same_seed_gives_the_same_attack_and_every_valid_message_is_in_it",
+    "test_every_command_that_may_come_is_among_those_that_are_mutated",
     "test_the_police_of_these_tests_knows_what_harms",
     "test_what_is_written_beside_a_robot_is_believed_only_if_it_is_ours",
 }

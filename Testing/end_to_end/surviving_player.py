@@ -28,13 +28,14 @@ Touch = tuple[str, tuple[float, ...]]
 
 
 class Killing:
-    """When the server is to die: at its n-th message, or while it carries out a command."""
+    """When somebody is to die: at the server's n-th message, or while it carries out a command."""
 
-    def __init__(self, rng: random.Random, kill: Callable[[], None]):
+    def __init__(self, rng: random.Random, kill: Callable[[], None], at_commands: bool = True):
+        """Kill by `kill`; `at_commands` is for the server's own death alone."""
         self._kill = kill
         self._messages = rng.randrange(1, 500)
         # One in three dies with a command on its way: at the disk, or before or after.
-        self._command = rng.choice([None, None, rng.randrange(1, 12)])
+        self._command = rng.choice([None, None, rng.randrange(1, 12)]) if at_commands else None
         self._delay_s = rng.uniform(0.0, 0.006)
         self.is_done = False
 
@@ -67,15 +68,18 @@ class SurvivingPlayer:
     """Plays trial after trial.
 
     Attributes:
+        task: of the trials that are begun.
         kept: for each trial the touches that were acknowledged and not taken back.
         registered: the trials whose registration was acknowledged.
         resumed: how often an interrupted trial was gone on with.
         trial_id: of the present trial; "" between two.
     """
 
-    def __init__(self, scenario: Scenario, rng: random.Random):
+    def __init__(self, scenario: Scenario, rng: random.Random, trainee: str = TRAINEE):
         self._scenario = scenario
         self._rng = rng
+        self._trainee = trainee
+        self.task = TASK
         self._seed = 0
         self._in_flight = ""
         self.kept: dict[str, list[Touch]] = {}
@@ -141,7 +145,7 @@ class SurvivingPlayer:
         """Do the next thing of a trial."""
         if not self.trial_id:
             self._seed = self._rng.randrange(2**31)
-            start = {"task": TASK, "trainee": TRAINEE, "seed": self._seed}
+            start = {"task": self.task, "trainee": self._trainee, "seed": self._seed}
             self._begin(self._send(client, CommandName.START_TASK, killing, **start)["trialId"])
             return
         kept = self.kept[self.trial_id]
@@ -164,7 +168,7 @@ class SurvivingPlayer:
     def _go_to(self, client: Client, number: int) -> None:
         """Lift off from wherever the tip is, and come down on the point `number`."""
         head_to_world = self._scenario.perturbed_head_to_world(self._seed)
-        points = [*self._scenario.task(TASK).fiducials, self._scenario.target_position]
+        points = [*self._scenario.task(self.task).fiducials, self._scenario.target_position]
         *places, center = transforms.apply(head_to_world, np.array(points))
         place = places[number]
         tip = client.wait_for(Device.TOOL_TIP_TO_WORLD, timeout=PATIENCE_S)

@@ -60,15 +60,13 @@ class Server:
 
 
 class SlicerSide:
-    """Scene, link, desk and study, as Slicer has them."""
+    """Scene, link, desk and study, as Slicer has them; `scored` gets UUIDs of scored trials."""
 
-    def __init__(self, path, scenario, port):
-        self._path = path
+    def __init__(self, path, scenario, port, scored):
         scene = HeadlessScene().scene
         self.link = Link(scene, headlessKit)
         self.desk = TrialDesk(scene, self.link, lambda _name: scenario, lambda: Study.open(path))
-        self.scored = 0
-        self.desk.trialScored.connect(self._count)
+        self.desk.trialScored.connect(lambda trial: scored.append(trial.analysis.record.trial_id))
         self.link.connectTo(port=port)
 
     def run_for(self, steps):
@@ -80,9 +78,6 @@ class SlicerSide:
         self.link.disconnect()
         self.desk.close()
 
-    def _count(self, _trial):
-        self.scored += 1
-
 
 def deliver(folder, simulation, thread, trials, seed, longest_s):
     """Deliver so many trials through faults and ends of both sides; return what was seen."""
@@ -90,10 +85,10 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
     records, study = folder / "records", folder / "study.db"
     wanted = write_finished_trials(records, range(1, trials + 1))
     scenario = load_scenario(COLIN)
+    ends, scored = [0, 0], []
     server = Server(thread, simulation, records)
     proxy = FaultyProxy(server.port, rng, longest_s)
-    slicer = SlicerSide(study, scenario, proxy.port)
-    ends = [0, 0]
+    slicer = SlicerSide(study, scenario, proxy.port, scored)
     try:
         while server.undelivered:
             server.offer()
@@ -101,7 +96,7 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
             if rng.random() < 0.04:
                 ends[0] += 1
                 slicer.close()
-                slicer = SlicerSide(study, scenario, proxy.port)
+                slicer = SlicerSide(study, scenario, proxy.port, scored)
             if rng.random() < 0.04:
                 ends[1] += 1
                 server.close()
@@ -109,7 +104,7 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
                 proxy.target = server.port
         proxy.be_peaceful()
         slicer.close()
-        slicer = SlicerSide(study, scenario, proxy.port)
+        slicer = SlicerSide(study, scenario, proxy.port, scored)
         with Study.open(study) as opened:
             run_link_until(slicer.link, lambda: not opened.unrevealed(), PATIENCE_S)
     finally:
@@ -118,7 +113,7 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
         server.close()
     with Study.open(study) as opened:
         stored = [trial.record.trial_id for trial in opened.history(TRAINEE)]
-    assert sorted(stored) == sorted(wanted)
+    assert sorted(stored) == sorted(scored) == sorted(wanted)
     assert TrialArchive(records).unacknowledged() == ()
     assert find_unacknowledged(records) == []
     return proxy.faults, ends
