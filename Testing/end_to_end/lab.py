@@ -9,6 +9,7 @@ import subprocess
 import sys
 from contextlib import ExitStack
 from pathlib import Path
+from typing import IO
 
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.limits_file import FILE_NAME as LIMITS_FILE
@@ -90,8 +91,11 @@ class Lab:
 class SlicerProcess:
     """Slicer's side, headless."""
 
-    def __init__(self, *arguments: str):
-        self._process = subprocess.Popen([*SLICER, *arguments], stdout=subprocess.PIPE, text=True)
+    def __init__(self, *arguments: str, errors: IO[str] | None = None):
+        """Start it; what it says on stderr goes to `errors`, or where our own goes."""
+        self._process = subprocess.Popen(
+            [*SLICER, *arguments], stdout=subprocess.PIPE, stderr=errors, text=True
+        )
         self.pid = self._process.pid
 
     def kill(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import random
+import re
 import sys
 import time
 from dataclasses import dataclass
@@ -30,6 +31,7 @@ pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="memory and descriptors are read where Linux tells them"
 )
 
+TROUBLE = re.compile(r"error|traceback|critical", re.IGNORECASE)
 KEY = "the-views-key-of-this-long-run-only"
 MOST_GROWTH_MB = 8.0
 """Between the first fifth and the last, of either process: what caches and studies grow by."""
@@ -49,27 +51,37 @@ class Usage:
 
 @dataclass(frozen=True)
 class Run:
-    """What a long run left: use of each process after every trial, and the simulator's log."""
+    """What a long run left.
+
+    Attributes:
+        simulator, slicer: use of each process after every trial.
+        errors: lines of the simulator's log, and of either process's stderr, that tell of one.
+        problems: what Slicer's side has told of.
+        trials: that were played.
+    """
 
     simulator: list[Usage]
     slicer: list[Usage]
-    errors: list[dict]
+    errors: list[str]
+    problems: list[dict]
     trials: int
 
 
 def train(folder: Path, seconds: float, speed: float) -> Run:
     """Play trial after trial, each in a connection of its own, a view and Slicer's side beside."""
     records = folder / "records"
-    simulators, slicers = [], []
+    simulators, slicers, problems = [], [], []
     player = SurvivingPlayer(load_scenario(COLIN), random.Random(1))
     with contextlib.ExitStack() as stack:
         thread = stack.enter_context(LoopThread())
         simulator = stack.enter_context(
             ViewedSimulator(records, "--speed", str(speed), "--view-port", "0", key=KEY)
         )
+        slicer_says = stack.enter_context((folder / "slicer-says").open("w+"))
         slicer = SlicerProcess(
             *("--port", str(simulator.port), "--trials", "1000000", "--timeout", "100000"),
             *("--scenario", str(COLIN), "--output", str(folder / "slicer")),
+            errors=slicer_says,
         )
         stack.callback(slicer.kill)
         end = time.monotonic() + seconds
@@ -77,17 +89,25 @@ def train(folder: Path, seconds: float, speed: float) -> Run:
             with ViewClient(thread, simulator.url, KEY) as view:
                 WatchingView(view)
                 assert player.play(simulator.port, None, 1)
-                slicer.told_until("trial")
+                lines = slicer.told_until("trial")
+                problems += [line for line in lines if line["event"] == "problem"]
                 simulators.append(Usage.of(simulator.pid))
                 slicers.append(Usage.of(slicer.pid))
         slicer.kill()
-        status, _said = simulator.stop()
+        status, said = simulator.stop()
+        slicer_says.seek(0)
+        said += slicer_says.read()
     assert status == 0
     check_nothing_lost(folder, player.registered)
+    errors = [line for line in said.splitlines() if TROUBLE.search(line)] + logged_errors(folder)
+    return Run(simulators, slicers, errors, problems, len(player.registered))
+
+
+def logged_errors(folder: Path) -> list[str]:
+    """Return the lines of the simulator's log that tell of an error."""
     log = folder.glob("records-config/logs/*.log*")
-    lines = [json.loads(line) for path in log for line in path.read_text().splitlines()]
-    errors = [line for line in lines if line["level"] in ("error", "critical")]
-    return Run(simulators, slicers, errors, len(player.registered))
+    lines = [line for path in log for line in path.read_text().splitlines()]
+    return [line for line in lines if json.loads(line)["level"] in ("error", "critical")]
 
 
 def check_nothing_lost(folder: Path, registered: set[str]) -> None:
@@ -108,7 +128,7 @@ def growth_mb(usages: list[Usage]) -> float:
 
 
 def check_flat(run: Run) -> None:
-    assert run.errors == []
+    assert run.errors == run.problems == []
     for usages in (run.simulator, run.slicer):
         assert growth_mb(usages) <= MOST_GROWTH_MB
         # A journal that is being closed and a view that is leaving may still be counted.
