@@ -9,15 +9,19 @@ from __future__ import annotations
 import contextlib
 import logging
 import logging.handlers
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 from rastrainer.errors import RASTrainerError
+from rastrainer.journal.file_lock import lock
 from rastrainer_simulator.logs.aside import Aside
 from rastrainer_simulator.logs.json_lines import JsonLines
 
 LARGEST_FILE = 1_000_000
 OLDER_FILES = 5
+MOST_LOGS = 9
+"""Of one name that are written to at the same time."""
 TERMINAL_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
 _OURS = ("rastrainer", "rastrainer_simulator")
@@ -37,14 +41,16 @@ class _LogFile(logging.handlers.RotatingFileHandler):
 def keep_logs(folder: Path, name: str) -> Iterator[None]:
     """Log to `NAME.log` in a folder, and warnings to the terminal.
 
-    A folder that cannot be written to is told in one warning: nothing depends on a log.
+    Where another program logs to that file it is `NAME-2.log`, and so on: two that rotate one file
+    would lose each other's lines. A folder that cannot be written to is told in one warning:
+    nothing depends on a log.
     """
     terminal = logging.StreamHandler()
     terminal.setLevel(logging.WARNING)
     terminal.setFormatter(logging.Formatter(TERMINAL_FORMAT))
     with contextlib.ExitStack() as ends:
         _add(ends, logging.getLogger(), Aside(terminal))
-        opened = _opened(folder, name)
+        opened = _opened(ends, folder, name)
         if opened is not None:
             file = Aside(opened)
             _add(ends, logging.getLogger(), file)
@@ -56,11 +62,11 @@ def keep_logs(folder: Path, name: str) -> Iterator[None]:
             yield
 
 
-def _opened(folder: Path, name: str) -> _LogFile | None:
+def _opened(ends: contextlib.ExitStack, folder: Path, name: str) -> _LogFile | None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         file = _LogFile(
-            folder / f"{name}.log",
+            folder / f"{_free_name(ends, folder, name)}.log",
             maxBytes=LARGEST_FILE,
             backupCount=OLDER_FILES,
             encoding="utf-8",
@@ -70,6 +76,19 @@ def _opened(folder: Path, name: str) -> _LogFile | None:
         return None
     file.setFormatter(JsonLines())
     return file
+
+
+def _free_name(ends: contextlib.ExitStack, folder: Path, name: str) -> str:
+    """Return the first name that no other program logs by, and hold it."""
+    for own in (name, *(f"{name}-{number}" for number in range(2, MOST_LOGS + 1))):
+        flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
+        descriptor = os.open(folder / f".{own}.lock", flags, 0o644)
+        ends.callback(os.close, descriptor)
+        with contextlib.suppress(OSError):
+            lock(descriptor)
+            return own
+    # Locks are not to be had here, as on some disks of other computers.
+    return name
 
 
 def _add(ends: contextlib.ExitStack, logger: logging.Logger, handler: logging.Handler) -> None:

@@ -2,6 +2,7 @@
 
 import logging
 import threading
+import time
 
 from rastrainer_simulator.logs.aside import MOST_WAITING, Aside
 
@@ -23,15 +24,34 @@ def record(text):
     return logging.LogRecord("rastrainer", logging.WARNING, __file__, 1, text, None, None)
 
 
-def test_a_log_that_nobody_reads_holds_nobody_up_and_keeps_what_came_first():
+def test_a_log_that_nobody_reads_holds_nobody_up_keeps_what_came_first_and_counts_the_rest():
     blocked = Blocked()
     aside = Aside(blocked)
     for number in range(3 * MOST_WAITING):
         aside.handle(record(str(number)))
     blocked.go.set()
     aside.close()
-    assert blocked.taken[:MOST_WAITING] == [str(number) for number in range(MOST_WAITING)]
-    assert len(blocked.taken) <= MOST_WAITING + 1
+    *kept, gap = blocked.taken
+    assert kept == [str(number) for number in range(len(kept))]
+    assert MOST_WAITING <= len(kept) <= MOST_WAITING + 1
+    assert (
+        gap == f"{3 * MOST_WAITING - len(kept)} lines are missing here: nobody took them in time."
+    )
+
+
+def test_lost_lines_are_told_where_they_would_have_stood():
+    blocked = Blocked()
+    aside = Aside(blocked)
+    for _ in range(2 * MOST_WAITING):
+        aside.handle(record("kept or lost"))
+    blocked.go.set()
+    while len(blocked.taken) < MOST_WAITING:
+        time.sleep(0.001)
+    aside.handle(record("later"))
+    aside.close()
+    assert "lines are missing here" in blocked.taken[-2]
+    assert blocked.taken[-1] == "later"
+    assert set(blocked.taken[:-2]) == {"kept or lost"}
 
 
 def test_what_is_logged_last_is_written_when_the_log_ends():

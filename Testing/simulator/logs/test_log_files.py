@@ -12,6 +12,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer_simulator.logs import log_files
 from rastrainer_simulator.logs.log_files import keep_logs
+from Testing.forked_child import in_child
 
 OURS = logging.getLogger("rastrainer_simulator.some_part")
 
@@ -44,10 +45,27 @@ def test_the_files_rotate_and_the_oldest_goes(tmp_path, monkeypatch):
     with keep_logs(tmp_path, "simulator"):
         for number in range(1000):
             OURS.info("line %d", number)
-    files = sorted(tmp_path.iterdir())
+    files = sorted(tmp_path.glob("*.log*"))
     assert len(files) == 1 + log_files.OLDER_FILES
     assert all(file.stat().st_size <= 2000 for file in files)
     assert lines(tmp_path / "simulator.log")[-1]["message"] == "line 999"
+
+
+def log_one_line(folder):
+    with keep_logs(folder, "simulator"):
+        OURS.info("the second")
+    return True
+
+
+def test_two_programs_of_one_name_log_to_two_files_and_the_next_one_to_the_first(tmp_path):
+    with keep_logs(tmp_path, "simulator"):
+        OURS.info("the first")
+        assert in_child(log_one_line, tmp_path)
+    with keep_logs(tmp_path, "simulator"):
+        OURS.info("the third")
+    first, second = lines(tmp_path / "simulator.log"), lines(tmp_path / "simulator-2.log")
+    assert [line["message"] for line in first] == ["the first", "the third"]
+    assert [line["message"] for line in second] == ["the second"]
 
 
 def test_a_crash_is_logged_with_its_traceback_and_a_refusal_with_its_sentence(tmp_path):
