@@ -55,7 +55,7 @@ class Listener:
         found = await loop.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
         with contextlib.ExitStack() as opened:
             sockets = [
-                opened.enter_context(_listening(family, address))
+                opened.enter_context(listening_socket(family, address))
                 for family, _kind, _protocol, _name, address in dict.fromkeys(found)
             ]
             opened.pop_all()
@@ -102,13 +102,19 @@ class Listener:
         task.add_done_callback(self._tasks.discard)
 
 
-def _listening(family: int, address: tuple) -> socket.socket:
+def listening_socket(family: int, address: tuple) -> socket.socket:
+    """Return a socket that listens, with the address to itself.
+
+    Raises:
+        OSError, OverflowError: the address cannot be listened on.
+    """
     listening = socket.socket(family, socket.SOCK_STREAM)
     try:
         listening.setblocking(False)
-        if not hasattr(socket, "SO_EXCLUSIVEADDRUSE"):
-            # A port that was left a moment ago is free; Windows means something else by this.
-            listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        # On Windows another program could else take over the port of one that listens. Elsewhere
+        # it could not, and a port that was left a moment ago shall be free.
+        option = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
+        listening.setsockopt(socket.SOL_SOCKET, option, 1)
         if family == socket.AF_INET6:
             listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
         listening.bind(address)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import socket
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.doctor.finding import Finding, Verdict
+from rastrainer_simulator.listener import listening_socket
 
 _LISTENS = "0A"
 
@@ -47,16 +47,13 @@ def _views(port: int) -> Finding:
 
 def _refusal(port: int) -> str | None:
     """Return why a port of this computer cannot be listened on, None where it can."""
-    # As asyncio does it: on Windows the option would let two programs share a port.
-    with socket.socket() as listener:
-        if sys.platform != "win32":
-            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            listener.bind((DEFAULT_HOST, port))
-            listener.listen(1)
-        except OSError as error:
-            holder = _holder(port)
-            return f"{holder} holds it" if holder else (error.strerror or str(error)).lower()
+    try:
+        listening_socket(socket.AF_INET, (DEFAULT_HOST, port)).close()
+    except OSError as error:
+        holder = _holder(port)
+        return f"{holder} holds it" if holder else (error.strerror or str(error)).lower()
+    except OverflowError:
+        return "a port is a number from 0 to 65535"
     return None
 
 
