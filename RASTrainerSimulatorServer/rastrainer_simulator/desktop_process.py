@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Callable
 
-from rastrainer_simulator.window_command import KEY_VARIABLE
+from rastrainer_simulator.child_process import VIEW_KEY_VARIABLE
 
 ENDING_S = 3.0
 GONE = (
@@ -33,7 +33,7 @@ class DesktopProcess:
         simulator stays, with the trial that is running; `tell` says how to come back.
         """
         command = ("-m", "rastrainer_simulator.cli", "window", "--connect", self._url)
-        environment = {**os.environ, KEY_VARIABLE: self._key}
+        environment = {**os.environ, VIEW_KEY_VARIABLE: self._key}
         self._process = await asyncio.create_subprocess_exec(
             sys.executable, *command, env=environment
         )

@@ -31,6 +31,15 @@ class LoopStatistics:
         due = self.ticks + self.skipped
         return (self.ticks - self.late) / due if due else 1.0
 
+    def since(self, earlier: LoopStatistics) -> LoopStatistics:
+        """Return the counts after an earlier moment; the longest delay is that of both together."""
+        return LoopStatistics(
+            self.ticks - earlier.ticks,
+            self.late - earlier.late,
+            self.skipped - earlier.skipped,
+            self.worst_delay_s,
+        )
+
 
 class Punctuality:
     """Counts for `LoopStatistics`, in the control loop's thread."""

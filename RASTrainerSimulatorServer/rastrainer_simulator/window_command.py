@@ -8,8 +8,8 @@ import re
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.child_process import VIEW_KEY_VARIABLE
 
-KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
 DEFAULT_URL = "http://127.0.0.1:18945"
 LEAST_SIDE, MOST_SIDE = 320, 16_384
 
@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     size = None if arguments.size is None else _size(arguments.size)
     if not re.match(r"https?://[^/\s]+/?$", arguments.connect):
         raise InputError("--connect must be an address, such as http://127.0.0.1:18945.")
-    key = os.environ.get(KEY_VARIABLE, "")
+    key = os.environ.get(VIEW_KEY_VARIABLE, "")
     if not key and arguments.code is None:
         raise InputError("--code must be the pairing code that the simulator shows.")
     # Only here: VTK takes time to import.

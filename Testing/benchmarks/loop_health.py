@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import pairwise
 
 import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import Device
-
-
-class Health(NamedTuple):
-    """Ticks that were due so far, and how many of them were late by more than 1 ms or skipped."""
-
-    due: int
-    missed: int
+from rastrainer_simulator.loop_statistics import LoopStatistics
 
 
 @dataclass(frozen=True)
@@ -34,15 +28,15 @@ class Punctuality:
     ticks: int
 
 
-def read_health(client: Client) -> Health:
+def read_health(client: Client) -> LoopStatistics:
     """Wait for the next heartbeat, which comes once a second."""
     beat = json.loads(client.wait_for(Device.SIM_SERVER).content.message)
-    skipped = beat["skippedTicks"]
-    return Health(beat["ticks"] + skipped, beat["lateTicks"] + skipped)
+    return LoopStatistics(beat["ticks"], beat["lateTicks"], beat["skippedTicks"])
 
 
-def punctuality(healths: list[Health]) -> Punctuality:
-    """Return what several heartbeats in a row tell."""
-    due, missed = np.diff(np.unique(np.array(healths), axis=0), axis=0).T
-    shares = 100.0 * (1.0 - missed / due)
-    return Punctuality(shares, float(1.0 - missed.sum() / due.sum()), int(due.sum()))
+def punctuality(healths: list[LoopStatistics]) -> Punctuality:
+    """Return what several heartbeats in a row tell; one that was read twice counts once."""
+    beats = list(dict.fromkeys(healths))
+    shares = [100.0 * later.since(earlier).on_time for earlier, later in pairwise(beats)]
+    whole = beats[-1].since(beats[0])
+    return Punctuality(np.array(shares), whole.on_time, whole.ticks + whole.skipped)

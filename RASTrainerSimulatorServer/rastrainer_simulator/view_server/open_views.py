@@ -10,14 +10,13 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
+from rastrainer_simulator.child_process import VIEW_KEY_VARIABLE
 from rastrainer_simulator.simulator_command import DEFAULT_VIEW_PORT
 from rastrainer_simulator.view_server.limits import ViewLimits
 from rastrainer_simulator.view_server.operator_desk import OperatorDesk
 from rastrainer_simulator.view_server.sessions import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.view_server.state_source import StateSource
 from rastrainer_simulator.view_server.view_server import ViewServer
-
-KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
 
 
 async def open_views(
@@ -53,10 +52,12 @@ async def open_views(
     server = ViewServer(
         source, desk, tell_new_code, robot_meshes, limits, scenario_picture=scenario_picture
     )
-    agreed = os.environ.get(KEY_VARIABLE)
+    agreed = os.environ.get(VIEW_KEY_VARIABLE)
     if agreed is not None:
         if not SHORTEST_KEY <= len(agreed) <= LONGEST_KEY:
-            raise InputError(f"{KEY_VARIABLE} must have {SHORTEST_KEY} to {LONGEST_KEY} letters.")
+            raise InputError(
+                f"{VIEW_KEY_VARIABLE} must have {SHORTEST_KEY} to {LONGEST_KEY} letters."
+            )
         server.sessions.admit(agreed)
     found = await _listen(server, port)
     where = f"http://{DEFAULT_HOST}:{found}"
