@@ -85,6 +85,6 @@ def _summary(sentence: str, report) -> str:
     ]
     for name, (recorded, present) in report.changed_versions.items():
         lines.append(f"  version    {name}: recorded with {recorded}, replayed with {present}")
-    for name, value in asdict(report.metrics).items():
-        lines.append(f"  {name:<22}{value:.6g}")
+    for name, value in report.motion.items():
+        lines.append(f"  {name:<24}{value:.6g}")
     return "\n".join(lines)

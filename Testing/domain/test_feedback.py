@@ -1,7 +1,5 @@
 """After a trial the trainee learns what it was worth, what hurt and why, and what to improve."""
 
-import json
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -173,7 +171,7 @@ def test_a_trial_with_an_unacceptable_error_never_passes():
         progress_of([], bad.trial_id, 10.0)
 
 
-def test_the_feedback_goes_through_json_and_reads_in_order():
+def test_the_feedback_reads_in_order():
     errors = np.zeros((15, 3))
     errors[3] = 5.0 * NORMALS[3]
     history = [past(1, 50.0), past(2, 60.0)]
@@ -185,10 +183,10 @@ def test_the_feedback_goes_through_json_and_reads_in_order():
         recording(),
         progress_of(history, history[1].trial_id, 55.0),
     )
-    told = json.loads(json.dumps(feedback.to_json(), allow_nan=False))
-    assert told["worst"] == "4"
-    assert told["replayS"] == pytest.approx([5.98, 7.98])
-    assert "more than 2 mm is not acceptable" in told["sentences"][2]
-    assert told["sentences"][3].startswith("Point 4 was")
-    assert told["sentences"][4].startswith("1. ")
-    assert "10 points more than the mean of your last 1 trials" in told["sentences"][-3]
+    assert feedback.worst.label == "4"
+    assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
+    sentences = feedback.sentences
+    assert "more than 2 mm is not acceptable" in sentences[2]
+    assert sentences[3].startswith("Point 4 was")
+    assert sentences[4].startswith("1. ")
+    assert "10 points more than the mean of your last 1 trials" in sentences[-3]

@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 
 from rastrainer.errors import InputError
-from rastrainer.motion.path_metrics import idle_time, movements, path_efficiency, path_length
+from rastrainer.motion.path_metrics import idle_time, path_efficiency, path_length
 from rastrainer.motion.signals import low_pass, resample, speeds
 from rastrainer.motion.smoothness import log_dimensionless_jerk, sparc
 from rastrainer.motion.throughput import effective_throughput
@@ -106,14 +106,6 @@ def test_idle_time_counts_rests_longer_than_the_threshold_only():
     speed[200:260] = 0.5
     speed[940:] = 0.0
     assert idle_time(speed, RATE_HZ) == pytest.approx(1.2)
-
-
-def test_movements_run_from_touch_to_touch():
-    times = np.arange(0, 10, 0.5)
-    parts = movements(times, np.array([1.0, 3.0, 3.7, 9.5]))
-    assert [(times[p][0], times[p][-1]) for p in parts] == [(1.0, 3.0), (3.0, 3.5), (4.0, 9.5)]
-    with pytest.raises(InputError, match="within the recorded trajectory"):
-        movements(times, np.array([1.0, 12.0]))
 
 
 def test_throughput_follows_iso_9241_411_along_the_task_axis():

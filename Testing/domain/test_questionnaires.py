@@ -39,7 +39,7 @@ def test_raw_tlx_is_scored_as_by_another_program():
 
 
 def test_ssq_items_are_on_the_published_scales():
-    """Kennedy et al. 1993, table 3, by the items' numbers on the form."""
+    """Kennedy et al. 1993, by the items' numbers on the form."""
     nausea, oculomotor = {1, 6, 7, 8, 9, 15, 16}, {1, 2, 3, 4, 5, 9, 11}
     disorientation = {5, 8, 10, 11, 12, 13, 14}
     for number in range(1, 17):

@@ -101,6 +101,16 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         ) from None
 
 
+def make_empty_folder(folder: Path) -> None:
+    """Make a folder; raise `InputError` where it cannot be made or holds something."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            raise InputError(f"The folder {folder} holds something; choose one that is empty.")
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+
+
 def _check_kind(path: object, status: os.stat_result, limit_bytes: int) -> None:
     if stat.S_ISDIR(status.st_mode):
         raise InputError(f"{path} is a folder; a file is needed.")

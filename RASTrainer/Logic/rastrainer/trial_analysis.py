@@ -111,18 +111,19 @@ def analyze_trial(
         fits=fits,
         target_errors=errors,
         score=score,
-        published_score=_published_score(record, fits[RIGID].fre_mm, cohort),
+        published_score=published_score(record, fits[RIGID].fre_mm, cohort),
         feedback=trial_feedback(score, fits[RIGID], normals, record.motion, trajectory),
     )
 
 
-def _published_score(
+def published_score(
     record: TrialRecord, fre_mm: float, cohort: Sequence[ctps.Trial]
 ) -> PublishedScore | None:
-    peers = [trial for trial in cohort if trial.mode == record.mode]
-    if not peers:
+    """Return the CTPS of a trial with this FRE; None where its mode has no peers to divide by."""
+    try:
+        reference = ctps.CohortReference.of([t for t in cohort if t.mode == record.mode])
+    except InputError:
         return None
-    reference = ctps.CohortReference.of(peers)
     time = record.completion_time_s
     return PublishedScore(
         ctps.published_ctps(time, fre_mm, reference),

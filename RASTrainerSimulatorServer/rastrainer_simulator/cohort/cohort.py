@@ -13,8 +13,7 @@ from rastrainer.cohort.jobs import trial_jobs
 from rastrainer.cohort.population import Population
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import StudyProtocol, protocol_text
-from rastrainer.export.motion_bids import make_empty_folder
-from rastrainer.files import write_text
+from rastrainer.files import make_empty_folder, write_text
 from rastrainer.study import Study
 from rastrainer_simulator.cohort.engines import PROCESSES, run_jobs
 from rastrainer_simulator.cohort.play import PlayedTrial, PlaySettings, play_job

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.protocol import Proximity
 from rastrainer_simulator.collision.clearance import Clearance
+
+MM = 1000.0
 
 
 @dataclass(frozen=True)
@@ -19,10 +22,10 @@ class ProximitySettings:
         released: clearance of the whole tool at which contact ends.
     """
 
-    near: float = 0.020
-    far: float = 0.021
-    touching: float = 0.00005
-    released: float = 0.0003
+    near: float = NEAR_MM / MM
+    far: float = FAR_MM / MM
+    touching: float = TOUCHING_MM / MM
+    released: float = RELEASED_MM / MM
 
 
 def next_proximity(

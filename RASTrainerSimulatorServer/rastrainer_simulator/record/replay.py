@@ -12,7 +12,6 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_reader import Integrity, JournalReading
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.record.interrupted_trial import InterruptedTrial, recorded_command
-from rastrainer_simulator.record.replay_metrics import ReplayMetrics
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.simulation import Simulation
@@ -36,7 +35,7 @@ class ReplayReport:
         compared: how many entries of each kind were compared.
         difference: the first difference in words; None where all is equal to the last bit.
         changed_versions: name → (recorded, present), where they differ.
-        metrics: of the replayed trajectory.
+        motion: the motion metrics of the replayed trial, as its record has them.
     """
 
     trial_id: str
@@ -44,7 +43,7 @@ class ReplayReport:
     compared: Mapping[str, int]
     difference: str | None
     changed_versions: Mapping[str, tuple[str, str]]
-    metrics: ReplayMetrics
+    motion: Mapping[str, float]
 
     @property
     def is_identical(self) -> bool:
@@ -122,7 +121,7 @@ def _replay(
         compared=dict(compared),
         difference=difference,
         changed_versions=_changed(header["versions"], player.versions),
-        metrics=player.metrics,
+        motion=player.motion,
     )
 
 
@@ -143,7 +142,7 @@ class _Player:
         self._watch = watch
         self._entries: TrialEntries | None = None
         self.versions: Mapping[str, str] = {}
-        self.metrics = ReplayMetrics()
+        self.motion: Mapping[str, float] = {}
 
     def go_on(
         self, earlier: Sequence[Mapping[str, Any]], part: Sequence[Mapping[str, Any]]
@@ -155,6 +154,7 @@ class _Player:
         if self._entries is None:
             return []
         self.versions = self._entries.versions
+        self.motion = self._entries.motion()
         return self._entries.taken()[0 if earlier else 1 :]
 
     def _take_up(self, earlier: Sequence[Mapping[str, Any]], go_on: Mapping[str, Any]) -> None:
@@ -180,7 +180,6 @@ class _Player:
             if self._entries is None:
                 self._entries = TrialEntries.begun(simulation, before, result, dt)
             self._entries.add(simulation, operator_input, result)
-            self.metrics = self.metrics.after(dt, before, result)
 
 
 def _inputs(

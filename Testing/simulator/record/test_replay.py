@@ -65,14 +65,16 @@ def test_an_untouched_journal_is_intact_and_replays_to_the_last_bit(recorded, ca
     assert "equal to the last bit" in capsys.readouterr().out
 
 
-def test_the_report_as_json_tells_what_was_compared_and_metrics(recorded, capsys):
+def test_the_report_as_json_tells_what_was_compared_and_the_metrics_that_measure_tells(recorded, capsys):
     assert main(["replay", str(recorded), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["identical"] is True
     assert report["compared"]["sample"] >= 10
     assert report["compared"]["rejected"] == 1
-    assert report["metrics"]["path_mm"] > 1.0
-    assert report["metrics"]["rejected"] == 1
+    assert report["motion"]["path_length_mm"] > 1.0
+    assert report["motion"]["refused_touches"] == 1
+    assert main(["measure", str(recorded), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == report["motion"]
 
 
 def test_cut_short_altered_and_foreign_files_are_told_apart_by_sentence_and_status(

@@ -17,7 +17,7 @@ import numpy as np
 
 import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.files import write_text
+from rastrainer.files import make_empty_folder, write_text
 from rastrainer.motion.signals import resample
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import RATE_HZ
@@ -63,16 +63,6 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
     present = {trainee for trainee, _, _ in runs}
     _write_dataset(folder, data, {name: labels[name] for name in labels if name in present})
     return written
-
-
-def make_empty_folder(folder: Path) -> None:
-    """Make a folder; raise `InputError` where it cannot be made or holds something."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()):
-            raise InputError(f"The folder {folder} holds something; choose one that is empty.")
-    except OSError as error:
-        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
 
 
 def participant_labels(trainees: tuple[str, ...]) -> dict[str, str]:

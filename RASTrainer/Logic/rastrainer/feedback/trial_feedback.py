@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -73,20 +72,6 @@ class TrialFeedback:
         touches, advice = self.touch_sentences[:2], (a.sentence for a in self.advice)
         progress = () if self.progress is None else self.progress.sentences[:1]
         return [*touches, *advice, *progress]
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the feedback as a JSON object, such as for `details` of TrialScored."""
-        return {
-            "score": self.score.to_json(),
-            "touches": [
-                {**vars(touch), "reasons": [reason.value for reason in touch.reasons]}
-                for touch in self.touches
-            ],
-            "worst": self.worst.label,
-            "replayS": None if self.worst.replay_s is None else list(self.worst.replay_s),
-            "advice": [vars(advice) for advice in self.advice],
-            "sentences": list(self.sentences),
-        }
 
 
 def trial_feedback(

@@ -58,10 +58,7 @@ class Recording:
         """Take in one entry."""
         kind = entry["kind"]
         if kind == "sample":
-            time = self._trial_time(entry["simTime"])
-            if not self._samples or time > self._samples[-_COLUMNS]:
-                x, y, z = entry["tipMm"]
-                self._samples += array("d", (time, x, y, z, entry["clearanceMm"]))
+            self._add_sample(entry)
         elif kind in _HANDLERS:
             _HANDLERS[kind](self, entry)
 
@@ -89,6 +86,15 @@ class Recording:
             fiducials_mm=self._fiducials,
             shortest_path_mm=self._shortest_path,
         )
+
+    def _add_sample(self, entry: Mapping[str, Any]) -> bool:
+        """Keep a sample that is later than the last one; return whether it counts."""
+        time = self._trial_time(entry["simTime"])
+        if self._samples and time <= self._samples[-_COLUMNS]:
+            return False
+        x, y, z = entry["tipMm"]
+        self._samples += array("d", (time, x, y, z, entry["clearanceMm"]))
+        return True
 
     def _trial_time(self, sim_time: float) -> float:
         return sim_time - self._start_s - self._paused_s

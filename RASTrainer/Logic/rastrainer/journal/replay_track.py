@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import SUFFIX
+from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_reader import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
@@ -35,7 +35,7 @@ def find_track(records: Path, trial_id: str) -> ReplayTrack:
     Raises:
         InputError: there is none, or it holds no movement.
     """
-    paths = sorted(records.glob(f"*_{trial_id}{SUFFIX}"))
+    paths = journals_of(records, trial_id)
     if not paths:
         raise InputError(
             f"The journal of this trial is not in {records}: it can be shown again only on the "
@@ -64,8 +64,8 @@ class _PostureRecording(Recording):
         super().__init__()
         self.postures: list[list[float]] = []
 
-    def add(self, entry: Mapping[str, Any]) -> None:
-        before = len(self._samples)
-        super().add(entry)
-        if len(self._samples) > before:
+    def _add_sample(self, entry: Mapping[str, Any]) -> bool:
+        counts = super()._add_sample(entry)
+        if counts:
             self.postures.append(entry["q"])
+        return counts

@@ -38,10 +38,6 @@ class LearningCurve:
         """Return the value of the curve at a trial, the first is 1."""
         return self.gain * trial**-self.rate + self.plateau
 
-    def trials_to_within(self, share: float) -> float:
-        """Return the trial at which all but this share of the gain is gone."""
-        return share ** (-1 / self.rate)
-
 
 def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
     """Fit the power law to (n,) values of consecutive trials by least squares.

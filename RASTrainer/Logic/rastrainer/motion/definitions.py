@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from rastrainer.motion.path_metrics import IDLE_DURATION_S, IDLE_SPEED_MM_S
 from rastrainer.motion.signals import CUTOFF_HZ
 from rastrainer.motion.smoothness import SPARC_CUTOFF_HZ, SPARC_PAD_LEVEL, SPARC_THRESHOLD
+from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.motion.trial_motion import ACCEPTANCE_MM, DWELL_RADIUS_MM, RATE_HZ
 
 OWN = "RASTrainer"
@@ -35,8 +36,6 @@ class MetricDefinition:
     source: str
     better: int
 
-
-_BALASUBRAMANIAN = "Balasubramanian, Melendez-Calderon, Roby-Brami, Burdet 2015"
 
 DEFINITIONS: dict[str, MetricDefinition] = {
     definition.name: definition
@@ -97,7 +96,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             "Spectral arc length of the speed of each movement from touch to touch, median "
             f"(cut-off {SPARC_CUTOFF_HZ:g} Hz, threshold {SPARC_THRESHOLD:g}, "
             f"{SPARC_PAD_LEVEL} more powers of two of zero padding; {FILTER}).",
-            _BALASUBRAMANIAN,
+            "Balasubramanian, Melendez-Calderon, Roby-Brami, Burdet 2015",
             1,
         ),
         MetricDefinition(
@@ -105,7 +104,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             "Smoothness, log dimensionless jerk",
             "",
             f"Negative log dimensionless jerk of the speed of each movement, median ({FILTER}).",
-            _BALASUBRAMANIAN,
+            "Balasubramanian, Melendez-Calderon, Burdet 2012",
             1,
         ),
         MetricDefinition(
@@ -164,7 +163,8 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             "proximity_time_s",
             "Time near the head",
             "s",
-            "Time with the tip within 20 mm of the head (until 21 mm) or the tool touching it.",
+            f"Time with the tip within {NEAR_MM:g} mm of the head (until {FAR_MM:g} mm) or the "
+            "tool touching it.",
             "the paper, section III B 2",
             0,
         ),
@@ -172,7 +172,8 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             "contacts",
             "Contacts",
             "",
-            "How often the tool came to touch the head (clearance up to 0.05 mm, ended at 0.3 mm).",
+            f"How often the tool came to touch the head (clearance up to {TOUCHING_MM:g} mm, ended "
+            f"at {RELEASED_MM:g} mm).",
             OWN,
             0,
         ),

@@ -47,24 +47,3 @@ def idle_time(
     changes = np.flatnonzero(np.diff(resting.astype(int)))
     durations = (changes[1::2] - changes[0::2]) / rate_hz
     return float(durations[durations > shortest_s].sum())
-
-
-def movements(times_s: np.ndarray, touch_times_s: np.ndarray) -> tuple[slice, ...]:
-    """Return the samples of each movement: from one touch to the next, both included.
-
-    Args:
-        times_s: (n,) float, times of the samples, rising.
-        touch_times_s: (m,) float, rising.
-
-    Returns:
-        m − 1 slices into the samples.
-
-    Raises:
-        InputError: a touch lies outside the recording.
-    """
-    times_s, touches = np.asarray(times_s, dtype=float), np.asarray(touch_times_s, dtype=float)
-    if len(touches) and (touches[0] < times_s[0] or touches[-1] > times_s[-1]):
-        raise InputError("Every touch must lie within the recorded trajectory.")
-    first = np.searchsorted(times_s, touches[:-1], side="left")
-    last = np.searchsorted(times_s, touches[1:], side="right")
-    return tuple(slice(int(a), int(b)) for a, b in zip(first, last, strict=True))

@@ -10,6 +10,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+NEAR_MM, FAR_MM = 20.0, 21.0
+"""Clearances of the tip at which proximity begins and ends, unless the simulator is set otherwise;
+a trial's journal tells its settings."""
+TOUCHING_MM, RELEASED_MM = 0.05, 0.3
+"""Clearances of the tool at which contact begins and ends, as above."""
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -45,7 +51,7 @@ class Trajectory:
         touches: the kept ones, in their order.
         refused: touches that did not count.
         undone: how many touches were taken back.
-        near: when the tool was within 20 mm of the head or touched it.
+        near: when the tip was near the head, or the tool touched it.
         contacts: when it touched the head.
         camera_switches: how often the view was changed.
         pauses: how often the trial was interrupted.

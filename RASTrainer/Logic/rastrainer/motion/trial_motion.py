@@ -1,8 +1,9 @@
 """The motion metrics of a trial, by name, from its trajectory.
 
 `rastrainer.motion.definitions` says what each means, its unit, its thresholds and its source. The
-same function is used while a trial runs, when it is registered and when its journal is read again:
-equal samples give equal numbers.
+same function is used when a trial is registered, when its journal is read again and when it is
+replayed: equal samples give equal numbers. None are told while a trial runs: the low pass goes back
+over the samples from the end, so those of a part would be taken back.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ SHORTEST_MOVEMENT = 10
 
 
 def trial_motion(trajectory: Trajectory) -> dict[str, float]:
-    """Return the metrics that the trajectory of a trial, or of its part so far, allows.
+    """Return the metrics that the trajectory of a trial, or of a part of it, allows.
 
     What cannot be computed is left out.
     """

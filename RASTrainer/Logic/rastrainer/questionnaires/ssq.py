@@ -54,6 +54,6 @@ SSQ = Questionnaire(
         Scale("ssq_oculomotor", "SSQ oculomotor", 0.0, 21 * WEIGHTS[OCULOMOTOR], -1),
         Scale("ssq_disorientation", "SSQ disorientation", 0.0, 21 * WEIGHTS[DISORIENTATION], -1),
     ),
-    source="Kennedy, Lane, Berbaum and Lilienthal 1993, table 5",
+    source="Kennedy, Lane, Berbaum and Lilienthal 1993",
     formula=_score,
 )

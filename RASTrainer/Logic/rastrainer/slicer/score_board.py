@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.ctps import CTPS_WARNING, CohortReference, Trial, equation_3_ctps, published_ctps
-from rastrainer.errors import InputError
+from rastrainer.ctps import CTPS_WARNING, Trial
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.registration import RIGID
 from rastrainer.slicer.scene import Role
 from rastrainer.slicer.tables import Column, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study import StoredTrial, Study
+from rastrainer.trial_analysis import published_score
 
 
 @dataclass(frozen=True)
@@ -173,22 +173,12 @@ def _showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
 
 def _ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
     rigid = trial.registrations.get(RIGID)
-    peers = [peer for peer in cohort if peer.mode == trial.record.mode]
-    if rigid is None or not peers:
+    found = None if rigid is None else published_score(trial.record, rigid.fre_mm, cohort)
+    if found is None:
         return []
-    try:
-        reference = CohortReference.of(peers)
-    except InputError:
-        return []
-    time, rmse = trial.record.completion_time_s, rigid.fre_mm
     return [
-        Row(_("CTPS as published"), published_ctps(time, rmse, reference), "", CTPS_WARNING),
-        Row(
-            _("CTPS by equation 3"),
-            equation_3_ctps(time, rmse, reference),
-            "",
-            _("half of it, as printed"),
-        ),
+        Row(_("CTPS as published"), found.published, "", CTPS_WARNING),
+        Row(_("CTPS by equation 3"), found.equation_3, "", _("half of it, as printed")),
     ]
 
 
