@@ -11,12 +11,19 @@ from rastrainer.scenario_package import pack
 from rastrainer.scenario_setup import SetUp
 from rastrainer.scenario_writer import new_folder, write_scenario
 from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.head.extraction import HeadSettings, find_head
+from rastrainer.slicer.head.segment import for_segment
+from rastrainer.slicer.head.volume import Volume
+from rastrainer.slicer.head_preview import HeadPreview
 from rastrainer.slicer.scene import Role, findNode
 from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom
-from Testing.slicer.head.placed import add_volume
+from Testing.slicer.head.placed import add_transform, add_volume
+from Testing.slicer.host.cancels import cancels
 
 pytestmark = pytest.mark.usefixtures("module_widget")
+
+EMPTY = Volume(np.zeros((16, 16, 16), np.float32), np.eye(4))
 
 
 @pytest.fixture
@@ -31,6 +38,15 @@ def unfold(host, *names):
     for name in names:
         host.find(name).collapsed = False
         host.process_events()
+
+
+def nodes(host):
+    """Return the IDs of all nodes in the scene."""
+    return [host.scene.GetNthNode(index).GetID() for index in range(host.scene.GetNumberOfNodes())]
+
+
+def ignore(_step, _share):
+    """Hear of progress, and do nothing."""
 
 
 def test_a_zip_file_is_added_listed_with_its_picture_and_chosen(host, package):
@@ -93,23 +109,77 @@ def test_a_volume_that_holds_no_head_is_told(host):
     assert not user_library().exists()
 
 
-def test_a_found_head_is_a_segment_that_may_be_edited_and_is_made_into_the_scenario(host):
+def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
-    host.type("cutSpinBox", "-20")
     host.press("previewHeadButton")
     assert host.messages == []
     node = findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
     assert node.GetSegmentation().GetNumberOfSegments() == 1
-    model = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW)
-    bounds = np.array(model.GetPolyData().GetBounds())
-    assert bounds[4] == pytest.approx(-20.0, abs=0.01)
+    bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
     assert bounds[5] == pytest.approx(70.0, abs=1.5)
-    maker = host.widget.logic.session.scenarioMaker
-    segment = maker._segment(volume)
-    assert 0.0 < segment.values.mean() < 1.0
-    assert maker._segment(add_volume(host.scene, phantom(spacing=(9, 9, 9)), "other")) is None
+    preview = HeadPreview(host.scene)
+    settings = HeadSettings()
+    found = find_head(preview.segment(volume, settings), for_segment(settings), ignore)
+    assert found.base_mm == pytest.approx(bounds[4], abs=0.01)
+    assert preview.segment(add_volume(host.scene, EMPTY, "other"), settings) is None
+    host.type("thresholdSpinBox", "60")
+    host.press("makeScenarioButton")
+    assert "changed since the head was found" in host.messages[-1].text
+    assert not user_library().exists()
+
+
+def test_a_preview_shows_a_warning_and_stands_where_the_volumes_transform_places_it(host):
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0)), "MRI")
+    volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
+    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
+    host.choose("scanComboBox", volume)
+    host.type("cutSpinBox", "80")
+    host.press("previewHeadButton")
+    assert host.messages == []
+    assert "The slices are 5.0 mm apart" in host.text("newScenarioText")
+    bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
+    assert bounds[4] == pytest.approx(80.0, abs=0.01)
+    assert bounds[5] == pytest.approx(170.0, abs=3.0)
+
+
+def test_the_threshold_that_is_typed_is_the_one_that_the_head_is_looked_for_with(host):
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
+    host.choose("scanComboBox", volume)
+    host.type("thresholdSpinBox", "150")
+    host.press("previewHeadButton")
+    assert "no voxel lies above the threshold" in host.messages[-1].text
+    assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW) is None
+
+
+def test_a_canceled_preview_leaves_nothing_behind(host):
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
+    host.choose("scanComboBox", volume)
+    before = nodes(host)
+    with cancels(host, "makeScenarioButton"):
+        host.press("previewHeadButton")
+    assert host.text("newScenarioText") == "Canceled; nothing has changed."
+    assert host.text("makeScenarioButton") == "Make scenario"
+    assert host.find("previewHeadButton").enabled
+    assert not host.find("newScenarioProgressBar").visible
+    assert nodes(host) == before
+
+
+def test_a_canceled_search_for_another_head_leaves_the_one_that_is_shown(host):
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    host.press("showScenarioButton")
+    unfold(host, "otherHeadGroupBox")
+    host.choose("headModelComboBox", volume)
+    before = nodes(host)
+    with cancels(host, "useHeadButton"):
+        host.press("useHeadButton")
+    assert host.text("otherHeadText") == "Canceled; nothing has changed."
+    assert host.text("useHeadButton") == "Use as the head"
+    assert nodes(host) == before
+    assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetDisplayVisibility()
 
 
 def test_the_setup_that_is_shown_is_the_usual_one_until_it_is_changed(host):

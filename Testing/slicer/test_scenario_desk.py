@@ -15,9 +15,6 @@ class Shelf:
     def __init__(self, scenario):
         self._scenario = scenario
 
-    def scenarios(self):
-        return (self._scenario,)
-
     def find(self, _name):
         return self._scenario
 
@@ -51,13 +48,32 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, desk):
     grid = np.indices((60, 60, 60)) - 30.0
     ball = (np.linalg.norm(grid, axis=0) < 24).astype(np.float32) * 100.0
     steps = []
-    model = desk.useHead(volume(scene, ball, 3.0), lambda step, _share: steps.append(step))
+    mri = volume(scene, ball, 3.0)
+    model, warnings = desk.useHead(mri, lambda step, _share: steps.append(step))
     assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is model
     assert model.GetName() == "Head of MRI"
     assert not former.GetDisplayVisibility()
     bounds = np.array(model.GetPolyData().GetBounds())
     np.testing.assert_allclose(bounds[1] - bounds[0], 2 * 24 * 3.0, atol=4.0)
-    assert steps[-1] == "Done"
+    assert "Filling cavities" in steps
+    assert "The slices are 3.0 mm apart" in warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("broken", "sentence"),
+    [
+        pytest.param(np.full((60, 60, 60), np.nan, np.float32), "no numbers", id="NaN"),
+        pytest.param(np.ones((1, 200, 200), np.float32), "needs a 3D volume", id="2D"),
+        pytest.param(np.zeros((60, 60, 60), np.float32), "volume is empty", id="empty"),
+    ],
+)
+def test_a_broken_volume_is_told_and_the_head_stays(scene, desk, broken, sentence):
+    desk.show("ball", "task-1")
+    shown = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    with pytest.raises(InputError, match=sentence):
+        desk.useHead(volume(scene, broken, 3.0))
+    assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is shown
+    assert shown.GetDisplayVisibility()
 
 
 def test_a_volume_without_an_image_is_told(scene, desk):

@@ -6,6 +6,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.setup_form import SetUpForm
 from rastrainer.panels.widgets import setSentence, setUsable
 from rastrainer.scenario import Scenario
@@ -16,10 +17,6 @@ from rastrainer.slicer.translation import _
 SAMPLE = "MRBrainTumor1"
 
 
-class _CanceledError(Exception):
-    """The user has pressed Cancel."""
-
-
 class NewScenarioPanel:
     """Wires the section's widgets to the session."""
 
@@ -28,8 +25,7 @@ class NewScenarioPanel:
         self._session = session
         self._maker = session.scenarioMaker
         self._setUp = SetUpForm(ui.setUpGroupBox)
-        self._isAtWork = False
-        self._isCanceled = False
+        self._work = CancelableWork(self._tell, self._showProgress, self._showUsable)
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
         ui.makeScenarioButton.connect("clicked()", self.makeOrCancel)
         ui.previewHeadButton.connect("clicked()", self.preview)
@@ -39,7 +35,7 @@ class NewScenarioPanel:
 
     def close(self) -> None:
         """Break off what is under way."""
-        self._isCanceled = True
+        self._work.cancel()
 
     def loadSampleData(self) -> None:
         """Download an MRI through Slicer's Sample Data, and choose it."""
@@ -57,24 +53,23 @@ class NewScenarioPanel:
     def preview(self) -> None:
         """Show the head that is found, to accept it or to change it."""
         with slicer.util.tryWithErrorDisplay(_("No head could be shown.")):
-            made = self._work(lambda: self._maker.preview(*self._wanted(), self._progress))
-            if made is not None:
-                self._tell(
-                    _(
-                        "This head is found. Change the threshold or the cut and find it again, "
-                        "or change its segment in the Segment Editor; then make the scenario."
-                    )
+            warnings = self._work.run(lambda tell: self._maker.preview(*self._wanted(), tell))
+            if warnings is not None:
+                told = _(
+                    "This head is found. Change the threshold or the cut and find it again, or "
+                    "change its segment in the Segment Editor; then make the scenario."
                 )
+                self._tell(" ".join([told, *warnings]))
                 slicer.util.resetThreeDViews()
 
     def makeOrCancel(self) -> None:
         """Make the scenario and go on with it, or break off."""
-        if self._isAtWork:
-            self._isCanceled = True
+        if self._work.isUnderWay:
+            self._work.cancel()
             return
         with slicer.util.tryWithErrorDisplay(_("The scenario was not made.")):
             own = self._ui.programPathLineEdit.currentPath
-            made = self._work(lambda: self._maker.make(*self._wanted(), self._progress, own))
+            made = self._work.run(lambda tell: self._maker.make(*self._wanted(), tell, own))
             if made is not None:
                 self._goOn(*made)
 
@@ -99,49 +94,31 @@ class NewScenarioPanel:
             isHandPlaced=ui.handPlacedCheckBox.checked,
         )
 
-    def _work(self, work: Any) -> Any:
-        """Return what the work returns, None where the user has canceled it."""
-        self._isAtWork, self._isCanceled = True, False
-        self._showUsable()
-        try:
-            return work()
-        except _CanceledError:
-            self._tell(_("Canceled; nothing has changed."))
-            return None
-        except BaseException:
-            setSentence(self._ui.newScenarioText, "")
-            raise
-        finally:
-            self._isAtWork = False
-            self._showUsable()
-
-    def _progress(self, step: str, share: float) -> None:
+    def _showProgress(self, step: str, share: float) -> None:
         if step:
             self._tell(step)
         self._ui.newScenarioProgressBar.value = round(100 * share)
-        slicer.app.processEvents()
-        if self._isCanceled:
-            raise _CanceledError
 
     def _showUsable(self, *_arguments: Any) -> None:
         ui = self._ui
         hasVolume = ui.scanComboBox.currentNode() is not None
+        isAtWork = self._work.isUnderWay
         reason = _("Choose a volume first.")
-        ui.newScenarioProgressBar.visible = self._isAtWork
-        ui.makeScenarioButton.text = _("Cancel") if self._isAtWork else _("Make scenario")
+        ui.newScenarioProgressBar.visible = isAtWork
+        ui.makeScenarioButton.text = _("Cancel") if isAtWork else _("Make scenario")
         setUsable(
             ui.makeScenarioButton,
-            hasVolume or self._isAtWork,
+            hasVolume or isAtWork,
             _("Find the head, place fiducials and tasks, and train on it at once."),
             reason,
         )
         setUsable(
             ui.previewHeadButton,
-            hasVolume and not self._isAtWork,
+            hasVolume and not isAtWork,
             _("Show the head that is found, and as a segment that may be edited."),
             reason if not hasVolume else _("A head is being looked for."),
         )
-        ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not self._isAtWork
+        ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not isAtWork
 
     def _tell(self, sentence: str) -> None:
         setSentence(self._ui.newScenarioText, sentence)

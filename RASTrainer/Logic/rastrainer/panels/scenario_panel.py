@@ -8,6 +8,7 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setUsable
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario_library import ListedScenario
@@ -26,12 +27,13 @@ class ScenarioPanel:
         self._ui = ui
         self._session = session
         self._desk = session.scenario
+        self._work = CancelableWork(self._tellOfHead, self._showProgress, self._showUsable)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)
         ui.showScenarioButton.connect("clicked()", self.show)
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self.showRobot)
-        ui.useHeadButton.connect("clicked()", self.useHead)
+        ui.useHeadButton.connect("clicked()", self.useHeadOrCancel)
         ui.exportScenarioButton.connect("clicked()", self.give)
         ui.importScenarioButton.connect("clicked()", self.takeIn)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
@@ -41,7 +43,8 @@ class ScenarioPanel:
         self._fill()
 
     def close(self) -> None:
-        """Listen to the session no more."""
+        """Break off what is under way, and listen to the session no more."""
+        self._work.cancel()
         self._session.link.statusChanged.disconnect(self._showUsable)
         self._session.training.answered.disconnect(self._tell)
         self._session.scenarioMade.disconnect(self.goOnWith)
@@ -66,15 +69,18 @@ class ScenarioPanel:
         with slicer.util.tryWithErrorDisplay(_("The robot cannot be shown.")):
             self._desk.setRobotShown(shown)
 
-    def useHead(self) -> None:
-        """Look at a model, or at the skin of a volume, as the head."""
-        with slicer.util.tryWithErrorDisplay(
-            _("This cannot be used as the head."), waitCursor=True
-        ):
-            model = self._desk.useHead(self._ui.headModelComboBox.currentNode(), self._progress)
-            self._ui.otherHeadText.text = _(
-                "{name} is the head now; the simulator keeps its own."
-            ).format(name=model.GetName())
+    def useHeadOrCancel(self) -> None:
+        """Look at a model, or at the skin of a volume, as the head, or break off."""
+        if self._work.isUnderWay:
+            self._work.cancel()
+            return
+        with slicer.util.tryWithErrorDisplay(_("This cannot be used as the head.")):
+            node = self._ui.headModelComboBox.currentNode()
+            used = self._work.run(lambda tell: self._desk.useHead(node, tell))
+            if used is not None:
+                model, warnings = used
+                told = _("{name} is the head now; the simulator keeps its own.")
+                self._tellOfHead(" ".join([told.format(name=model.GetName()), *warnings]))
 
     def takeIn(self) -> None:
         """Take a scenario in that comes as a zip file, and choose it."""
@@ -112,9 +118,12 @@ class ScenarioPanel:
         if self._session.link.status.state is LinkState.CONNECTED:
             self.loadIntoSimulator()
 
-    def _progress(self, step: str, share: float) -> None:
-        self._ui.otherHeadText.text = f"{step}: {100 * share:.0f} %"
-        slicer.app.processEvents()
+    def _showProgress(self, step: str, share: float) -> None:
+        if step:
+            self._tellOfHead(f"{step}: {100 * share:.0f} %")
+
+    def _tellOfHead(self, sentence: str) -> None:
+        self._ui.otherHeadText.text = sentence
 
     def showState(self) -> None:
         """Show what may have changed in the scene meanwhile."""
@@ -179,9 +188,12 @@ class ScenarioPanel:
             _("Let the simulator go on with this head; only between two trials."),
             _("Connect to the simulator first.") if isUsable else broken,
         )
+        hasHead = self._ui.headModelComboBox.currentNode() is not None
+        isAtWork = self._work.isUnderWay
+        self._ui.useHeadButton.text = _("Cancel") if isAtWork else _("Use as the head")
         setUsable(
             self._ui.useHeadButton,
-            self._ui.headModelComboBox.currentNode() is not None,
+            hasHead or isAtWork,
             _("Look at this as the head, instead of the one above; of a volume, at its skin."),
             _("Choose a model or a volume of the scene first."),
         )

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from rastrainer.errors import InputError
 from rastrainer.scenario import Scenario
 from rastrainer.scenario_library import ListedScenario
 from rastrainer.slicer.link_nodes import capturedPointsNode
@@ -49,43 +48,51 @@ class ScenarioDesk:
 
     def useHead(
         self, node: Any, progress: Callable[[str, float], None] = lambda _step, _share: None
-    ) -> Any:
-        """Let a model or a volume of the scene be the head that is looked at; return its model.
+    ) -> tuple[Any, list[str]]:
+        """Let a model or a volume of the scene be the head that is looked at.
 
         The head that was one before is hidden, and is no longer ours to fill.
 
         Args:
             node: a `vtkMRMLModelNode`, or a `vtkMRMLScalarVolumeNode` whose skin is extracted.
-            progress: told each step's name and the share of the work done; may raise to cancel.
+            progress: told each step's name and the share of the work done, ten times a second; it
+                may let the application draw, and may raise to cancel: then nothing is left behind.
+
+        Returns:
+            The head's model, and warnings about its volume, one sentence each.
 
         Raises:
-            InputError: there is no head in the volume.
+            InputError: the volume cannot be used, or there is no head in it.
         """
-        model = self._skinOf(node, progress) if node.IsA("vtkMRMLVolumeNode") else node
+        isVolume = node.IsA("vtkMRMLVolumeNode")
+        model, warnings = self._skinOf(node, progress) if isVolume else (node, [])
         former = findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
-        if former is model:
-            return model
-        if former is not None:
+        if former is not None and former is not model:
             former.RemoveAttribute(ROLE_ATTRIBUTE)
             former.SetDisplayVisibility(False)
         model.SetAttribute(ROLE_ATTRIBUTE, Role.HEAD_MODEL)
         model.CreateDefaultDisplayNodes()
         model.SetDisplayVisibility(True)
-        return model
+        return model, warnings
 
-    def _skinOf(self, volume: Any, progress: Callable[[str, float], None]) -> Any:
+    def _skinOf(
+        self, volumeNode: Any, progress: Callable[[str, float], None]
+    ) -> tuple[Any, list[str]]:
         # Only here: scipy takes time to import.
-        from rastrainer.slicer.head.extraction import extract_head
+        from rastrainer.slicer.head.head_draft import find_skin
+        from rastrainer.slicer.head.scenario_build import in_background
         from rastrainer.slicer.head.volume import volume_from_node
 
-        if volume.GetImageData() is None:
-            raise InputError(f"The volume {volume.GetName()} holds no image.")
-        mesh = extract_head(volume_from_node(volume), progress=progress)
-        model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", f"Head of {volume.GetName()}")
+        volume = volume_from_node(volumeNode)
+        _body, mesh, warnings = in_background(
+            lambda tell: find_skin(volume, progress=tell), progress
+        )
+        name = f"Head of {volumeNode.GetName()}"
+        model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
         model.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
         model.CreateDefaultDisplayNodes()
         model.GetDisplayNode().SetColor(SKIN_COLOR)
-        return model
+        return model, warnings
 
     def setRobotShown(self, shown: bool) -> None:
         """Show the robot, which follows the link by itself, or hide it.

@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.markups import write_markups
@@ -18,16 +18,17 @@ from rastrainer.scenario_setup import SetUp, write_setup
 from rastrainer.scenario_writer import scenario_name
 from rastrainer.slicer.child_process import ChildProcess
 from rastrainer.slicer.control_points import worldPoints
-from rastrainer.slicer.polydata import trianglesPolyData
-from rastrainer.slicer.scenario import SKIN_COLOR
+from rastrainer.slicer.head_preview import HeadPreview
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
-from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
+from rastrainer.slicer.scene import ROLE_ATTRIBUTE
 from rastrainer.slicer.simulator_desk import SimulatorDesk
 from rastrainer.slicer.translation import _
 from rastrainer.tasks import LABELS
 
+if TYPE_CHECKING:
+    from rastrainer.slicer.head.extraction import HeadSettings
+
 SOURCE = "The volume {name} in 3D Slicer."
-PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
 MOST_HAND_PLACED = 6
 
 Progress = Callable[[str, float], None]
@@ -73,36 +74,18 @@ class ScenarioMaker:
         self._simulator = simulator
         self._shelf = shelf
         self._library = library
+        self._preview = HeadPreview(scene)
 
-    def preview(self, volumeNode: Any, wishes: ScenarioWishes, progress: Progress) -> Any:
-        """Show the head that is found, and return its `vtkMRMLSegmentationNode`.
+    def preview(self, volumeNode: Any, wishes: ScenarioWishes, progress: Progress) -> list[str]:
+        """Show the head that is found, and return warnings, one sentence each.
 
-        The Segment Editor may change the segment; `make` then takes it as it is.
+        The Segment Editor may change its segment; `make` then takes it as it is. Arguments are
+        those of `make`.
 
         Raises:
             InputError: there is no head in the volume.
         """
-        # Only here: scipy takes time to import.
-        from rastrainer.slicer.head.extraction import find_head, skin_of
-        from rastrainer.slicer.head.scenario_build import in_background
-        from rastrainer.slicer.head.segment import show_segment
-        from rastrainer.slicer.head.volume_checks import check_head, check_volume
-
-        volume, settings = self._volume(volumeNode), self._settings(wishes)
-        check_volume(volume)
-        found = in_background(lambda tell: find_head(volume, settings, tell), progress)
-        skin = skin_of(found, settings, progress)
-        check_head(skin)
-        node = findOrAddNode(
-            self._scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT, "Head to be edited"
-        )
-        show_segment(node, found)
-        node.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)
-        node.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
-        model = findOrAddNode(self._scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW, "Head as found")
-        model.SetAndObservePolyData(trianglesPolyData(skin.vertices, skin.triangles))
-        model.GetDisplayNode().SetColor(SKIN_COLOR)
-        return node
+        return self._preview.show(_chosen(volumeNode), _settings(wishes), progress)
 
     def make(
         self,
@@ -126,9 +109,10 @@ class ScenarioMaker:
         """
         from rastrainer.slicer.head.head_draft import make_draft
         from rastrainer.slicer.head.scenario_build import build_scenario
+        from rastrainer.slicer.head.volume import volume_from_node
 
-        volume, segment = self._volume(volumeNode), self._segment(volumeNode)
-        settings = self._settings(wishes)
+        volume, settings = volume_from_node(_chosen(volumeNode)), _settings(wishes)
+        segment = self._preview.segment(volumeNode, settings)
         command, environment = self._simulator.command([], ownProgram)
         title = wishes.title.strip() or volumeNode.GetName()
         folder = self._newFolder(title)
@@ -203,32 +187,6 @@ class ScenarioMaker:
             )
         return self._library / name
 
-    def _volume(self, volumeNode: Any) -> Any:
-        from rastrainer.slicer.head.volume import volume_from_node
-
-        if volumeNode is None:
-            raise InputError(_("Choose a volume first."))
-        if volumeNode.GetImageData() is None:
-            raise InputError(
-                _("The volume {name} holds no image.").format(name=volumeNode.GetName())
-            )
-        return volume_from_node(volumeNode)
-
-    def _settings(self, wishes: ScenarioWishes) -> Any:
-        from rastrainer.slicer.head.extraction import HeadSettings
-
-        return HeadSettings(threshold=wishes.threshold, base_mm=wishes.cutMm)
-
-    def _segment(self, volumeNode: Any) -> Any:
-        """Return the segment that was previewed of this volume, None where none was."""
-        from rastrainer.slicer.head.segment import SEGMENT_NAME, volume_of_segment
-
-        node = findNode(self._scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
-        if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volumeNode.GetID():
-            return None
-        segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)
-        return volume_of_segment(node, segment)
-
     def _words(self, wishes: ScenarioWishes, folder: Path) -> tuple[str, ...]:
         """Return the arguments of `rastrainer scenario tasks`; files go into `folder`."""
         setUp = folder / "setup.json"
@@ -270,3 +228,15 @@ class ScenarioMaker:
             if node.GetAttribute(ROLE_ATTRIBUTE) is None
             and node.GetNumberOfControlPoints() == FIDUCIAL_COUNT
         ]
+
+
+def _chosen(volumeNode: Any) -> Any:
+    if volumeNode is None:
+        raise InputError(_("Choose a volume first."))
+    return volumeNode
+
+
+def _settings(wishes: ScenarioWishes) -> HeadSettings:
+    from rastrainer.slicer.head.extraction import HeadSettings
+
+    return HeadSettings(threshold=wishes.threshold, base_mm=wishes.cutMm)

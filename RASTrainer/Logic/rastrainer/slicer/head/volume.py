@@ -35,7 +35,7 @@ def volume_from_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
     """
     image = node.GetImageData()
     if image is None:
-        raise InputError("The volume is empty: it has no image.")
+        raise InputError(f"The volume {node.GetName()} holds no image.")
     matrix = vtk.vtkMatrix4x4()
     node.GetIJKToRASMatrix(matrix)
     array = image.GetPointData().GetScalars()
