@@ -48,9 +48,12 @@ def _findings(arguments: argparse.Namespace) -> list[Finding]:
     from rastrainer_simulator.doctor.clock import check_clock
     from rastrainer_simulator.doctor.folders import check_folders
     from rastrainer_simulator.doctor.graphics import check_graphics
+    from rastrainer_simulator.doctor.journals import check_journals
+    from rastrainer_simulator.doctor.page import check_page
     from rastrainer_simulator.doctor.ports import check_ports
     from rastrainer_simulator.doctor.python_packages import check_python
     from rastrainer_simulator.doctor.real_time import check_real_time
+    from rastrainer_simulator.doctor.settings import check_settings
     from rastrainer_simulator.doctor.slicer_program import check_slicer
     from rastrainer_simulator.logs.log_folder import log_folder
 
@@ -64,9 +67,12 @@ def _findings(arguments: argparse.Namespace) -> list[Finding]:
     findings += check_graphics()
     findings += _gamepad()
     findings += check_ports(arguments.port, arguments.view_port)
+    findings += check_page()
     findings += check_slicer()
     findings += check_real_time()
     findings += check_folders(folders)
+    findings += check_settings(folders["settings"])
+    findings += check_journals(arguments.records)
     findings += check_clock(arguments.records)
     return findings
 

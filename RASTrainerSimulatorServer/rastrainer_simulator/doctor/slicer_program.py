@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import sys
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from rastrainer_simulator.doctor.finding import Finding, Verdict
 EXTENSION = "SlicerOpenIGTLink"
 HOME_VARIABLE = "SLICER_HOME"
 ELSEWHERE = "Nothing is wrong where Slicer runs on another computer, or none is used."
+LEAST_VERSION = (5, 10)
 GET_SLICER = (
     f"Get 3D Slicer 5.10 or newer from https://download.slicer.org, or set {HOME_VARIABLE} to its "
     "folder."
@@ -27,12 +29,21 @@ def check_slicer(places: tuple[Path, ...] | None = None) -> Iterator[Finding]:
         yield Finding("slicer", Verdict.WARNING, f"3D Slicer is not found. {ELSEWHERE}", GET_SLICER)
         return
     for home in homes:
-        yield Finding("slicer", Verdict.OK, f"3D Slicer is in {home}.")
+        yield _judged(home)
     found = next((path for home in homes for path in _extension(home)), None)
     if found is None:
         yield Finding("slicer", Verdict.WARNING, f"{EXTENSION} is not found.", GET_EXTENSION)
     else:
         yield Finding("slicer", Verdict.OK, f"{EXTENSION} is in {found}.")
+
+
+def _judged(home: Path) -> Finding:
+    """Judge a Slicer by its version, where its folder's name tells it."""
+    version = re.search(r"Slicer[- ](\d+)\.(\d+)", str(home))
+    if version is None or tuple(map(int, version.groups())) >= LEAST_VERSION:
+        return Finding("slicer", Verdict.OK, f"3D Slicer is in {home}.")
+    told = f"3D Slicer in {home} is older than the module was made for."
+    return Finding("slicer", Verdict.WARNING, told, GET_SLICER)
 
 
 def _usual_places() -> tuple[Path, ...]:

@@ -13,15 +13,17 @@ import pytest
 
 from rastrainer_simulator.cli import main
 from rastrainer_simulator.doctor import folders as folders_check
-from rastrainer_simulator.doctor import python_packages
+from rastrainer_simulator.doctor import page, python_packages
 from rastrainer_simulator.doctor.clock import check_clock
 from rastrainer_simulator.doctor.finding import Verdict
 from rastrainer_simulator.doctor.folders import check_folders
 from rastrainer_simulator.doctor.gamepad import check_gamepad
 from rastrainer_simulator.doctor.graphics import check_graphics
+from rastrainer_simulator.doctor.journals import check_journals
 from rastrainer_simulator.doctor.ports import check_ports
 from rastrainer_simulator.doctor.python_packages import check_python
 from rastrainer_simulator.doctor.real_time import check_real_time
+from rastrainer_simulator.doctor.settings import check_settings
 from rastrainer_simulator.doctor.slicer_program import check_slicer
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.virtual_display import VirtualDisplay
@@ -136,6 +138,18 @@ def test_slicer_and_its_extension_are_found_or_it_is_said_where_to_get_them(tmp_
     assert verdicts(check_slicer((tmp_path,))) == [Verdict.OK, Verdict.OK]
 
 
+def test_a_slicer_older_than_5_10_is_told(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.delenv("SLICER_HOME", raising=False)
+    for name in ("Slicer-5.8.1-linux-amd64", "Slicer-5.10.0-linux-amd64", "Slicer"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "Slicer").touch()
+    (old,) = (each for each in check_slicer((tmp_path,)) if "older" in each.sentence)
+    assert old.verdict is Verdict.WARNING
+    assert "Slicer-5.8.1" in old.sentence
+    assert "5.10 or newer" in old.remedy
+
+
 def test_real_time_priority_is_tried_without_a_lasting_effect(monkeypatch):
     before = os.sched_getscheduler(0)
     (finding,) = check_real_time()
@@ -177,6 +191,39 @@ def test_a_clock_that_was_set_back_is_told_by_the_journals(tmp_path):
     assert "cannot be 1970" in finding.sentence
 
 
+def test_settings_are_read_as_the_simulator_reads_them(tmp_path):
+    assert list(check_settings(tmp_path)) == []
+    (tmp_path / "limits.json").write_text('{"views": {"views": 0}}')
+    (tmp_path / "preferences.json").write_text("{")
+    (tmp_path / "controls.json").write_text("[]")
+    limits, preferences, controls = check_settings(tmp_path)
+    assert limits.verdict is Verdict.PROBLEM
+    assert "views.views must be a whole number above 0" in limits.sentence
+    assert "preferences.json" in preferences.sentence
+    assert "controls.json" in controls.sentence
+    assert (preferences.verdict, controls.verdict) == (Verdict.WARNING, Verdict.WARNING)
+
+
+def test_a_journal_that_cannot_be_used_is_named(tmp_path):
+    (finding,) = check_journals(tmp_path)
+    assert finding.verdict is Verdict.OK
+    assert "0 trials wait" in finding.sentence
+    (tmp_path / f"20260301T000000Z_x{SUFFIX}").write_text("notes")
+    (finding,) = check_journals(tmp_path)
+    assert finding.verdict is Verdict.WARNING
+    assert f"20260301T000000Z_x{SUFFIX} is not a trial's journal" in finding.sentence
+    assert "rastrainer verify" in finding.remedy
+
+
+def test_a_page_that_was_not_built_is_told(monkeypatch, tmp_path):
+    monkeypatch.setattr(page, "page_folder", lambda: tmp_path)
+    assert verdicts(page.check_page()) == [Verdict.OK]
+    monkeypatch.setattr(page, "page_folder", lambda: None)
+    (finding,) = page.check_page()
+    assert finding.verdict is Verdict.WARNING
+    assert "make page" in finding.remedy
+
+
 def words(folder: Path, port: int):
     return [
         *("doctor", "--port", str(port), "--view-port", str(port)),
@@ -192,7 +239,7 @@ def test_the_doctor_tells_a_line_a_check_and_ends_with_1_where_there_is_a_proble
     checks = {line[9:19].strip() for line in lines if line[:8].strip()}
     assert checks == {
         *("python", "packages", "graphics", "gamepad", "ports"),
-        *("slicer", "real time", "folders", "clock"),
+        *("page", "slicer", "real time", "folders", "journals", "clock"),
     }
     assert main([*words(tmp_path, held), "--json"]) == 1
     findings = json.loads(capsys.readouterr().out)
