@@ -144,7 +144,7 @@ def test_a_slicer_older_than_5_10_is_told(tmp_path, monkeypatch):
     for name in ("Slicer-5.8.1-linux-amd64", "Slicer-5.10.0-linux-amd64", "Slicer"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "Slicer").touch()
-    (old,) = (each for each in check_slicer((tmp_path,)) if "older" in each.sentence)
+    (old,) = (each for each in check_slicer((tmp_path,)) if "is older than" in each.sentence)
     assert old.verdict is Verdict.WARNING
     assert "Slicer-5.8.1" in old.sentence
     assert "5.10 or newer" in old.remedy
