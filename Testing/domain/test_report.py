@@ -2,30 +2,23 @@
 
 import re
 import xml.etree.ElementTree as ElementTree
-from dataclasses import replace
 from html.parser import HTMLParser
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.experiment.steps import StepKind
-from rastrainer.experiment.study_progress import StudyProgress
-from rastrainer.experiment.study_protocol import read_study_protocol
-from rastrainer.questionnaires.catalog import find_questionnaire
 from rastrainer.report.comparisons import compare_modes, paired_means
 from rastrainer.report.outcomes import MAIN_OUTCOMES
 from rastrainer.report.published_scores import with_ctps
 from rastrainer.report.report import report_html, write_report
 from rastrainer.report.sections.published_tables import performance_color
 from rastrainer.report.study_data import StudyData, TrialRow, read_study_data
-from rastrainer.scoring import score_trial, task_reference
 from rastrainer.study import Study
 from rastrainer_simulator.cli import main
+from Testing.domain.played_study import STUDIES, study_with_trials
 from Testing.domain.trial_records import make_record
 
-STUDIES = Path(__file__).parents[2] / "assets" / "studies"
 PUBLISHED = STUDIES / "published.csv"
 VOID = {"meta", "br", "img", "hr", "link", "input"}
 
@@ -230,44 +223,6 @@ def test_hostile_pseudonyms_and_titles_stay_text():
     page = report_html(StudyData(evil, tuple(rows)))
     assert "<script" not in page
     assert "&lt;script&gt;" in page
-
-
-def study_with_trials(path, consent=True):
-    """A has done all, B the first trial only; A has also played the last task once more."""
-    with Study.open(path) as study:
-        progress = StudyProgress(study)
-        published = read_study_protocol(STUDIES / "published-protocol.json")
-        progress.begin(replace(published, tasks=("task-1",)))
-        for name in ("A", "B"):
-            study.create_trainee(name, consent=consent if name == "A" else True)
-            progress.enroll(name)
-        progress.skip("B", "desktop/trial-run", "knows the tasks from a pilot")
-        for step in progress.progress("A").steps:
-            if step.kind is StepKind.TRIAL:
-                play(study, "A", step.mode)
-                progress.count_played("A")
-            elif step.kind is StepKind.QUESTIONNAIRE:
-                count = len(find_questionnaire(step.questionnaire).items)
-                progress.finish("A", step.name, {"answers": [1] * count})
-            else:
-                progress.finish("A", step.name, {"minutes": step.minutes})
-        play(study, "A", "desktop")
-        play(study, "B", "desktop")
-        progress.count_played("B")
-
-
-def play(study, trainee, mode):
-    number = sum(len(study.history(name)) for name in ("A", "B"))
-    utc = f"2999-01-01T10:0{number}:00Z"
-    record = make_record(
-        trialId=f"00000000-0000-0000-0000-00000000000{number}",
-        mode=mode,
-        trainee=trainee,
-        startedUtc=utc,
-        completedUtc=utc,
-        motion={"sparc": -2.5},
-    )
-    study.add_trial(record, score=score_trial(110.0, 0.5, task_reference("task-1")))
 
 
 def test_a_study_database_gives_scores_motion_questionnaires_and_what_was_skipped(tmp_path):

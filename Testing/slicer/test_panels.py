@@ -307,7 +307,9 @@ def test_a_plan_says_what_is_missing_until_it_can_be_sent(panels, touched):
 # Score
 
 
-def test_a_trial_is_scored_beside_the_reference_group_and_exported(panels, add_trial, tmp_path):
+def test_a_trial_is_scored_beside_the_reference_group_and_exported(
+    panels, add_trial, study_path, tmp_path
+):
     add_trial(1, "T-001", motion={"sparc": -1.9})
     add_trial(2, "T-001")
     panels.press("createTraineeButton")
@@ -324,8 +326,11 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(panels, add_t
     panels.press("showTablesButton")
     assert findNode(panels.scene, "vtkMRMLTableNode", Role.SCORE) is not None
     panels.answer("Export all trials", str(tmp_path / "all.csv"))
+    with Study.open(study_path) as study:
+        study.set_consent("T-001", True)
     panels.press("exportScoresButton")
     assert len((tmp_path / "all.csv").read_text().splitlines()) == 3
+    assert "agree to research: 1." in panels.text("scoreMessageText")
 
 
 def test_a_study_without_consenting_trainees_has_no_report(panels, add_trial, tmp_path):

@@ -1,5 +1,6 @@
 """Trainees are created, archived, exported and deleted; their history is a table and a plot."""
 
+import csv
 import json
 import uuid
 
@@ -72,12 +73,12 @@ def test_an_archived_trainee_is_listed_only_when_asked_for(desk):
     assert desk.chosenTrainee().consent
 
 
-def test_a_deleted_trainee_is_gone_from_study_and_journals(desk, add_trial, tmp_path):
+def test_a_deleted_trainee_is_gone_and_journals_that_are_elsewhere_are_named(desk, add_trial):
     add_trial(1, trainee="gone")
     desk.choose("gone")
-    (tmp_path / "journals").mkdir()
     erased = desk.delete()
     assert (erased.trials, erased.journals) == (1, 0)
+    assert "The journals of 1 trials were not found" in erased.warnings[0]
     assert (desk.chosen, desk.history(), desk.chosenTrainee()) == ("", (), None)
 
 
@@ -89,14 +90,26 @@ def test_a_trainee_that_another_slicer_has_deleted_is_chosen_no_more(desk, tmp_p
     assert desk.history() == ()
 
 
-def test_one_trainee_is_exported_as_json_and_everyone_as_a_table(desk, add_trial, tmp_path):
+def test_one_trainee_is_exported_as_json_and_as_a_table(desk, add_trial, tmp_path):
     add_trial(1, trainee="a")
-    add_trial(2, trainee="b")
     desk.choose("a")
     assert desk.export(tmp_path / "a.json") == 1
     assert json.loads((tmp_path / "a.json").read_text())["trainee"]["pseudonym"] == "a"
     assert desk.exportHistory(tmp_path / "a.csv") == 1
-    assert desk.exportHistory(tmp_path / "all.csv", everybody=True) == 2
+
+
+def test_a_table_of_everyone_has_those_only_who_agreed_to_research(desk, add_trial, tmp_path):
+    add_trial(1, trainee="a")
+    add_trial(2, trainee="b")
+    with pytest.raises(InputError, match=r"No trainee of this study agreed .* \(2 did not\)"):
+        desk.exportHistories(tmp_path / "all.csv")
+    assert not (tmp_path / "all.csv").exists()
+    desk.choose("b")
+    desk.setConsent(True)
+    desk.setArchived(True)
+    assert desk.exportHistories(tmp_path / "all.csv") == (1, 1)
+    with (tmp_path / "all.csv").open(newline="") as file:
+        assert [row["trainee"] for row in csv.DictReader(file)] == ["b"]
 
 
 def test_the_history_is_a_table_and_two_learning_curves(scene, add_trial):

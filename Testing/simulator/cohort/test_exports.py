@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import slicer
 import vtk
 
 from rastrainer import transforms
@@ -17,9 +16,10 @@ from rastrainer.errors import InputError
 from rastrainer.export.motion_bids import participant_labels, write_motion_bids
 from rastrainer.export.slicer_files import transform_text
 from rastrainer.journal.folder import read_trajectory
-from rastrainer.markups import read_markups
 from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.report.study_data import read_study_data
+from rastrainer.slicer.headless_scene import HeadlessScene
 from rastrainer.study import Study
 from rastrainer_simulator.cli import main
 from rastrainer_simulator.cohort.cohort import DATABASE, RECORDS
@@ -68,6 +68,20 @@ def test_a_tidy_table_has_a_row_a_trial_and_units_in_its_columns(exported):
     assert all(float(row["completion_time_s"]) > 0 for row in rows)
 
 
+def test_every_touch_is_a_row_with_its_residual(played, exported):
+    rows = list(csv.DictReader((exported / "csv" / "touches.csv").open()))
+    assert len(rows) == 4 * FIDUCIAL_COUNT
+    for trial in read_study_data(played / DATABASE).trials:
+        own = [row for row in rows if row["trial_id"] == trial.trial_id]
+        assert [row["label"] for row in own] == [str(i + 1) for i in range(FIDUCIAL_COUNT)]
+        residuals = np.array([float(row["residual_mm"]) for row in own])
+        assert np.sqrt(np.mean(residuals**2)) == pytest.approx(trial.values["rmse_mm"])
+        assert np.all(np.diff([float(row["sim_time_s"]) for row in own]) > 0)
+        journal = read_trajectory(played / RECORDS, trial.trial_id)
+        tip = [[float(row[axis]) for axis in ("x_mm", "y_mm", "z_mm")] for row in own]
+        np.testing.assert_array_equal(tip, journal.touch_positions_mm)
+
+
 def test_xapi_statements_have_what_the_specification_requires(exported):
     statements = json.loads((exported / "xapi" / "statements.json").read_text())
     assert len(statements) == len({statement["id"] for statement in statements}) == 4
@@ -88,22 +102,44 @@ def test_xapi_statements_have_what_the_specification_requires(exported):
         assert statement["timestamp"].endswith("Z")
 
 
-def test_slicer_reads_the_touches_and_the_transform(played, exported):
+def test_slicer_reads_the_touches_the_transform_and_the_residuals(played, exported):
     with Study.open(played / DATABASE) as study:
         trial = study.history("V0001")[0]
     folder = exported / "slicer" / trial.record.trial_id
-    world = read_markups(folder / "touched-world.mrk.json")
-    ras = read_markups(folder / "touched-ras.mrk.json")
-    scene = slicer.vtkMRMLScene()
-    node = scene.AddNewNodeByClass("vtkMRMLLinearTransformNode")
-    storage = scene.AddNewNodeByClass("vtkMRMLTransformStorageNode")
-    storage.SetFileName(str(folder / "WorldToRas.tfm"))
-    assert storage.ReadData(node) == 1
+    scene, rigid = HeadlessScene().scene, trial.registrations["rigid"]
+    node = read_by_slicer(scene, "LinearTransform", "Transform", folder / "WorldToRas.tfm")
     matrix = vtk.vtkMatrix4x4()
     node.GetMatrixTransformToParent(matrix)
     found = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
-    np.testing.assert_allclose(found, np.reshape(trial.registrations["rigid"].matrix, (4, 4)))
-    np.testing.assert_allclose(transforms.apply(found, world.points), ras.points, atol=1e-9)
+    np.testing.assert_allclose(found, np.reshape(rigid.matrix, (4, 4)))
+    world, ras = (
+        read_by_slicer(
+            scene, "MarkupsFiducial", "MarkupsJson", folder / f"touched-{frame}.mrk.json"
+        )
+        for frame in ("world", "ras")
+    )
+    assert [world.GetNthControlPointLabel(i) for i in range(15)] == list(trial.record.labels)
+    np.testing.assert_allclose(points_of(world), trial.record.positions_mm, atol=1e-6)
+    moved = transforms.apply(found, points_of(world))
+    np.testing.assert_allclose(moved, points_of(ras), atol=1e-6)
+    table = read_by_slicer(scene, "Table", "Table", folder / "residuals.csv").GetTable()
+    labels, residuals = table.GetColumnByName("fiducial"), table.GetColumnByName("residual_mm")
+    read = [(labels.GetValue(i), float(residuals.GetValue(i))) for i in range(15)]
+    assert read == list(zip(rigid.labels, rigid.residuals_mm, strict=True))
+
+
+def read_by_slicer(scene, kind, storage_kind, path):
+    """The node of a kind that Slicer's own storage node of another kind reads from a file."""
+    node = scene.AddNewNodeByClass(f"vtkMRML{kind}Node")
+    storage = scene.AddNewNodeByClass(f"vtkMRML{storage_kind}StorageNode")
+    storage.SetFileName(str(path))
+    assert storage.ReadData(node) == 1
+    return node
+
+
+def points_of(markups):
+    count = markups.GetNumberOfControlPoints()
+    return np.array([markups.GetNthControlPointPosition(i) for i in range(count)])
 
 
 def test_itk_text_is_in_lps_and_from_the_parent():

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.export.motion_bids import make_empty_folder, write_motion_bids
+from rastrainer.export.motion_bids import write_motion_bids
 from rastrainer.export.slicer_files import write_slicer_files
-from rastrainer.export.tidy_csv import answers_csv, trials_csv
+from rastrainer.export.tidy_csv import answers_csv, scores_csv, touches_csv, trials_csv
 from rastrainer.export.xapi import HOME_PAGE, statements_text
-from rastrainer.files import write_text
+from rastrainer.files import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.report.published_scores import with_ctps
-from rastrainer.report.study_data import StudyData, read_study_data
+from rastrainer.report.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.study import Study
+from rastrainer.study_values import StoredTrial
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
@@ -59,6 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
     make_empty_folder(arguments.output)
     for name in formats:
         print(f"{arguments.output / name}: {_write(name, data, arguments)}")
+    if data.without_consent:
+        print(f"Left out because they did not agree to research: {data.without_consent} trainees")
     return 0
 
 
@@ -72,12 +76,22 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     make_empty_folder(folder)
     if name == "csv":
         write_text(folder / "trials.csv", trials_csv(data.trials))
+        write_text(folder / "touches.csv", touches_csv(_stored(data, arguments.study)))
+        write_text(folder / "scores.csv", scores_csv(data))
         write_text(folder / "answers.csv", answers_csv(data))
     elif name == "xapi":
         write_text(folder / "statements.json", statements_text(data, arguments.home_page))
     else:
-        with Study.open(arguments.study) as study:
-            for trial in data.trials:
-                if trial.trial_id:
-                    write_slicer_files(study.trial(trial.trial_id), folder / trial.trial_id)
+        for trial, stored in _stored(data, arguments.study):
+            write_slicer_files(stored, folder / trial.trial_id)
     return f"{len(data.trials)} trials"
+
+
+def _stored(data: StudyData, path: Path) -> Iterator[tuple[TrialRow, StoredTrial]]:
+    """Yield the trials that a database holds, each with what is stored of it; a CSV has none."""
+    known = [trial for trial in data.trials if trial.trial_id]
+    if not known:
+        return
+    with Study.open(path) as study:
+        for trial in known:
+            yield trial, study.trial(trial.trial_id)

@@ -1,4 +1,4 @@
-"""One trial a row, one value a column: what R, Python and spreadsheets read at once."""
+"""One trial, touch, score or answer a row: what R, Python and spreadsheets read at once."""
 
 from __future__ import annotations
 
@@ -7,14 +7,24 @@ import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from rastrainer.errors import InputError
+from rastrainer.experiment.study_progress import QuestionnaireAnswers
 from rastrainer.files import write_text
+from rastrainer.questionnaires.catalog import find_questionnaire
+from rastrainer.registration import RIGID
 from rastrainer.report.study_data import StudyData, TrialRow, trial_rows
 from rastrainer.study import Study
+from rastrainer.study_values import StoredTrial
 
 FIRST_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "started_utc"),
     *("scenario", "score_version"),
 )
+TOUCH_COLUMNS = (
+    *("trainee", "mode", "task", "number", "trial_id", "label"),
+    *("sim_time_s", "x_mm", "y_mm", "z_mm", "residual_mm"),
+)
+QUESTIONNAIRE_COLUMNS = ("trainee", "mode", "step", "questionnaire")
 
 
 def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> int:
@@ -26,6 +36,23 @@ def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> 
     rows = [row for pseudonym in pseudonyms for row in trial_rows(study.history(pseudonym))]
     write_text(path, trials_csv(rows))
     return len(rows)
+
+
+def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
+    """Write all trials, trial runs too, of those who agreed to research as a CSV file.
+
+    Returns:
+        The number of trials, and of the trainees who did not agree and are left out.
+
+    Raises:
+        InputError: nobody agreed, or the file cannot be written.
+    """
+    everyone = (*study.trainees(), *study.trainees(archived=True))
+    agreed = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
+    left_out = len(everyone) - len(agreed)
+    if not agreed:
+        raise InputError(f"No trainee of this study agreed to research ({left_out} did not).")
+    return write_history(study, agreed, path), left_out
 
 
 def trials_csv(trials: Sequence[TrialRow]) -> str:
@@ -46,21 +73,56 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
     return csv_text([*FIRST_COLUMNS, *names], rows)
 
 
-def answers_csv(data: StudyData) -> str:
+def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
+    """Return the kept touches of trials as CSV text, in the order they were made.
+
+    Positions are the tip's in `World`; simulated time tells the time from one touch to the next,
+    pauses included. A residual is that of the rigid fit, empty for a touch that it left out.
+    """
+    rows = []
+    for trial, stored in trials:
+        rigid = stored.registrations.get(RIGID)
+        fitted = () if rigid is None else zip(rigid.labels, rigid.residuals_mm, strict=True)
+        residuals = dict(fitted)
+        rows += [
+            [
+                *(plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)),
+                trial.number,
+                trial.trial_id,
+                plain_cell(point.label),
+                *(_number(value) for value in (point.sim_time_s, *point.position_mm)),
+                _number(residuals.get(point.label)),
+            ]
+            for point in stored.record.points
+        ]
+    return csv_text(TOUCH_COLUMNS, rows)
+
+
+def scores_csv(data: StudyData) -> str:
     """Return the questionnaires as CSV text, one score a row."""
     rows = [
-        [
-            plain_cell(answered.trainee),
-            answered.step.mode,
-            answered.step.name,
-            answered.step.questionnaire,
-            scale,
-            _number(score),
-        ]
+        [*_asked(answered), scale, _number(score)]
         for answered in data.answers
         for scale, score in answered.scores.items()
     ]
-    return csv_text(["trainee", "mode", "step", "questionnaire", "scale", "score"], rows)
+    return csv_text([*QUESTIONNAIRE_COLUMNS, "scale", "score"], rows)
+
+
+def answers_csv(data: StudyData) -> str:
+    """Return the questionnaires as CSV text, one answered item a row."""
+    rows = [
+        [*_asked(answered), item.name, answer]
+        for answered in data.answers
+        for item, answer in zip(
+            find_questionnaire(answered.step.questionnaire).items, answered.answers, strict=True
+        )
+    ]
+    return csv_text([*QUESTIONNAIRE_COLUMNS, "item", "answer"], rows)
+
+
+def _asked(answered: QuestionnaireAnswers) -> list[str]:
+    step = answered.step
+    return [plain_cell(answered.trainee), step.mode, step.name, step.questionnaire]
 
 
 def csv_text(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

@@ -9,7 +9,6 @@ from typing import Any
 from rastrainer.experiment.study_progress import QuestionnaireAnswers
 from rastrainer.report.outcomes import mode_title, task_title
 from rastrainer.report.study_data import StudyData, TrialRow
-from rastrainer.scoring import SCORE_VERSION
 
 HOME_PAGE = "https://rastrainer.invalid"
 VERBS = {
@@ -46,6 +45,9 @@ def _trial(trial: TrialRow, home_page: str) -> dict[str, Any]:
             f"{home_page}/xapi/values/{name}": value for name, value in sorted(trial.values.items())
         },
     }
+    context = {f"{home_page}/xapi/mode": trial.mode, f"{home_page}/xapi/trial-number": trial.number}
+    if trial.score_version:
+        context[f"{home_page}/xapi/score-version"] = trial.score_version
     if "score" in trial.values:
         score = trial.values["score"]
         result["score"] = {"scaled": round(score / 100, 6), "raw": score, "min": 0, "max": 100}
@@ -58,11 +60,7 @@ def _trial(trial: TrialRow, home_page: str) -> dict[str, Any]:
         "result": result,
         "context": {
             "platform": f"RASTrainer, {mode_title(trial.mode)}",
-            "extensions": {
-                f"{home_page}/xapi/mode": trial.mode,
-                f"{home_page}/xapi/trial-number": trial.number,
-                f"{home_page}/xapi/score-version": SCORE_VERSION,
-            },
+            "extensions": context,
         },
         "timestamp": trial.started_utc,
     }

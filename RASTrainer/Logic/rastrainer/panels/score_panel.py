@@ -71,10 +71,11 @@ class ScorePanel:
         )
         if path:
             with slicer.util.tryWithErrorDisplay(_("The trials were not exported.")):
-                count = self._trainees.exportHistory(Path(path), everybody=True)
-                self._ui.scoreMessageText.text = _("{count} trials are written to {path}.").format(
-                    count=count, path=path
-                )
+                count, leftOut = self._trainees.exportHistories(Path(path))
+                self._ui.scoreMessageText.text = _(
+                    "{count} trials are written to {path}. Trainees left out because they did not "
+                    "agree to research: {leftOut}."
+                ).format(count=count, path=path, leftOut=leftOut)
 
     def writeReport(self) -> None:
         """Write the report of the whole study into a folder, and open it."""

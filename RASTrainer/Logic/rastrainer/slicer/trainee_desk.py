@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.export.erasure import Erasure, erase_trainee
-from rastrainer.export.tidy_csv import write_history
+from rastrainer.export.tidy_csv import write_histories, write_history
 from rastrainer.export.trainee_json import export_trainee
 from rastrainer.slicer.signal import Signal
 from rastrainer.study import StoredTrial, Study, Trainee
@@ -94,7 +94,7 @@ class TraineeDesk:
         self.changed.emit()
 
     def delete(self) -> Erasure:
-        """Delete the chosen trainee with all trials and journals, for good; return how many."""
+        """Delete the chosen trainee with all trials and journals, for good; return what was."""
         records = self._records if self._records.is_dir() else None
         erased = erase_trainee(self.study, self.chosen, records)
         self.chosen = ""
@@ -105,10 +105,20 @@ class TraineeDesk:
         """Write everything about the chosen trainee into a JSON file; return the trials' number."""
         return export_trainee(self.study, self.chosen, path)
 
-    def exportHistory(self, path: Path, everybody: bool = False) -> int:
-        """Write trials as a CSV file, of the chosen trainee or of all; return their number."""
-        everyone = [trainee.pseudonym for trainee in self.trainees(archived=True)]
-        return write_history(self.study, everyone if everybody else [self.chosen], path)
+    def exportHistory(self, path: Path) -> int:
+        """Write the trials of the chosen trainee as a CSV file; return their number."""
+        return write_history(self.study, [self.chosen], path)
+
+    def exportHistories(self, path: Path) -> tuple[int, int]:
+        """Write the trials of all who agreed to research as a CSV file.
+
+        Returns:
+            The number of trials, and of the trainees who are left out.
+
+        Raises:
+            InputError: nobody agreed, or the file cannot be written.
+        """
+        return write_histories(self.study, path)
 
     def history(self) -> tuple[StoredTrial, ...]:
         """Return the trials of the chosen trainee in the order they were started."""

@@ -11,7 +11,6 @@ from rastrainer.experiment.study_protocol import BALANCED
 from rastrainer.motion.definitions import FILTER
 from rastrainer.report.markup import bullets, heading, paragraph, section, table
 from rastrainer.report.study_data import StudyData
-from rastrainer.scoring import SCORE_VERSION
 
 REFERENCES = (
     "Student 1908, The probable error of a mean. Biometrika 6",
@@ -33,9 +32,10 @@ REFERENCES = (
 def methods(data: StudyData) -> str:
     """Return the section."""
     versions = [[name, ", ".join(found)] for name, found in data.versions.items()]
+    scored = sorted({trial.score_version for trial in data.trials if trial.score_version})
     own = [
         ["rastrainer (this report)", rastrainer.__version__],
-        ["score", SCORE_VERSION],
+        ["score", ", ".join(scored) or "none"],
         ["python, numpy (this report)", f"{platform.python_version()}, {np.__version__}"],
     ]
     return section(

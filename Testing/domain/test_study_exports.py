@@ -1,0 +1,75 @@
+"""Answers and versions leave a study as they were stored: as tables, as xAPI and in the report."""
+
+import csv
+import io
+import json
+import uuid
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.export.tidy_csv import answers_csv, scores_csv
+from rastrainer.export.xapi import HOME_PAGE, statements
+from rastrainer.questionnaires.ssq import SSQ
+from rastrainer.report.report import report_html
+from rastrainer.report.study_data import read_study_data
+from rastrainer_simulator.cli import main
+from Testing.domain.played_study import study_with_trials
+
+OLD = "0 of a pilot"
+
+
+@pytest.fixture
+def data(tmp_path):
+    study_with_trials(tmp_path / "study.db")
+    return read_study_data(tmp_path / "study.db")
+
+
+def rows_of(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def test_every_answered_item_is_a_row_and_every_score_is_one(data):
+    items, scores = rows_of(answers_csv(data)), rows_of(scores_csv(data))
+    before = [row for row in items if row["step"] == "hmd/before/ssq"]
+    assert [row["item"] for row in before] == [item.name for item in SSQ.items]
+    assert {(row["trainee"], row["mode"], row["answer"]) for row in before} == {("A", "hmd", "1")}
+    assert len(items) == sum(len(answered.answers) for answered in data.answers)
+    told = {row["scale"]: float(row["score"]) for row in scores if row["step"] == "hmd/before/ssq"}
+    assert told == SSQ.score([1] * 16)
+
+
+def test_every_answered_questionnaire_is_a_statement_with_its_scores(data):
+    answered = [s for s in statements(data) if s["verb"]["display"]["en-US"] == "answered"]
+    assert len(answered) == len(data.answers) > 3
+    assert len({uuid.UUID(statement["id"]) for statement in answered}) == len(answered)
+    assert statements(data) == statements(data)
+    step = f"{HOME_PAGE}/xapi/step"
+    (before,) = (s for s in answered if s["context"]["extensions"][step] == "hmd/before/ssq")
+    assert before["object"]["id"].endswith("/questionnaires/ssq")
+    assert before["actor"]["account"]["name"] == "A"
+    assert before["result"]["extensions"] == {
+        f"{HOME_PAGE}/xapi/values/{scale}": score for scale, score in SSQ.score([1] * 16).items()
+    }
+
+
+def test_the_version_told_of_a_score_is_the_one_that_it_was_computed_with(data):
+    first, *others = data.trials
+    unscored = replace(others[0], score_version="")
+    mixed = replace(data, trials=(replace(first, score_version=OLD), unscored, *others[1:]))
+    name = f"{HOME_PAGE}/xapi/score-version"
+    told = [s["context"]["extensions"].get(name) for s in statements(mixed)]
+    assert told[: len(mixed.trials)] == [OLD, None, *(t.score_version for t in others[1:])]
+    assert f"{OLD}, {others[1].score_version}" in report_html(mixed)
+
+
+def test_who_did_not_agree_to_research_is_left_out_of_an_export_and_counted(tmp_path, capsys):
+    study_with_trials(tmp_path / "study.db", consent=False)
+    words = ["export", tmp_path / "study.db", "-o", tmp_path / "out"]
+    assert main([str(word) for word in words]) == 0
+    assert "did not agree to research: 1 trainees" in capsys.readouterr().out
+    for name in ("trials", "touches", "scores", "answers"):
+        rows = rows_of((tmp_path / "out" / "csv" / f"{name}.csv").read_text())
+        assert {row["trainee"] for row in rows} <= {"B"}
+    told = json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text())
+    assert {statement["actor"]["account"]["name"] for statement in told} == {"B"}
