@@ -43,8 +43,38 @@ def test_damaged_and_unfinished_journals_of_the_trainee_go_too(copied):
     first = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
     content = first.read_bytes()
     first.write_bytes(content[: len(content) // 2])
-    assert erase_journals(folder, "V0001") == 2
+    erased, unreadable = erase_journals(folder, "V0001")
+    assert (len(erased), unreadable) == (2, [])
     assert b"V0001" not in bytes_below(folder)
+
+
+def test_a_journal_whose_first_line_is_damaged_goes_by_its_trial_or_is_named(copied, capsys):
+    folder = copied / RECORDS
+    own = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
+    unknown = folder / "20260101T000000Z_00000000-0000-0000-0000-000000000000.journal"
+    unknown.write_bytes(own.read_bytes().replace(b'{"n":1', b"\0\0\0\0\0\0", 1))
+    own.write_bytes(b"\0" * 200)
+    words = ["delete-trainee", copied / DATABASE, "V0001", "--yes", "--records", folder]
+    assert main([str(word) for word in words]) == 1
+    printed = capsys.readouterr().out
+    assert "2 trials and 2 journals deleted" in printed
+    assert f"Whose journals these are cannot be read, they are left: {unknown}." in printed
+    assert not own.exists()
+    assert unknown.exists()
+
+
+def test_journals_that_would_be_left_elsewhere_are_named(copied, tmp_path, capsys):
+    with Study.open(copied / DATABASE) as study:
+        ids = [trial.record.trial_id for trial in study.history("V0001")]
+    words = [str(word) for word in ("delete-trainee", copied / DATABASE, "V0001", "--yes")]
+    assert main(words) == 2
+    assert "The journals of V0001 would be left" in capsys.readouterr().err
+    (tmp_path / "empty").mkdir()
+    assert main([*words, "--records", str(tmp_path / "empty")]) == 1
+    printed = capsys.readouterr().out
+    assert "2 trials and 0 journals deleted" in printed
+    assert "The journals of 2 trials were not found" in printed
+    assert all(f"*_{trial_id}.journal" in printed for trial_id in ids)
 
 
 def test_a_journal_that_is_being_written_stops_the_deletion_before_it_begins(copied):

@@ -17,7 +17,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="delete a trainee from a study and from the journals, for good",
         description=(
             "Nothing of the trainee is left in the database, the journals or later exports. "
-            "Earlier exports, backups and printed reports are yours to delete."
+            "Earlier exports, backups and printed reports are yours to delete. Exit status: 0 all "
+            "is deleted, 1 journals may be left, 2 nothing was deleted."
         ),
     )
     parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
@@ -33,7 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Delete the trainee and return the exit status.
 
     Raises:
-        InputError: there is no such study or trainee, a journal cannot be deleted, or --yes lacks.
+        InputError: there is no such study or trainee, a journal cannot be deleted, or --yes or
+            --records lacks.
     """
     if not arguments.study.is_file():
         raise InputError(f"There is no file {arguments.study}.")
@@ -44,6 +46,13 @@ def run(arguments: argparse.Namespace) -> int:
                 f"{arguments.pseudonym} has {count} trials, which would be lost for good; add "
                 "--yes to delete them."
             )
+        if arguments.records is None:
+            raise InputError(
+                f"The journals of {arguments.pseudonym} would be left; give the folder of the "
+                "simulator's journals with --records (it may be empty where there are none)."
+            )
         erased = erase_trainee(study, arguments.pseudonym, arguments.records)
     print(f"{arguments.pseudonym}: {erased.trials} trials and {erased.journals} journals deleted")
-    return 0
+    for sentence in erased.warnings:
+        print(sentence)
+    return 1 if erased.warnings else 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -43,24 +43,46 @@ def read_trajectory(folder: Path, trial_id: str) -> Trajectory | None:
     return None
 
 
-def erase_journals(folder: Path, trainee: str) -> int:
-    """Overwrite and delete every journal of a trainee, damaged ones too; return how many.
+def erase_journals(
+    folder: Path, trainee: str, trial_ids: Collection[str] = ()
+) -> tuple[list[Path], list[Path]]:
+    """Overwrite and delete every journal of a trainee, damaged ones too.
+
+    Args:
+        folder: Of the journals.
+        trainee: Pseudonym; a journal's first line tells it.
+        trial_ids: UUIDs of the trainee's trials; where the first line is damaged the file's name
+            tells the trial.
+
+    Returns:
+        The paths that were deleted, and those of files named as journals that tell neither.
 
     Raises:
         InputError: there is no such folder, a journal cannot be deleted, or one is being written.
     """
-    paths = [path for path in journals(folder) if _trainee_of(path) == trainee]
-    for path in paths:
-        try:
-            with _locked(path) as descriptor:
-                _overwrite(descriptor)
-            path.unlink()
-        except OSError as error:
-            raise InputError(
-                f"The journal {path} cannot be deleted ({error.strerror}); if the trial is still "
-                "running, end it first."
-            ) from None
-    return len(paths)
+    if not folder.is_dir():
+        raise InputError(f"There is no folder {folder} with journals.")
+    erased, unreadable = [], []
+    for path in sorted(folder.glob(f"*{SUFFIX}")):
+        owner = _trainee_of(path)
+        if owner == trainee or path.stem.rpartition("_")[2] in trial_ids:
+            _erase(path)
+            erased.append(path)
+        elif owner is None:
+            unreadable.append(path)
+    return erased, unreadable
+
+
+def _erase(path: Path) -> None:
+    try:
+        with _locked(path) as descriptor:
+            _overwrite(descriptor)
+        path.unlink()
+    except OSError as error:
+        raise InputError(
+            f"The journal {path} cannot be deleted ({error.strerror}); if the trial is still "
+            "running, end it first."
+        ) from None
 
 
 def _begins_as_journal(path: Path) -> bool:
@@ -72,7 +94,8 @@ def _begins_as_journal(path: Path) -> bool:
 def _trainee_of(path: Path) -> str | None:
     """Return whose a journal is; the first line tells, whatever became of the others."""
     with contextlib.suppress(OSError, ValueError, AttributeError), path.open("rb") as file:
-        return decode_finite_json(file.readline(LONGEST_LINE).decode("ascii")).get("trainee")
+        trainee = decode_finite_json(file.readline(LONGEST_LINE).decode("ascii")).get("trainee")
+        return trainee if isinstance(trainee, str) else None
     return None
 
 

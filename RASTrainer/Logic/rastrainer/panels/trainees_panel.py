@@ -119,12 +119,10 @@ class TraineesPanel:
             ).format(name=name, trials=trials)
             if slicer.util.confirmYesNoDisplay(question, _("Delete the trainee")):
                 erased = self._desk.delete()
-                self._say(
-                    _("{name} is deleted with {trials} trials and {journals} journals."),
-                    name=name,
-                    trials=erased.trials,
-                    journals=erased.journals,
+                told = _("{name} is deleted with {trials} trials and {journals} journals.").format(
+                    name=name, trials=erased.trials, journals=erased.journals
                 )
+                self._say("{told}", told=" ".join((told, *erased.warnings)))
 
     def showLearningCurve(self) -> None:
         """Show score and time over the trials, as a table and a plot."""
