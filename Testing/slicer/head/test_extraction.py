@@ -7,6 +7,7 @@ from scipy import ndimage
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.extraction import HeadSettings, extract_head
 from rastrainer.slicer.head.volume import Volume, on_ras_grid
+from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL
 
 SEMI_AXES = np.array([33.0, 38.0, 36.0])
 CENTER = np.array([4.0, -7.0, 12.0])
@@ -45,12 +46,24 @@ def around_head(matrix, shape):
     return matrix
 
 
-def skin_errors(mesh):
+def stored_along(directions, spacing):
+    """Return the phantom on a grid whose axes are columns (3, 3), its lowest slice at LOWEST."""
+    shape = np.ceil(np.abs(directions).T @ [110.0, 116.0, 75.0] / spacing).astype(int)
+    matrix = np.eye(4)
+    matrix[:3, :3] = directions @ np.diag(spacing)
+    upright = np.abs(directions[2]).argmax()
+    lowest_slice = (shape - 1) / 2
+    lowest_slice[upright] = 0 if directions[2, upright] > 0 else shape[upright] - 1
+    matrix[:3, 3] = [*CENTER[:2], LOWEST] - matrix[:3, :3] @ lowest_slice
+    return phantom(matrix, tuple(shape))
+
+
+def skin_errors(mesh, above=LOWEST + 3.0):
     """Distances of the vertices to the ellipsoid, without the base, the airway and the ear."""
     offset = mesh.vertices - CENTER
     radius = np.linalg.norm(offset / SEMI_AXES, axis=1)
     gradient = np.linalg.norm(offset / SEMI_AXES**2, axis=1) / np.maximum(radius, 1e-9)
-    base = mesh.vertices[:, 2] < LOWEST + 3
+    base = mesh.vertices[:, 2] < above
     airway = (np.hypot(offset[:, 0], offset[:, 2] + 10) < 8) & (offset[:, 1] > 0)
     ear = (offset[:, 0] > 0) & (np.hypot(offset[:, 1], offset[:, 2]) < 16)
     return np.abs((radius - 1) / gradient)[~(base | airway | ear)]
@@ -78,6 +91,24 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
     assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=1e-4)
     on_base = np.isclose(mesh.vertices[:, 2], LOWEST + 1.0, atol=1e-4)
     assert (mesh.vertices[~on_base, 2] > LOWEST + 1.001).all()
+
+
+@pytest.mark.parametrize(
+    ("directions", "spacing"),
+    [
+        pytest.param(DOUBLE_OBLIQUE, (1.5, 1.5, 1.5), id="double oblique"),
+        pytest.param(SAGITTAL, (1.2, 1.2, 1.5), id="stored slice by slice from the left"),
+    ],
+)
+def test_the_skin_is_found_however_the_scan_lies_and_is_stored(directions, spacing):
+    mesh = extract_head(stored_along(directions, spacing), HeadSettings(opening_mm=8))
+    # Below, the neck goes straight on where the tilted lowest slice leaves some of it out.
+    errors = skin_errors(mesh, above=LOWEST + 14.0)
+    assert errors.mean() < 0.5
+    assert np.percentile(errors, 95) < 1.0
+    assert mesh.is_closed
+    assert mesh.euler_characteristic == 2
+    assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=0.5)
 
 
 def test_a_nose_cut_by_the_image_ends_rounded_a_few_millimeters_beyond_it():

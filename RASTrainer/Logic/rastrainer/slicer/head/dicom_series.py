@@ -11,6 +11,7 @@ import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.errors import InputError
+from rastrainer.slicer.head.cut_files import is_cut_dicom
 from rastrainer.slicer.head.volume import Volume, matrix_of
 
 MOST_FILES = 4000
@@ -61,6 +62,8 @@ def _is_dicom(path: Path) -> bool:
 
 
 def _read_slice(path: Path) -> tuple[str, _Slice]:
+    if is_cut_dicom(path):
+        raise InputError(f"The DICOM file {path} is cut short; copy the series again.")
     reader = slicer.vtkITKArchetypeImageSeriesScalarReader()
     reader.SetArchetype(str(path))
     reader.SetSingleFile(1)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
@@ -18,6 +19,7 @@ MARGIN = 14
 
 MOST_TRIANGLES = 60_000
 MOST_DECIMATIONS, BASE_RESERVE = 3, 500
+HAIRS_MM = (0.0, 0.2, 0.4)
 LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
 
@@ -119,7 +121,7 @@ def skin_of(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadM
     skin, wanted = surface.smoothed(skin), settings.triangles
     for _ in range(MOST_DECIMATIONS):
         fewer = surface.decimated(skin, wanted, head.base_mm)
-        mesh = surface.mesh_of(surface.cut_flat(fewer, head.base_mm))
+        mesh = _cut(fewer, head.base_mm)
         # The base is not decimated with the rest; how many it adds shows only afterwards.
         over = len(mesh.triangles) - MOST_TRIANGLES
         if over <= 0:
@@ -168,8 +170,21 @@ def _agreeing(level: np.ndarray, body: np.ndarray) -> np.ndarray:
     return np.where(body, np.maximum(level, 0.05), np.minimum(level, -0.05))
 
 
+def _cut(skin: vtk.vtkPolyData, base_mm: float) -> HeadMesh:
+    """Return the skin cut flat, a hair higher where triangles in the very plane keep it open."""
+    for hair in HAIRS_MM:
+        mesh = surface.mesh_of(surface.cut_flat(skin, base_mm + hair))
+        if _is_sound(mesh):
+            break
+    return mesh
+
+
+def _is_sound(mesh: HeadMesh) -> bool:
+    return mesh.is_closed and mesh.euler_characteristic == 2
+
+
 def _check(mesh: HeadMesh) -> None:
-    if not mesh.is_closed or mesh.euler_characteristic != 2:
+    if not _is_sound(mesh):
         raise InputError(
             "No head was found: its surface could not be closed; try another threshold or base."
         )

@@ -12,6 +12,7 @@ from scipy import ndimage
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.errors import InputError
+from rastrainer.slicer.head.cut_files import is_cut_nifti
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,8 @@ def read_volume(path: Path) -> Volume:
     """
     if not Path(path).is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
+    if str(path).endswith((".nii", ".nii.gz")) and is_cut_nifti(path):
+        raise InputError(f"{path} is cut short; copy the file again.")
     scene = slicer.vtkMRMLScene()
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
     storage = slicer.vtkMRMLVolumeArchetypeStorageNode()
@@ -85,14 +88,22 @@ def read_volume(path: Path) -> Volume:
 
 
 def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
-    """Return the volume on a cubic grid whose axes run to the right, anterior and superior."""
-    corners = np.array(np.meshgrid(*[(0, n - 1) for n in volume.values.shape])).reshape(3, -1).T
-    corners = corners @ volume.ijk_to_ras[:3, :3].T + volume.ijk_to_ras[:3, 3]
-    origin, extent = corners.min(axis=0), np.ptp(corners, axis=0)
+    """Return the volume on a cubic grid whose axes run to the right, anterior and superior.
+
+    The grid of an oblique volume begins at the middle of its lowest slice, which is repeated below,
+    so that the neck goes on to a flat base; what else the volume does not cover is air.
+    """
+    indices = np.array(np.meshgrid(*[(0, n - 1) for n in volume.values.shape])).reshape(3, -1).T
+    corners = indices @ volume.ijk_to_ras[:3, :3].T + volume.ijk_to_ras[:3, 3]
+    axis, end = _lowest_slice(volume)
+    heights = corners[indices[:, axis] == end, 2]
+    origin, top = corners.min(axis=0), corners.max(axis=0)
+    origin[2] = heights.mean()
     grid_to_ras = np.diag([spacing_mm] * 3 + [1.0])
     grid_to_ras[:3, 3] = origin
+    volume = _repeated(volume, axis, end, float(np.ptp(heights)))
     grid_to_ijk = np.linalg.inv(volume.ijk_to_ras) @ grid_to_ras
-    shape = tuple(int(n) for n in np.floor(extent / spacing_mm + 1e-6) + 1)
+    shape = tuple(int(n) for n in np.floor((top - origin) / spacing_mm + 1e-6) + 1)
     # What the volume does not cover is taken for air, its lowest value: 0 HU would be tissue.
     values = ndimage.affine_transform(
         volume.values,
@@ -103,3 +114,19 @@ def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
         cval=float(volume.values.min()),
     )
     return Volume(values, grid_to_ras)
+
+
+def _lowest_slice(volume: Volume) -> tuple[int, int]:
+    """Return the axis that is nearest to the vertical, and the index of its lower end."""
+    axis = int(np.abs(volume.ijk_to_ras[2, :3]).argmax())
+    return axis, 0 if volume.ijk_to_ras[2, axis] > 0 else volume.values.shape[axis] - 1
+
+
+def _repeated(volume: Volume, axis: int, end: int, down_mm: float) -> Volume:
+    """Return the volume with the slice at one end repeated for so much of height."""
+    count = int(np.ceil(down_mm / abs(volume.ijk_to_ras[2, axis]) - 1e-6))
+    widths = [(0, 0)] * 3
+    widths[axis] = (count, 0) if end == 0 else (0, count)
+    matrix = volume.ijk_to_ras.copy()
+    matrix[:3, 3] -= widths[axis][0] * matrix[:3, axis]
+    return Volume(np.pad(volume.values, widths, mode="edge"), matrix)
