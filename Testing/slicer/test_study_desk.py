@@ -114,7 +114,8 @@ def test_the_time_of_a_trial_run_outlives_an_interruption(enrolled, tmp_path):
 
 def test_the_trial_run_ends_by_itself_while_it_is_played(enrolled):
     enrolled.desk.answer([0] * 16)
-    enrolled.tell(phase="running", elapsedS=0.5)
+    enrolled.tell(phase="idle")
+    enrolled.tell(phase="running", elapsedS=2.5)
     enrolled.tell(phase="running", elapsedS=299.9)
     assert enrolled.next == "hmd/trial-run"
     enrolled.tell(phase="running", elapsedS=300.0)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.experiment.progress import Progress
 from rastrainer.experiment.steps import StepKind
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.protocol import TRIAL_RUN
+from rastrainer.slicer.link import Link
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.slicer.training_desk import TrainingDesk
 
 KEPT_EVERY_S = 5.0
 """What a crash may cost of the time that a trial run was practiced."""
-SEEN_FROM_THE_START_S = 1.0
-"""A trial run that is first seen so young began before our eyes: an older one may have been
-counted by the Slicer before this one."""
 CLOCK_STEP_S = 0.001
 """The simulator tells the trial's time in steps of so much."""
 
@@ -29,19 +28,25 @@ class PracticeWatch:
     """
 
     def __init__(
-        self, trainees: TraineeDesk, training: TrainingDesk, changed: Callable[[str], None]
+        self,
+        trainees: TraineeDesk,
+        training: TrainingDesk,
+        link: Link,
+        changed: Callable[[str], None],
     ) -> None:
         """`changed` is told of whom a trial run was ended, or no longer goes on."""
         self._trainees = trainees
         self._training = training
+        self._link = link
         self._changed = changed
         self._practicing: tuple[str, str] | None = None
         self._seen = self._kept = self._left = 0.0
-        training.changed.connect(self._follow)
+        self._isFirstSight = True
+        link.stateChanged.connect(self._follow)
 
     def close(self) -> None:
         """Listen no more, and keep what was practiced last."""
-        self._training.changed.disconnect(self._follow)
+        self._link.stateChanged.disconnect(self._follow)
         self.keep()
 
     def unkept(self, trainee: str, mode: str) -> float:
@@ -70,7 +75,7 @@ class PracticeWatch:
         except InputError:
             self._practicing = None
 
-    def _follow(self) -> None:
+    def _follow(self, _state: Mapping[str, Any]) -> None:
         trial = self._training.progress
         isPracticed = trial.isOpen and trial.task == TRIAL_RUN
         practicing = (trial.trainee, trial.mode) if isPracticed else None
@@ -81,10 +86,12 @@ class PracticeWatch:
             self._seen = trial.elapsedS
             if self._seen - self._kept >= min(KEPT_EVERY_S, self._left):
                 self.keep()
+        self._isFirstSight = False
 
     def _begin(self, practicing: tuple[str, str] | None, elapsedS: float) -> None:
         self._practicing, self._seen = practicing, elapsedS
-        self._kept = 0.0 if elapsedS < SEEN_FROM_THE_START_S else elapsedS
+        # What was played before our time may have been counted by the Slicer before this one.
+        self._kept = elapsedS if self._isFirstSight else 0.0
         progress = self._asked()
         self._left = KEPT_EVERY_S
         if progress is not None:

@@ -56,7 +56,7 @@ class StudyDesk:
         self._told: dict[str, StudyStep] = {}
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
-        self._watch = PracticeWatch(trainees, training, self._leadAgain)
+        self._watch = PracticeWatch(trainees, training, link, self._leadAgain)
         trainees.changed.connect(self._followTrainees)
         link.opened.connect(self._tellAll)
         link.stepAnswered.connect(self._takeAnswers)

@@ -1,0 +1,60 @@
+"""Slicer's side with a study, as a process: the module's whole session, without its panels."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from rastrainer.protocol import DEFAULT_HOST
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.session import Places, Session
+from rastrainer_simulator.assets import asset_path
+
+STUDY, RECORDS = "study.db", "records"
+PERIOD_S = 0.05
+
+
+def run(folder: Path, port: int) -> None:
+    """Lead the trainees of the study in a folder; nobody is chosen. Never returns."""
+    places = Places(
+        assets=asset_path(),
+        python=Path(sys.executable),
+        simulator=folder / "simulator",
+        study=folder / STUDY,
+        records=folder / RECORDS,
+        library=folder / "scenarios",
+        package="",
+    )
+    session = Session(HeadlessScene().scene, places, headlessKit)
+    session.link.connectTo(DEFAULT_HOST, port)
+    while True:
+        if session.link.connector is not None:
+            session.link.connector.PeriodicProcess()
+        session.process()
+        time.sleep(PERIOD_S)
+
+
+class StudySide:
+    """Runs it; killed by the `with` statement as by a crash."""
+
+    def __init__(self, folder: Path, port: int):
+        command = [sys.executable, "-m", "Testing.end_to_end.study_side", str(folder), str(port)]
+        self._process = subprocess.Popen(command)
+
+    def __enter__(self) -> StudySide:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.kill()
+
+    def kill(self) -> None:
+        """End it as a crash would."""
+        self._process.kill()
+        self._process.wait()
+
+
+if __name__ == "__main__":
+    run(Path(sys.argv[1]), int(sys.argv[2]))
