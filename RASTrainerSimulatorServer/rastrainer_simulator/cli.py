@@ -15,6 +15,7 @@ SUBCOMMANDS = {
     "register": "rastrainer.commands.register_command",
     "score": "rastrainer.commands.score_command",
     "measure": "rastrainer.commands.measure_command",
+    "pass-mark": "rastrainer.commands.pass_mark_command",
     "report": "rastrainer.commands.report_command",
     "export": "rastrainer.commands.export_command",
     "delete-trainee": "rastrainer.commands.delete_command",

@@ -19,6 +19,7 @@ from rastrainer.experiment.study_protocol import (
 from rastrainer.experiment.study_step import StudyStep
 from rastrainer.experiment.williams import williams_design
 from rastrainer.protocol import ALL_DONE, CommandName, check_arguments
+from rastrainer.scoring import PASS_MARK
 from rastrainer.study import Study
 from Testing.domain.trial_records import make_record
 
@@ -161,6 +162,17 @@ def test_every_step_can_be_told_to_the_simulator_and_comes_back_the_same(study):
     assert kinds == {*(kind.value for kind in StepKind), ALL_DONE}
     free = StudyStep("T001")
     assert StudyStep.told(check_arguments(CommandName.STUDY_STEP, free.arguments())) == free
+
+
+def test_a_protocol_may_say_its_pass_mark():
+    shipped = json.loads(SHIPPED.read_text())
+    assert "passMark" not in shipped["scoring"]
+    assert protocol().pass_mark == PASS_MARK
+    own = protocol(scoring=shipped["scoring"] | {"passMark": 62})
+    assert own.pass_mark == 62.0
+    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    with pytest.raises(InputError, match="passMark must be a number from 1 to 100"):
+        protocol(scoring=shipped["scoring"] | {"passMark": 0})
 
 
 def test_nothing_is_skipped_silently(study):

@@ -158,6 +158,11 @@ def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
     assert progress.competence.competent_at is not None
     assert progress.competence.false_discovery <= 0.05
     assert "show competence since number" in progress.sentences[2]
+    long = [past(i, 80.0) for i in range(100)]
+    told = progress_of(long, long[-1].trial_id, pass_mark=60.0)
+    assert told.competence.false_discovery > 0.05
+    risk = f"{100 * told.competence.false_discovery:.0f} % come so far by chance within 100 trials"
+    assert risk in told.sentences[2]
     other = [past(i, 80.0, mode="hmd") for i in range(19)] + [past(19, 80.0)]
     assert progress_of(other, other[-1].trial_id, 60.0).competence.competent_at is None
 
@@ -189,4 +194,8 @@ def test_the_feedback_reads_in_order():
     assert "more than 2 mm is not acceptable" in sentences[2]
     assert sentences[3].startswith("Point 4 was")
     assert sentences[4].startswith("1. ")
+    short = feedback.short_sentences
+    assert short[0] == sentences[3]
+    assert tuple(short[-3:]) == feedback.progress.sentences
+    assert any("to the mark of 55" in s or "mark is 55" in s for s in short)
     assert "10 points more than the mean of your last 1 trials" in sentences[-3]

@@ -4,6 +4,10 @@ The score is the geometric mean of two desirabilities (Harrington 1965, Derringe
 each strictly falling: faster is better, more accurate is better. An error beyond the limit of
 acceptance is cut so far that even the fastest such trial stays below every acceptable one. The
 references are fixed per task before anyone trains, and the mode plays no part.
+
+A pause is no completion time: the arm stands still, and a trainee who is called away shall not lose
+for it. But it is time to think that is not scored. So its length stands beside the score, and
+pauses longer in all than `LONG_PAUSE_S` are told with it.
 """
 
 from __future__ import annotations
@@ -18,6 +22,10 @@ from rastrainer.protocol import TRIAL_RUN
 
 SCORE_VERSION = "1"
 """Changes with any change of a formula or reference, so that scores stay comparable."""
+PASS_MARK = 70.0
+"""Score to reach where a study's protocol has no mark of its own from contrasting groups."""
+LONG_PAUSE_S = 30.0
+"""Our own convention: what a sip of water or a word with the instructor takes."""
 TIME_FLOOR = 0.04
 TIME_LIMIT_S = 1e6
 ERROR_LIMIT_MM = 1e6

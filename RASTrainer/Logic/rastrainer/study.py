@@ -195,7 +195,7 @@ class Study:
             return study_trials.history(connection, pseudonym)
 
     def past_trials(self, pseudonym: str) -> tuple[PastTrial, ...]:
-        """Return what progress is told from: a trainee's scored trials as they were started.
+        """Return what progress is told from: scored trials but the trial runs, as started.
 
         Raises:
             InputError: the study has no trainee of this pseudonym.

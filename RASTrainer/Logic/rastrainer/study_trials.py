@@ -195,14 +195,14 @@ def history(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredTrial
 
 
 def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTrial, ...]:
-    """Return a trainee's scored trials as they were started."""
+    """Return a trainee's scored trials but the trial runs, as they were started."""
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
         "SELECT trial_id, task, mode, completion_time_s, "
         f"({_LATEST_SCORE.format('score_json')}) AS latest "
-        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND latest IS NOT NULL "
+        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND latest IS NOT NULL AND task != ? "
         "ORDER BY started_utc, trials.rowid",
-        (pseudonym,),
+        (pseudonym, protocol.TRIAL_RUN),
     )
     # Row by row: the texts of all trials of a busy trainee are never in memory together.
     return tuple(_past_trial(*row) for row in rows)

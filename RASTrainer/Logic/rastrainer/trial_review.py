@@ -10,7 +10,9 @@ from rastrainer.ctps import Trial
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.feedback.progress_words import progress_of
 from rastrainer.journal.folder import read_trajectory
+from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario import Scenario
+from rastrainer.scoring import PASS_MARK
 from rastrainer.study import Study
 from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
 from rastrainer.trial_record import TrialRecord
@@ -45,11 +47,15 @@ def review(
 def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
     """Return the analysis of a stored trial, told how it stands among the trainee's own ones.
 
+    A trial run is for getting to know everything: it passes nothing.
+
     Raises:
         InputError: the study has no such trial.
     """
     record = analysis.record
-    if study.trial(record.trial_id).score is None:
+    if record.task == TRIAL_RUN or study.trial(record.trial_id).score is None:
         return analysis
-    progress = progress_of(study.past_trials(record.trainee), record.trial_id)
+    protocol = StudyProgress(study).protocol()
+    pass_mark = PASS_MARK if protocol is None else protocol.pass_mark
+    progress = progress_of(study.past_trials(record.trainee), record.trial_id, pass_mark)
     return replace(analysis, feedback=replace(analysis.feedback, progress=progress))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer_simulator.flow.screen import Tone
 from rastrainer_simulator.record.replay import replay
 
 SCORE = {
@@ -14,6 +15,7 @@ SCORE = {
     "score": 81.0,
     "details": {
         "ctps": 62.5,
+        "passMark": 82.0,
         "warnings": ["Point 3 is far off."],
         "feedback": ["Hold still before you touch.", 7],
     },
@@ -50,7 +52,7 @@ def train_and_look_at_the_result(trainee, outside):
     outside.has_slicer = True
     assert trainee.submit("TrialScored", trialId=training.trial_id, **SCORE).ok
     trainee.until_menu("result")
-    assert trainee.menu.facts[0].value == "81 / 100"
+    assert (trainee.menu.facts[0].value, trainee.menu.facts[0].tone) == ("81 / 100", Tone.PLAIN)
     assert trainee.menu.paragraphs == ("Point 3 is far off.", "Hold still before you touch.")
     trainee.choose("next")
     trainee.until_menu("experiment")

@@ -12,7 +12,7 @@ from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Mode
 from rastrainer.questionnaires.catalog import find_questionnaire
-from rastrainer.scoring import SCORE_VERSION, ScoreReference
+from rastrainer.scoring import PASS_MARK, SCORE_VERSION, ScoreReference
 from rastrainer.tasks import is_task_name
 
 FORMAT_VERSION = 1
@@ -57,6 +57,7 @@ class StudyProtocol:
         asked: Questionnaires.
         references: Of the score, by task; a task without one has the shipped reference.
         score_version: Version of the score that the study was planned with.
+        pass_mark: Score that passes.
     """
 
     name: str
@@ -72,6 +73,7 @@ class StudyProtocol:
     asked: tuple[Asked, ...] = ()
     references: Mapping[str, ScoreReference] = field(default_factory=dict)
     score_version: str = SCORE_VERSION
+    pass_mark: float = PASS_MARK
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
@@ -95,6 +97,7 @@ class StudyProtocol:
             ],
             "scoring": {
                 "version": self.score_version,
+                "passMark": self.pass_mark,
                 "references": {
                     task: {"timeS": r.time_s, "treMm": r.tre_mm, "limitMm": r.limit_mm}
                     for task, r in self.references.items()
@@ -154,6 +157,10 @@ def _protocol(fields: Fields) -> StudyProtocol:
         ),
         references=_references(scoring.fields("references"), tasks),
         score_version=scoring.text("version", 20),
+        # The first protocols had none.
+        pass_mark=scoring.number("passMark", 1, 100)
+        if "passMark" in scoring.names()
+        else PASS_MARK,
     )
     if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MOST_STEPS} trials")

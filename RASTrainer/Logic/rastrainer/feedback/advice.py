@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.feedback.touch_findings import TouchFinding
 from rastrainer.number_text import fixed
-from rastrainer.scoring import ScoreReference, TrialScore, score_trial
+from rastrainer.scoring import TrialScore, score_trial
 
 GOOD_EFFICIENCY = 0.55
 """What a direct way with the necessary lifts between the touches reaches."""
@@ -137,6 +137,6 @@ def _gain(score: TrialScore, time_s: float | None = None, error_factor: float = 
         max(time_s or score.completion_time_s, 1e-3),
         # The expected target error is proportional to the registration error.
         score.expected_tre_mm * min(error_factor, 1.0),
-        ScoreReference(**vars(score.reference)),
+        score.reference,
     )
     return max(0.0, better.score - score.score)

@@ -10,14 +10,14 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.learning.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.learning.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
-from rastrainer.number_text import fixed
+from rastrainer.number_text import fixed, percent
 from rastrainer.study_values import PastTrial
 
 ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4
 """A competent trainee fails in 5 of 100 trials, an incompetent one in 40."""
 TRAINING_TRIALS = 30
-PASS_MARK = 70.0
-"""Score to reach where a lab has no mark of its own from contrasting groups."""
+"""Within which an incompetent trainee is called competent at most once in 20; the sentence tells
+the risk of the trials that there really are."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,7 @@ class Progress:
 
     Attributes:
         scores: Of the trials of this task in this mode, in their order.
+        pass_mark: Score that passes.
         is_best: Whether this trial is the best of them (and not the first).
         passes: Whether this trial reached the pass mark.
         competence: LC-CUSUM over the trainee's trials of all tasks in this mode.
@@ -34,6 +35,7 @@ class Progress:
     """
 
     scores: tuple[float, ...]
+    pass_mark: float
     is_best: bool
     passes: bool
     competence: LcCusum
@@ -41,11 +43,12 @@ class Progress:
     sentences: tuple[str, ...]
 
 
-def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float = PASS_MARK) -> Progress:
+def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> Progress:
     """Return how a trial stands.
 
     Args:
-        past: All scored trials of the trainee in their order; later ones than this do not count.
+        past: All scored trials of the trainee but the trial runs, in their order; later ones than
+            this do not count.
         trial_id: Of one of them.
         pass_mark: Score to reach, such as that of contrasting groups.
 
@@ -72,7 +75,7 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float = PAS
         _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )
-    return Progress(scores, is_best, passes, competence, curve, sentences)
+    return Progress(scores, pass_mark, is_best, passes, competence, curve, sentences)
 
 
 def _passes(trial: PastTrial, pass_mark: float) -> bool:
@@ -101,6 +104,11 @@ def _about_mark(score: float, acceptable: bool, pass_mark: float) -> str:
 
 def _about_competence(chart: LcCusum, trials: int) -> str:
     if chart.competent_at is not None:
-        return f"Your trials show competence since number {chart.competent_at} (LC-CUSUM)."
+        failing, risk = percent(INADEQUATE_FAILURES), percent(chart.false_discovery)
+        return (
+            f"Your trials show competence since number {chart.competent_at}: of those who still "
+            f"fail in {failing} of their trials, {risk} come so far by chance within {trials} "
+            "trials (LC-CUSUM)."
+        )
     share = chart.scores[-1] / chart.limit
     return f"{100 * share:.0f} % of the way to proven competence after {trials} trials (LC-CUSUM)."

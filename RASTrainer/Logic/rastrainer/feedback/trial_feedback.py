@@ -68,9 +68,9 @@ class TrialFeedback:
 
     @property
     def short_sentences(self) -> list[str]:
-        """What a page beside the score has room for: touches, advice, and the last trials."""
-        touches, advice = self.touch_sentences[:2], (a.sentence for a in self.advice)
-        progress = () if self.progress is None else self.progress.sentences[:1]
+        """What a page beside the score has room for: the worst touch, advice, and progress."""
+        touches, advice = self.touch_sentences[:1], (a.sentence for a in self.advice)
+        progress = () if self.progress is None else self.progress.sentences
         return [*touches, *advice, *progress]
 
 

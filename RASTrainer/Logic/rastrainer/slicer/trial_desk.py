@@ -217,7 +217,7 @@ def _keep(
 
 
 def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
-    published = analysis.published_score
+    published, progress = analysis.published_score, analysis.feedback.progress
     return {
         "trialId": analysis.record.trial_id,
         "matrix": [float(value) for value in analysis.rigid.matrix.ravel()],
@@ -231,6 +231,7 @@ def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
             "accuracyDesirability": analysis.score.accuracy_desirability,
             "ctps": None if published is None else published.published,
             "warnings": [warning.message for warning in analysis.rigid.warnings],
+            "passMark": None if progress is None else progress.pass_mark,
             "feedback": analysis.feedback.short_sentences,
         },
     }

@@ -7,6 +7,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_step import StudyStep
+from rastrainer.scoring import PASS_MARK
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
@@ -19,8 +20,9 @@ GOOD_MM = 2.0
 POOR_MM = 4.0
 """Errors up to the first are good, from the second on they are poor: what frameless stereotaxy
 reaches in the clinic lies between them."""
-GOOD_SCORE = 70.0
 POOR_SCORE = 40.0
+MOST_FEEDBACK = 7
+"""Sentences: the worst touch, three things to improve, three on the progress."""
 
 
 class FinishedPage(Page):
@@ -98,7 +100,7 @@ class ResultPage(FinishedPage):
             self.say("result.title", trainee=training.trainee, task=task),
             (
                 *_sentences(result, "warnings", 3),
-                *_sentences(result, "feedback", 6),
+                *_sentences(result, "feedback", MOST_FEEDBACK),
                 *self._what_comes_next(),
             ),
             (*self._facts_of_result(result), *_facts_of_trial(self.session)),
@@ -142,7 +144,7 @@ class ResultPage(FinishedPage):
     def _facts_of_result(self, result: TrialResult) -> list[Fact]:
         score = self.say("result.of 100", score=result.score)
         facts = [
-            Fact(self.say("result.score"), score, _tone_of_score(result.score)),
+            Fact(self.say("result.score"), score, _tone_of_score(result)),
             self._error("result.fre", result.fre_mm),
             self._error("result.expected tre", result.expected_tre_mm),
             self._error("result.true tre", result.true_tre_mm),
@@ -160,10 +162,11 @@ class ResultPage(FinishedPage):
         return Fact(self.say(key), self.say("result.mm", error=error_mm), tone)
 
 
-def _tone_of_score(score: float) -> Tone:
-    if score >= GOOD_SCORE:
+def _tone_of_score(result: TrialResult) -> Tone:
+    mark = result.details.get("passMark")
+    if result.score >= (mark if _is_number(mark) else PASS_MARK):
         return Tone.GOOD
-    return Tone.WARNING if score < POOR_SCORE else Tone.PLAIN
+    return Tone.WARNING if result.score < POOR_SCORE else Tone.PLAIN
 
 
 def _facts_of_trial(session: Session) -> tuple[Fact, ...]:
