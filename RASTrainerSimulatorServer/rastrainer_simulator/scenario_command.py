@@ -41,6 +41,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     check = parts.add_parser("check", help="say what is wrong with a scenario; status 1 if any")
     check.add_argument("folder", type=Path, metavar="DIR")
     check.set_defaults(run=_check)
+    plan = parts.add_parser("plan", help="copy a scenario with other targets or trajectory")
+    plan.add_argument("folder", type=Path, metavar="DIR")
+    _add_output(plan)
+    _add_plan(plan)
+    plan.set_defaults(run=_plan)
     packing = parts.add_parser(
         "pack", help="write a scenario as one zip file, without face, title and source"
     )
@@ -73,13 +78,34 @@ def _add_library(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_wishes(parser: argparse.ArgumentParser) -> None:
+def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="a new one")
     parser.add_argument("--title", help="default: the name of the new folder")
+
+
+def _add_wishes(parser: argparse.ArgumentParser) -> None:
+    _add_output(parser)
+    _add_plan(parser)
     parser.add_argument("--source", help="where the images come from (default: the volume's name)")
     parser.add_argument("--license", default=UNKNOWN_LICENSE, help="under which it may be used")
     parser.add_argument("--setup", type=Path, metavar="JSON", help="head, table and robot base")
     parser.add_argument("--seed", type=int, default=1, help="of the proposed tasks (default: 1)")
+    parser.add_argument(
+        "--tasks",
+        nargs="+",
+        type=Path,
+        default=[],
+        metavar="MRK_JSON",
+        help="fiducials placed by hand: the trial run, Task 1, Task 2 …",
+    )
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="only say whether set-up, plan and placed fiducials can be used; make nothing",
+    )
+
+
+def _add_plan(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--target",
         nargs=4,
@@ -93,19 +119,6 @@ def _add_wishes(parser: argparse.ArgumentParser) -> None:
         nargs=7,
         metavar=("NAME", "ER", "EA", "ES", "TR", "TA", "TS"),
         help="a planned trajectory from entry to target, RAS mm",
-    )
-    parser.add_argument(
-        "--tasks",
-        nargs="+",
-        type=Path,
-        default=[],
-        metavar="MRK_JSON",
-        help="fiducials placed by hand: the trial run, Task 1, Task 2 …",
-    )
-    parser.add_argument(
-        "--check",
-        action="store_true",
-        help="only say whether set-up, plan and placed fiducials can be used; make nothing",
     )
 
 
@@ -176,6 +189,22 @@ def _check(arguments: argparse.Namespace) -> int:
     wrong = check_scenario(arguments.folder)
     print("\n".join(wrong) or f"{arguments.folder} is as a scenario must be.")
     return 1 if wrong else 0
+
+
+def _plan(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.scenarios.replan import copy_with_plan
+    from rastrainer_simulator.scenarios.wishes import targets_of, title_of, trajectory_of
+
+    scenario = copy_with_plan(
+        arguments.folder,
+        title_of(arguments),
+        arguments.output,
+        targets_of(arguments),
+        trajectory_of(arguments),
+        _warn,
+    )
+    print(f"{scenario.title} is in {arguments.output}.")
+    return 0
 
 
 def _pack(arguments: argparse.Namespace) -> int:

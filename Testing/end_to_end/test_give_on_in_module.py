@@ -1,4 +1,4 @@
-"""A scenario is saved for others by a button: face and names go, and what went is told."""
+"""By a button a scenario is saved for others, without face and names, or copied with a plan."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from rastrainer.head_mesh import read_head_mesh
 from rastrainer.scenario import load_scenario
 from rastrainer.scenario_library import user_library
 from rastrainer.scenario_package import unpack
-from Testing.end_to_end.module.story import Story
+from rastrainer.slicer.control_points import setPoints, worldPoints
+from rastrainer.slicer.scene import Role, findNode
+from Testing.end_to_end.module.story import Story, unfold
 from Testing.simulator.scenarios.heads import egg
 from Testing.simulator.scenarios.test_export import written
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
@@ -22,8 +24,7 @@ def scenario_of_ones_own(host, tmp_path):
     written(user_library() / "ball", np.argsort(-egg().vertices[:, 2])[:300:20])
     Story(host, tmp_path).choose_own_program()
     host.choose("scenarioComboBox", "A ball")
-    host.find("shareGroupBox").collapsed = False
-    host.process_events()
+    unfold(host, "shareGroupBox")
 
 
 def test_it_is_saved_without_face_and_names_and_that_is_told(host, tmp_path):
@@ -51,3 +52,21 @@ def test_face_and_names_stay_where_that_is_chosen(host, tmp_path):
 def read_scenario(folder):
     """Return what the file holds."""
     return load_scenario(unpack(folder / "out.zip", folder / "library"))
+
+
+def test_a_plan_is_kept_in_a_copy_of_the_scenario_which_is_chosen_and_shown(host):
+    line = host.scene.AddNewNodeByClass("vtkMRMLMarkupsLineNode", "Other way")
+    setPoints(line, ("Entry", "Target"), np.array([[10.0, 20.0, 97.0], [15.0, 10.0, 30.0]]))
+    unfold(host, "planCollapsibleButton")
+    host.choose("planComboBox", line)
+    host.press("keepPlanButton")
+    assert "title" in host.messages[-1].text
+    host.type("planTitleLineEdit", "A ball, planned anew")
+    host.press("keepPlanButton")
+    assert len(host.messages) == 1
+    assert host.find("scenarioComboBox").currentText == "A ball, planned anew"
+    kept = load_scenario(user_library() / "a-ball-planned-anew")
+    assert kept.trajectory.name == "Other way"
+    assert [target.name for target in kept.targets] == ["Cyst"]
+    shown = findNode(host.scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+    np.testing.assert_allclose(worldPoints(shown), worldPoints(line))

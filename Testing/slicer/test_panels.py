@@ -304,6 +304,20 @@ def test_a_plan_says_what_is_missing_until_it_can_be_sent(panels, touched):
         panels.press("sendPlanButton")
 
 
+def test_the_error_to_expect_is_told_at_any_target_of_a_list(panels, touched):
+    touch(panels, touched)
+    targets = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Targets")
+    setPoints(targets, ("Tumor", "Cyst"), np.array([[0.0, 0.0, 20.0], [60.0, 60.0, -60.0]]))
+    panels.choose("planComboBox", targets)
+    assert panels.find("planTargetComboBox").currentText == "Cyst"
+    at_cyst = panels.text("planTreText")
+    panels.choose("planTargetComboBox", "Tumor")
+    at_tumor = panels.text("planTreText")
+    assert "mm (95 %" in at_tumor
+    assert at_tumor != at_cyst
+    assert not panels.find("planTargetComboBox").itemText(2)
+
+
 # Score
 
 

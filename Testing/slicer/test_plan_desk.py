@@ -1,6 +1,7 @@
 """A plan on the MRI reaches the robot, and its true error is told once the head is known."""
 
 import uuid
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,14 +9,16 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.placing import jumpTo, startPlacing
-from rastrainer.slicer.plan_desk import PlanDesk
+from rastrainer.slicer.plan_desk import PlanDesk, targetsOf
 from rastrainer.slicer.registration_desk import RegistrationDesk
 from rastrainer.slicer.scenario import showScenario, showTask
+from rastrainer.slicer.scene import Role, findNode
 from rastrainer.tasks import LABELS
 from rastrainer.trial_results import RevealedTruth
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
@@ -89,6 +92,33 @@ def test_a_trajectory_goes_from_its_entry_to_the_target(room):
     np.testing.assert_allclose(plan.entry, ENTRY)
     length = np.linalg.norm(plan.entryWorld - plan.targetWorld)
     assert length == pytest.approx(np.linalg.norm(ENTRY - TUMOR))
+
+
+def test_each_planned_target_of_a_scenario_is_a_plan_and_so_is_its_trajectory(scene, scenario):
+    room = Room(scene, planned(scenario))
+    room.register()
+    targets = findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET)
+    assert targetsOf(targets) == ("center", "Tumor")
+    first, second = (room.desk.read(targets, row) for row in (0, 1))
+    assert (first.name, second.name) == ("center", "Tumor")
+    np.testing.assert_allclose([first.target, second.target], [scenario.target_position, TUMOR])
+    shown = room.registration.shown
+    assert second.expected == room.registration.targetError(shown, TUMOR)
+    line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+    assert targetsOf(line) == ()
+    plan = room.desk.read(line)
+    assert plan.name == "Biopsy"
+    np.testing.assert_allclose([plan.entry, plan.target], [ENTRY, TUMOR])
+    room.simulator.close()
+
+
+def planned(scenario):
+    """Return the scenario with a further target and a trajectory."""
+    return replace(
+        scenario,
+        targets=(PlannedTarget("Tumor", TUMOR),),
+        trajectory=PlannedTrajectory("Biopsy", ENTRY, TUMOR),
+    )
 
 
 def test_the_plan_is_shown_to_the_trainee_and_its_reachability_told(room):

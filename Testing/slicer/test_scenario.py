@@ -1,14 +1,35 @@
-"""A scenario stands in the scene: head, target and the fiducials of a task."""
+"""A scenario stands in the scene: head, skull, plan and the fiducials of a task."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.head_mesh import write_head_mesh
+from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.control_points import labelsOf, worldPoints
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.scene import Role, findNode
+from Testing.domain.made_up_scenario import ball_head
 
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
+LINE, MODEL = "vtkMRMLMarkupsLineNode", "vtkMRMLModelNode"
+
+
+@pytest.fixture
+def planned(scenario):
+    """The scenario with a further target, a trajectory and an approximate skull."""
+    path = scenario.folder / "skull.ply"
+    write_head_mesh(path, ball_head(80.0))
+    return replace(
+        scenario,
+        name="planned",
+        targets=(PlannedTarget("Cyst", np.array([10.0, 20.0, 30.0])),),
+        trajectory=PlannedTrajectory("Biopsy", np.array([0.0, 0.0, 90.0]), np.array([1.0, 2, 3])),
+        skull_mesh=path,
+        is_skull_approximate=True,
+    )
 
 
 def test_head_and_target_are_shown_in_ras(scene, scenario):
@@ -21,12 +42,45 @@ def test_head_and_target_are_shown_in_ras(scene, scenario):
     assert labelsOf(target) == ("center",)
 
 
-def test_showing_a_scenario_again_adds_no_node(scene, scenario):
+def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_target_first(scene, planned):
+    showScenario(scene, planned)
+    targets = findNode(scene, FIDUCIALS, Role.TARGET)
+    assert labelsOf(targets) == ("center", "Cyst")
+    np.testing.assert_allclose(worldPoints(targets), [[0, 10, -20], [10, 20, 30]])
+    line = findNode(scene, LINE, Role.TRAJECTORY)
+    assert (line.GetName(), labelsOf(line)) == ("Biopsy", ("Entry", "Target"))
+    np.testing.assert_allclose(worldPoints(line), [[0, 0, 90], [1, 2, 3]])
+    assert targets.GetLocked()
+    assert line.GetLocked()
+
+
+def test_the_skull_is_seen_through_the_skin_and_called_what_it_is(scene, planned):
+    showScenario(scene, planned)
+    skull = findNode(scene, MODEL, Role.SKULL)
+    assert skull.GetName() == "Skull (approximation)"
+    bounds = [0.0] * 6
+    skull.GetRASBounds(bounds)
+    np.testing.assert_allclose(bounds, [-80.0, 80.0] * 3, atol=1.0)
+    assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() < 1.0
+    showScenario(scene, replace(planned, name="ct", is_skull_approximate=False))
+    assert skull.GetName() == "Skull"
+
+
+def test_what_another_scenario_has_not_goes(scene, planned, scenario):
+    showScenario(scene, planned)
     showScenario(scene, scenario)
-    showTask(scene, scenario, "task-1")
+    assert findNode(scene, LINE, Role.TRAJECTORY) is None
+    assert findNode(scene, MODEL, Role.SKULL) is None
+    assert labelsOf(findNode(scene, FIDUCIALS, Role.TARGET)) == ("center",)
+    assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() == 1.0
+
+
+def test_showing_a_scenario_again_adds_no_node(scene, planned):
+    showScenario(scene, planned)
+    showTask(scene, planned, "task-1")
     count = scene.GetNumberOfNodes()
-    showScenario(scene, scenario)
-    showTask(scene, scenario, "task-2")
+    showScenario(scene, planned)
+    showTask(scene, planned, "task-2")
     assert scene.GetNumberOfNodes() == count
 
 

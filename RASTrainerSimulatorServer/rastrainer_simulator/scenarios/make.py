@@ -129,10 +129,10 @@ def without_tasks(
         targets=wishes.targets,
         trajectory=wishes.trajectory,
     )
-    return _with_main_target(scenario, head, warn)
+    return with_main_target(scenario, head, warn)
 
 
-def _with_main_target(scenario: Scenario, head: HeadMesh, warn: Callable[[str], None]) -> Scenario:
+def with_main_target(scenario: Scenario, head: HeadMesh, warn: Callable[[str], None]) -> Scenario:
     """Return the scenario with the first planned target as its own, where trials can start so.
 
     A trial starts above the target: with one far below, the tip would start in the head.

@@ -22,29 +22,42 @@ def wishes_of(arguments: argparse.Namespace, source: str) -> Wishes:
     Raises:
         InputError: a text or a number cannot be used.
     """
-    title = _text("--title", arguments.title or arguments.output.absolute().name, LONGEST_TITLE)
-    scenario_name(title)
-    trajectory = None
-    if arguments.trajectory:
-        name, *numbers = arguments.trajectory
-        places = _numbers("--trajectory", numbers)
-        name = _text("--trajectory", name, LONGEST_NAME)
-        trajectory = PlannedTrajectory(name, places[:3], places[3:])
     if not 0 <= arguments.seed < 2**31:
         raise InputError("--seed must be from 0 to 2147483647.")
     return Wishes(
-        title=title,
+        title=title_of(arguments),
         source=_text("--source", arguments.source or source, LONGEST_TEXT),
         license=_text("--license", arguments.license, LONGEST_TEXT),
         setup=read_setup(arguments.setup) if arguments.setup else SetUp(),
-        targets=tuple(
-            PlannedTarget(_text("--target", name, LONGEST_NAME), _numbers("--target", numbers))
-            for name, *numbers in arguments.target
-        ),
-        trajectory=trajectory,
+        targets=targets_of(arguments),
+        trajectory=trajectory_of(arguments),
         task_files=tuple(arguments.tasks),
         seed=arguments.seed,
     )
+
+
+def title_of(arguments: argparse.Namespace) -> str:
+    """Return the title of a new scenario, of which a name can be made; else raise `InputError`."""
+    title = _text("--title", arguments.title or arguments.output.absolute().name, LONGEST_TITLE)
+    scenario_name(title)
+    return title
+
+
+def targets_of(arguments: argparse.Namespace) -> tuple[PlannedTarget, ...]:
+    """Return the planned targets; raise `InputError` where one cannot be used."""
+    return tuple(
+        PlannedTarget(_text("--target", name, LONGEST_NAME), _numbers("--target", numbers))
+        for name, *numbers in arguments.target
+    )
+
+
+def trajectory_of(arguments: argparse.Namespace) -> PlannedTrajectory | None:
+    """Return the planned trajectory; raise `InputError` where it cannot be used."""
+    if not arguments.trajectory:
+        return None
+    name, *numbers = arguments.trajectory
+    places = _numbers("--trajectory", numbers)
+    return PlannedTrajectory(_text("--trajectory", name, LONGEST_NAME), places[:3], places[3:])
 
 
 def _text(option: str, text: str, longest: int) -> str:

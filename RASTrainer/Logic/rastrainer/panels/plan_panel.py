@@ -7,10 +7,19 @@ from typing import Any
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.panels.widgets import GRAY, GREEN, RED, light, millimeters, setUsable
+from rastrainer.panels.widgets import (
+    GRAY,
+    GREEN,
+    RED,
+    chosenData,
+    fillComboBox,
+    light,
+    millimeters,
+    setUsable,
+)
 from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.placing import startPlacing
-from rastrainer.slicer.plan_desk import Plan
+from rastrainer.slicer.plan_desk import Plan, targetsOf
 from rastrainer.slicer.registration_input import snapshot
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
@@ -23,12 +32,15 @@ class PlanPanel:
         self._ui = ui
         self._session = session
         self._desk = session.plan
+        self._offered: tuple = ()
         self._seen: tuple = ()
         self._known: tuple[Plan | None, str] = (None, "")
         ui.placeTargetButton.connect("clicked()", self.placeTarget)
         ui.placeTrajectoryButton.connect("clicked()", self.placeTrajectory)
         ui.sendPlanButton.connect("clicked()", self.send)
+        ui.keepPlanButton.connect("clicked()", self.keep)
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
+        ui.planTargetComboBox.connect("activated(int)", self.showState)
         self._listening = (
             (self._desk.changed, self.showState),
             (session.registration.changed, self.showState),
@@ -56,7 +68,19 @@ class PlanPanel:
     def send(self) -> None:
         """Show the plan in the simulator and ask whether the robot can carry it out."""
         with slicer.util.tryWithErrorDisplay(_("The plan was not sent.")):
-            self._desk.send(self._ui.planComboBox.currentNode())
+            self._desk.send(self._ui.planComboBox.currentNode(), self._row())
+
+    def keep(self) -> None:
+        """Copy the scenario that is chosen above with this plan, and go on with the copy."""
+        with slicer.util.tryWithErrorDisplay(_("The plan was not kept."), waitCursor=True):
+            ui = self._ui
+            scenario = self._session.scenarioFiles.keepPlan(
+                chosenData(ui.scenarioComboBox),
+                ui.planTitleLineEdit.text.strip(),
+                ui.planComboBox.currentNode(),
+                ui.programPathLineEdit.currentPath,
+            )
+            self._session.scenarioMade.emit(scenario.name)
 
     def showState(self, *_arguments: Any) -> None:
         """Show the plan as it stands; called about ten times a second."""
@@ -71,6 +95,12 @@ class PlanPanel:
             _("Show the plan to the trainee, and ask whether the robot can carry it out."),
             problem or _("Connect to the simulator first."),
         )
+        setUsable(
+            ui.keepPlanButton,
+            ui.planComboBox.currentNode() is not None,
+            _("Copy the scenario above with this plan in the place of its targets or trajectory."),
+            _("Place a target or a trajectory, or choose one."),
+        )
         color = {None: GRAY, True: GREEN, False: RED}[self._desk.isReachable]
         sentence = self._desk.sentence
         ui.reachableText.text = f"{light(color)} {sentence}" if sentence else "–"
@@ -84,16 +114,31 @@ class PlanPanel:
     def _read(self) -> tuple[Plan | None, str]:
         """Return the plan, or why there is none; computed anew only where something changed."""
         node = self._ui.planComboBox.currentNode()
+        self._offerTargets(node)
+        row = self._row()
         placed = node.GetNumberOfDefinedControlPoints() if node is not None else 0
         registration = self._session.registration
-        seen = (snapshot(node), placed, registration.shown, registration.problem)
+        seen = (snapshot(node), placed, row, registration.shown, registration.problem)
         if seen != self._seen:
             self._seen = seen
             try:
-                self._known = self._desk.read(node), ""
+                self._known = self._desk.read(node, row), ""
             except InputError as error:
                 self._known = None, str(error)
         return self._known
+
+    def _offerTargets(self, node: Any | None) -> None:
+        """Offer the points of a list as targets; where they change, the last is chosen."""
+        labels = targetsOf(node)
+        if (node, labels) != self._offered:
+            self._offered = (node, labels)
+            entries = [(label, str(row)) for row, label in enumerate(labels)]
+            fillComboBox(self._ui.planTargetComboBox, entries, str(len(labels) - 1))
+            self._ui.planTargetComboBox.enabled = len(labels) > 1
+
+    def _row(self) -> int:
+        """Return which point of the chosen list is the target; the last of a line."""
+        return int(chosenData(self._ui.planTargetComboBox) or -1)
 
     def _place(self, node: Any) -> None:
         self._ui.planComboBox.setCurrentNode(node)

@@ -89,7 +89,7 @@ class ScenarioPanel:
                 slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
             )
             if path:
-                scenario = self._session.scenarioMaker.takeIn(Path(path))
+                scenario = self._session.scenarioFiles.takeIn(Path(path))
                 self._fill(scenario.name)
                 self._tell(_("{title} is added.").format(title=scenario.title))
 
@@ -106,7 +106,7 @@ class ScenarioPanel:
             )
             if path:
                 own = self._ui.programPathLineEdit.currentPath
-                taken = self._session.scenarioMaker.give(
+                taken = self._session.scenarioFiles.give(
                     name, Path(path), keepsFace, keepsNames, own
                 )
                 self._tell(_("{path} is written.").format(path=path) + f" {taken}")

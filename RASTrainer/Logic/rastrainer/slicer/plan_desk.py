@@ -22,6 +22,7 @@ from rastrainer.target_error import TargetError
 
 TARGET_COLOR = (0.85, 0.2, 0.55)
 LONGEST_NAME = 64
+LINE = "vtkMRMLMarkupsLineNode"
 
 
 @dataclass(frozen=True)
@@ -73,17 +74,24 @@ class PlanDesk:
 
     def newTrajectory(self) -> Any:
         """Return the line for a planned trajectory, from entry to target, ready to be placed."""
-        return self._fresh("vtkMRMLMarkupsLineNode", Role.PLAN_TRAJECTORY, _("Planned trajectory"))
+        return self._fresh(LINE, Role.PLAN_TRAJECTORY, _("Planned trajectory"))
 
-    def read(self, node: Any | None) -> Plan:
+    def read(self, node: Any | None, row: int = -1) -> Plan:
         """Return the plan that a list of points or a line holds.
 
-        The last point is the target; of a line, the first is the entry.
+        The first point of a line is the entry.
+
+        Args:
+            node: a markups node.
+            row: which of the placed points is the target; the last where left out.
 
         Raises:
             InputError: nothing is placed, or there is no registration to map it with.
         """
-        points = _placedPoints(node)
+        rows = _placedRows(node)
+        if not rows:
+            raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
+        points = np.array([node.GetNthControlPointPositionWorld(each) for each in rows])
         shown = self._registration.shown
         if shown is None:
             raise InputError(
@@ -92,11 +100,11 @@ class PlanDesk:
                 )
             )
         toWorld = transforms.inverse(shown.matrix)
-        target = points[-1]
-        isLine = node.IsA("vtkMRMLMarkupsLineNode") and len(points) > 1
+        target = points[row]
+        isLine = node.IsA(LINE) and len(points) > 1
         entry = points[0] if isLine else None
         return Plan(
-            name=(node.GetName() or _("target"))[:LONGEST_NAME],
+            name=(_nameOf(node, rows[row]) or _("target"))[:LONGEST_NAME],
             target=target,
             entry=entry,
             targetWorld=transforms.apply(toWorld, target[None])[0],
@@ -104,13 +112,13 @@ class PlanDesk:
             expected=self._expected(shown, target),
         )
 
-    def send(self, node: Any | None) -> None:
+    def send(self, node: Any | None, row: int = -1) -> None:
         """Show the plan in the simulator and ask whether the robot can carry it out.
 
         Raises:
             InputError: as `read`.
         """
-        plan = self.read(node)
+        plan = self.read(node, row)
         arguments: dict[str, Any] = {"positionMm": plan.targetWorld.tolist(), "name": plan.name}
         if plan.entryWorld is not None:
             arguments["entryMm"] = plan.entryWorld.tolist()
@@ -164,15 +172,24 @@ class PlanDesk:
         return node
 
 
-def _placedPoints(node: Any | None) -> np.ndarray:
-    """Return the points that are placed, (n, 3) float, RAS mm."""
+def targetsOf(node: Any | None) -> tuple[str, ...]:
+    """Return the labels of the points of a list that may be the target; none of a line."""
+    if node is None or node.IsA(LINE):
+        return ()
+    return tuple(node.GetNthControlPointLabel(row) for row in _placedRows(node))
+
+
+def _nameOf(node: Any, row: int) -> str:
+    """Return what the trainee is told: of one of several targets, which it is."""
+    return node.GetNthControlPointLabel(row) if len(targetsOf(node)) > 1 else node.GetName()
+
+
+def _placedRows(node: Any | None) -> list[int]:
+    """Return which points of a node are placed, and not only under the mouse."""
     if node is None:
         raise InputError(_("Place a target or a trajectory, or choose one."))
-    defined = [
-        node.GetNthControlPointPositionWorld(index)
-        for index in range(node.GetNumberOfControlPoints())
-        if node.GetNthControlPointPositionStatus(index) == node.PositionDefined
+    return [
+        row
+        for row in range(node.GetNumberOfControlPoints())
+        if node.GetNthControlPointPositionStatus(row) == node.PositionDefined
     ]
-    if not defined:
-        raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
-    return np.array(defined, dtype=float)

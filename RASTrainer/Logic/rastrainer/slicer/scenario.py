@@ -1,7 +1,8 @@
-"""Shows a scenario in the scene: the head, the target, and the fiducials of a task."""
+"""Shows a scenario in the scene: head and skull, what is planned, and the fiducials of a task."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,25 +11,31 @@ from rastrainer.head_mesh import read_head_mesh
 from rastrainer.scenario import Scenario
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.polydata import trianglesPolyData
-from rastrainer.slicer.scene import Role, findOrAddNode
+from rastrainer.slicer.scene import Role, findOrAddNode, removeNode
 from rastrainer.tasks import Task
 
 SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
 TASK_ATTRIBUTE = "RASTrainer.task"
 
 SKIN_COLOR = (0.87, 0.72, 0.62)
+SKULL_COLOR = (0.95, 0.92, 0.82)
+SKIN_OPACITY_OVER_SKULL = 0.5
 FIDUCIAL_COLOR = (0.25, 0.55, 0.95)
 TARGET_COLOR = (0.2, 0.75, 0.35)
 
 
 def showScenario(scene: Any, scenario: Scenario) -> None:
-    """Show the head's surface and the target; called again, nothing is made twice.
+    """Show head, skull, targets and trajectory; called again, nothing is made twice.
+
+    The first point of the list of targets is the scenario's own, at which the error is told.
 
     Raises:
-        InputError: the scenario's head mesh cannot be used.
+        InputError: a mesh of the scenario cannot be used.
     """
     _showHead(scene, scenario)
-    _showTarget(scene, scenario)
+    _showSkull(scene, scenario)
+    _showTargets(scene, scenario)
+    _showTrajectory(scene, scenario)
 
 
 def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
@@ -61,17 +68,52 @@ def _showHead(scene: Any, scenario: Scenario) -> None:
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL, "Head")
     if node.GetAttribute(SCENARIO_ATTRIBUTE) == scenario.name:
         return
-    mesh = read_head_mesh(scenario.head_mesh)
+    _fillModel(node, scenario, scenario.head_mesh, SKIN_COLOR)
+    opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
+    node.GetDisplayNode().SetOpacity(opacity)
+
+
+def _showSkull(scene: Any, scenario: Scenario) -> None:
+    if scenario.skull_mesh is None:
+        removeNode(scene, "vtkMRMLModelNode", Role.SKULL)
+        return
+    node = findOrAddNode(scene, "vtkMRMLModelNode", Role.SKULL, "Skull")
+    if node.GetAttribute(SCENARIO_ATTRIBUTE) == scenario.name:
+        return
+    node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
+    _fillModel(node, scenario, scenario.skull_mesh, SKULL_COLOR)
+
+
+def _fillModel(
+    node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]
+) -> None:
+    mesh = read_head_mesh(path)
     node.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
     node.SetAttribute(SCENARIO_ATTRIBUTE, scenario.name)
     display = node.GetDisplayNode()
-    display.SetColor(SKIN_COLOR)
+    display.SetColor(color)
     display.SetVisibility2D(True)
 
 
-def _showTarget(scene: Any, scenario: Scenario) -> None:
-    node = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Target")
-    name, position = scenario.target_name, np.asarray(scenario.target_position, dtype=float)
-    setPoints(node, (name,), position.reshape(1, 3))
+def _showTargets(scene: Any, scenario: Scenario) -> None:
+    node = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
+    names = [scenario.target_name, *(target.name for target in scenario.targets)]
+    places = [scenario.target_position, *(target.position for target in scenario.targets)]
+    setPoints(node, names, np.array(places, dtype=float))
+    _showAsPlanned(node)
+
+
+def _showTrajectory(scene: Any, scenario: Scenario) -> None:
+    planned = scenario.trajectory
+    if planned is None:
+        removeNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+        return
+    node = findOrAddNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY, planned.name)
+    node.SetName(planned.name)
+    setPoints(node, ("Entry", "Target"), np.array([planned.entry, planned.target], dtype=float))
+    _showAsPlanned(node)
+
+
+def _showAsPlanned(node: Any) -> None:
     node.SetLocked(True)
     node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)

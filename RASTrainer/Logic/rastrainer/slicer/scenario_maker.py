@@ -1,4 +1,4 @@
-"""Makes scenarios of volumes in the scene, and takes and gives scenarios as zip files."""
+"""Makes scenarios of volumes in the scene."""
 
 from __future__ import annotations
 
@@ -12,13 +12,11 @@ from rastrainer.errors import InputError
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.scenario import UNKNOWN_LICENSE, Scenario, load_scenario
-from rastrainer.scenario_package import unpack
+from rastrainer.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario_setup import SetUp, write_setup
-from rastrainer.scenario_writer import scenario_name
-from rastrainer.slicer.child_process import ChildProcess
 from rastrainer.slicer.control_points import worldPoints
 from rastrainer.slicer.head_preview import HeadPreview
+from rastrainer.slicer.scenario_files import planWords
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from rastrainer.slicer.scene import ROLE_ATTRIBUTE
 from rastrainer.slicer.simulator_desk import SimulatorDesk
@@ -115,7 +113,7 @@ class ScenarioMaker:
         segment = self._preview.segment(volumeNode, settings)
         command, environment = self._simulator.command([], ownProgram)
         title = wishes.title.strip() or volumeNode.GetName()
-        folder = self._newFolder(title)
+        folder = self._library / self._shelf.newName(title)
         source = wishes.source.strip() or SOURCE.format(name=volumeNode.GetName())
         terms = wishes.license.strip() or UNKNOWN_LICENSE
         words = [f"--title={title}", f"--source={source}", f"--license={terms}"]
@@ -131,76 +129,12 @@ class ScenarioMaker:
         self._shelf.refresh()
         return made
 
-    def takeIn(self, package: Path) -> Scenario:
-        """Unpack a scenario's zip file into the library.
-
-        Raises:
-            InputError: it cannot be used; nothing has changed.
-        """
-        folder = unpack(package, self._library)
-        self._shelf.refresh()
-        return load_scenario(folder)
-
-    def give(
-        self,
-        name: str,
-        package: Path,
-        keepsFace: bool = False,
-        keepsNames: bool = False,
-        ownProgram: str = "",
-    ) -> str:
-        """Write a scenario as a zip file and return a sentence that says what was taken off.
-
-        Args:
-            name: of the scenario.
-            package: the new file.
-            keepsFace: whether the head keeps its face and skull.
-            keepsNames: whether title, name and source stay, which may be the patient's name.
-            ownProgram: as in `make`.
-
-        Raises:
-            InputError: it cannot be written.
-        """
-        words = ["scenario", "pack", str(self._shelf.find(name).folder), str(package)]
-        words += ["--keep-face"] if keepsFace else []
-        words += ["--keep-names"] if keepsNames else []
-        command, environment = self._simulator.command(words, ownProgram)
-        child = ChildProcess(command, environment)
-        status = child.wait()
-        said = [line for line in child.takeLines() if line] or [_("it said nothing")]
-        if status != 0:
-            raise InputError(said[-1].removeprefix("rastrainer: "))
-        return said[-1]
-
-    def _newFolder(self, title: str) -> Path:
-        """Return where a scenario of that title comes.
-
-        Raises:
-            InputError: there is one of that name, or no name can be made of the title.
-        """
-        name = scenario_name(title)
-        if any(entry.name == name for entry in self._shelf.listed()):
-            raise InputError(
-                _("There is a scenario {name} already: give this one another title.").format(
-                    name=name
-                )
-            )
-        return self._library / name
-
     def _words(self, wishes: ScenarioWishes, folder: Path) -> tuple[str, ...]:
         """Return the arguments of `rastrainer scenario tasks`; files go into `folder`."""
         setUp = folder / "setup.json"
         write_setup(setUp, wishes.setUp)
         words = ["--setup", str(setUp)]
-        if wishes.targets is not None:
-            for row, position in enumerate(worldPoints(wishes.targets)):
-                name = wishes.targets.GetNthControlPointLabel(row)
-                words += ["--target", name, *map(str, position.tolist())]
-        if wishes.trajectory is not None:
-            ends = worldPoints(wishes.trajectory)
-            if len(ends) != 2:
-                raise InputError(_("The trajectory needs two points: its entry and its target."))
-            words += ["--trajectory", wishes.trajectory.GetName(), *map(str, ends.ravel().tolist())]
+        words += planWords(wishes.targets, wishes.trajectory)
         if wishes.isHandPlaced:
             words += ["--tasks", *self._writeHandPlaced(folder)]
         return tuple(words)

@@ -9,6 +9,8 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.scenario import Scenario, load_scenario
 from rastrainer.scenario_library import ListedScenario, list_folders, list_scenarios
+from rastrainer.scenario_writer import scenario_name
+from rastrainer.slicer.translation import _
 
 
 class ScenarioShelf:
@@ -48,6 +50,21 @@ class ScenarioShelf:
             self._listed = None
             self._scenarios[name] = load_scenario(self._folder(name))
         return self._scenarios[name]
+
+    def newName(self, title: str) -> str:
+        """Return the name of a scenario of that title, which is not here yet.
+
+        Raises:
+            InputError: there is one of that name, or no name can be made of the title.
+        """
+        name = scenario_name(title)
+        if any(entry.name == name for entry in self.listed()):
+            raise InputError(
+                _("There is a scenario {name} already: give this one another title.").format(
+                    name=name
+                )
+            )
+        return name
 
     def _folder(self, name: str) -> Path:
         for entry in self.listed():

@@ -13,8 +13,10 @@ class Role:
     HEAD_MODEL = "head model"
     HEAD_PREVIEW = "head preview"
     HEAD_SEGMENT = "head segment"
+    SKULL = "skull"
     FIXED_FIDUCIALS = "fixed fiducials"
     TARGET = "target"
+    TRAJECTORY = "trajectory"
     CAPTURED_POINTS = "captured points"
     SIM_STATE = "simulator state"
     WORLD_TO_HEAD = "world to head"
@@ -41,6 +43,13 @@ def findNode(scene: Any, className: str, role: str) -> Any | None:
         if node.GetAttribute(ROLE_ATTRIBUTE) == role:
             return node
     return None
+
+
+def removeNode(scene: Any, className: str, role: str) -> None:
+    """Remove the node of the class with the role, where there is one."""
+    node = findNode(scene, className, role)
+    if node is not None:
+        scene.RemoveNode(node)
 
 
 def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:

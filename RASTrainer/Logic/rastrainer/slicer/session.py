@@ -14,6 +14,7 @@ from rastrainer.slicer.plan_desk import PlanDesk
 from rastrainer.slicer.registration_desk import RegistrationDesk
 from rastrainer.slicer.replay_desk import ReplayDesk
 from rastrainer.slicer.scenario_desk import ScenarioDesk
+from rastrainer.slicer.scenario_files import ScenarioFiles
 from rastrainer.slicer.scenario_maker import ScenarioMaker
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from rastrainer.slicer.signal import Signal
@@ -63,7 +64,8 @@ class Session:
         simulator: its set-up and process.
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
-        scenarioMaker: makes scenarios of volumes, and takes and gives them as files.
+        scenarioMaker: makes scenarios of volumes.
+        scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
         training: trials under way.
         study: leads through the protocol.
         trials: where finished trials arrive.
@@ -92,6 +94,7 @@ class Session:
         self.trainees = TraineeDesk(self.openStudy, places.records)
         self.scenario = ScenarioDesk(scene, shelf, places.assets / ROBOT)
         self.scenarioMaker = ScenarioMaker(scene, self.simulator, shelf, places.library)
+        self.scenarioFiles = ScenarioFiles(self.simulator, shelf, places.library)
         self.training = TrainingDesk(scene, self.link, shelf.find)
         self.study = StudyDesk(self.trainees, self.training, self.link)
         self.trials = TrialDesk(

@@ -1,0 +1,111 @@
+"""Takes and gives scenarios as zip files, and keeps a plan in a scenario of one's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.scenario_package import unpack
+from rastrainer.slicer.child_process import ChildProcess
+from rastrainer.slicer.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scenario_shelf import ScenarioShelf
+from rastrainer.slicer.simulator_desk import SimulatorDesk
+from rastrainer.slicer.translation import _
+
+
+class ScenarioFiles:
+    """What the panels Scenario and Plan do with scenarios on disk.
+
+    `ownProgram` is a `rastrainer` installed elsewhere; that of the simulator where it is empty.
+    """
+
+    def __init__(self, simulator: SimulatorDesk, shelf: ScenarioShelf, library: Path) -> None:
+        """Scenarios come into the folder `library`, each into a folder of its own."""
+        self._simulator = simulator
+        self._shelf = shelf
+        self._library = library
+
+    def takeIn(self, package: Path) -> Scenario:
+        """Unpack a scenario's zip file into the library.
+
+        Raises:
+            InputError: it cannot be used; nothing has changed.
+        """
+        folder = unpack(package, self._library)
+        self._shelf.refresh()
+        return load_scenario(folder)
+
+    def give(
+        self,
+        name: str,
+        package: Path,
+        keepsFace: bool = False,
+        keepsNames: bool = False,
+        ownProgram: str = "",
+    ) -> str:
+        """Write a scenario as a zip file and return a sentence that says what was taken off.
+
+        Args:
+            name: of the scenario.
+            package: the new file.
+            keepsFace: whether the head keeps its face and skull.
+            keepsNames: whether title, name and source stay, which may be the patient's name.
+            ownProgram: see the class.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        words = ["pack", str(self._shelf.find(name).folder), str(package)]
+        words += ["--keep-face"] if keepsFace else []
+        words += ["--keep-names"] if keepsNames else []
+        return self._run(words, ownProgram)
+
+    def keepPlan(self, name: str, title: str, node: Any, ownProgram: str = "") -> Scenario:
+        """Copy a scenario with a list in the place of its targets, or a line of its trajectory.
+
+        Args:
+            name: of the scenario, which stays as it is.
+            title: of the copy.
+            node: a `vtkMRMLMarkupsFiducialNode` or a `vtkMRMLMarkupsLineNode`.
+            ownProgram: see the class.
+
+        Raises:
+            InputError: there is one of that title already, or the plan cannot be carried out.
+        """
+        folder = self._library / self._shelf.newName(title)
+        isLine = node.IsA("vtkMRMLMarkupsLineNode")
+        plan = planWords(None, node) if isLine else planWords(node, None)
+        source = str(self._shelf.find(name).folder)
+        self._run(["plan", source, "-o", str(folder), f"--title={title}", *plan], ownProgram)
+        self._shelf.refresh()
+        return load_scenario(folder)
+
+    def _run(self, words: list[str], ownProgram: str) -> str:
+        """Run `rastrainer scenario` and return the last line that it has written."""
+        command, environment = self._simulator.command(["scenario", *words], ownProgram)
+        child = ChildProcess(command, environment)
+        status = child.wait()
+        said = [line for line in child.takeLines() if line] or [_("it said nothing")]
+        if status != 0:
+            raise InputError(said[-1].removeprefix("rastrainer: "))
+        return said[-1]
+
+
+def planWords(targets: Any | None, trajectory: Any | None) -> list[str]:
+    """Return the arguments of `rastrainer scenario` for a list of targets and a line.
+
+    Raises:
+        InputError: the line has not two points.
+    """
+    words = []
+    if targets is not None:
+        for name, place in zip(labelsOf(targets), worldPoints(targets), strict=True):
+            words += ["--target", name, *map(str, place.tolist())]
+    if trajectory is not None:
+        ends = worldPoints(trajectory)
+        if len(ends) != 2:
+            raise InputError(_("The trajectory needs two points: its entry and its target."))
+        words += ["--trajectory", trajectory.GetName(), *map(str, ends.ravel().tolist())]
+    return words
