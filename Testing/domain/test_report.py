@@ -14,6 +14,7 @@ from rastrainer.report.published_scores import with_ctps
 from rastrainer.report.report import report_html, write_report
 from rastrainer.report.sections.published_tables import performance_color
 from rastrainer.report.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.scoring import LONG_PAUSE_S
 from rastrainer.study import Study
 from rastrainer_simulator.cli import main
 from Testing.domain.played_study import STUDIES, study_with_trials
@@ -212,6 +213,17 @@ def test_trainees_count_with_the_tasks_they_did_in_both_modes():
     data = StudyData("x", tuple(rows))
     assert paired_means(data, "completion_time_s", "desktop", "hmd") == {"a": (10.0, 12.0)}
     assert "1 of 1 lack Task 2 (hmd)" in words_of(report_html(data))
+
+
+def test_trials_with_long_pauses_are_counted_among_the_limits():
+    def row(number, paused):
+        values = {"completion_time_s": 10.0, "pause_time_s": paused}
+        return TrialRow("a", "desktop", "1", number, values)
+
+    once = StudyData("x", (row(1, LONG_PAUSE_S), row(2, LONG_PAUSE_S + 1.0)))
+    assert "1 of 2 trials were paused for more than 30 s in all" in words_of(report_html(once))
+    never = StudyData("x", (row(1, 0.0),))
+    assert "were paused" not in words_of(report_html(never))
 
 
 def test_hostile_pseudonyms_and_titles_stay_text():

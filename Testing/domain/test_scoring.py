@@ -54,11 +54,6 @@ def test_an_unacceptable_error_is_never_bought_back(time, other_time, error, exc
     assert worse.score < score(other_time, acceptable, reference)
 
 
-@given(times, steps_s, errors, references)
-def test_waiting_never_helps(time, pause, error, reference):
-    assert score(time + pause, error, reference) < score(time, error, reference)
-
-
 def test_one_trial_is_enough_and_the_mode_plays_no_part():
     assert list(inspect.signature(score_trial).parameters) == [
         "completion_time_s",

@@ -178,6 +178,7 @@ def test_a_recording_leaves_pauses_out_and_takes_back_what_was_undone():
     np.testing.assert_allclose(trajectory.touch_times_s, [0.1, 0.7])
     assert trajectory.touches[1].position_mm == (4, 5, 6)
     assert (trajectory.undone, trajectory.pauses, trajectory.camera_switches) == (1, 1, 1)
+    assert trial_motion(trajectory)["pause_time_s"] == pytest.approx(5.0)
     assert trajectory.near[0].start_s == pytest.approx(0.3)
 
 

@@ -65,7 +65,7 @@ def test_an_untouched_journal_is_intact_and_replays_to_the_last_bit(recorded, ca
     assert "equal to the last bit" in capsys.readouterr().out
 
 
-def test_the_report_as_json_tells_what_was_compared_and_the_metrics_that_measure_tells(recorded, capsys):
+def test_the_report_as_json_tells_what_was_compared_and_the_metrics_of_measure(recorded, capsys):
     assert main(["replay", str(recorded), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["identical"] is True

@@ -13,7 +13,7 @@ from rastrainer.feedback.touch_findings import TouchFinding, touch_findings
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.registration import Registration
-from rastrainer.scoring import TrialScore
+from rastrainer.scoring import LONG_PAUSE_S, TrialScore
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,7 @@ class TrialFeedback:
         worst: The touch with the largest error; its `replay_s` is what to look at again.
         advice: Up to three things to improve, the first first.
         progress: None where there is no history.
+        paused_s: How long the trial was paused in all, as far as that is known.
     """
 
     score: TrialScore
@@ -33,11 +34,16 @@ class TrialFeedback:
     worst: TouchFinding
     advice: tuple[Advice, ...]
     progress: Progress | None
+    paused_s: float = 0.0
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
         """The score and what it is made of."""
         score = self.score
+        pauses = (
+            f"Paused for {fixed(self.paused_s, 0)} s in all, which the score leaves out: compare "
+            "it with care to trials that were played in one go.",
+        )
         return (
             f"Score {fixed(score.score, 0)} of 100.",
             f"Time: {fixed(score.completion_time_s, 0)} s, worth "
@@ -49,6 +55,7 @@ class TrialFeedback:
                 if score.acceptable
                 else f"; more than {score.reference.limit_mm:g} mm is not acceptable."
             ),
+            *(pauses if self.paused_s > LONG_PAUSE_S else ()),
         )
 
     @property
@@ -99,4 +106,5 @@ def trial_feedback(
         worst=max(findings, key=lambda finding: finding.residual_mm),
         advice=advise(score, findings, motion or {}),
         progress=progress,
+        paused_s=(motion or {}).get("pause_time_s", 0.0),
     )

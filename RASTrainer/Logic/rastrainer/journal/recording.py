@@ -83,6 +83,7 @@ class Recording:
             contacts=tuple(_with_clearance(interval, times, clearance) for interval in contacts),
             camera_switches=self._cameras,
             pauses=self._pauses,
+            paused_s=self._paused_s,
             fiducials_mm=self._fiducials,
             shortest_path_mm=self._shortest_path,
         )

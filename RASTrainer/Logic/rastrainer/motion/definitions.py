@@ -243,5 +243,13 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             0,
         ),
         MetricDefinition("pauses", "Pauses", "", "How often the trial was paused.", OWN, 0),
+        MetricDefinition(
+            "pause_time_s",
+            "Time paused",
+            "s",
+            "How long the trial was paused in all; it is left out of the completion time.",
+            OWN,
+            0,
+        ),
     )
 }

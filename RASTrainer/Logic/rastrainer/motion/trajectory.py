@@ -54,7 +54,8 @@ class Trajectory:
         near: when the tip was near the head, or the tool touched it.
         contacts: when it touched the head.
         camera_switches: how often the view was changed.
-        pauses: how often the trial was interrupted.
+        pauses: how often the trial was paused.
+        paused_s: how long in all.
         fiducials_mm: label → (3,) position in World; empty as long as that is a secret.
         shortest_path_mm: the shortest free way through the task's fiducials; None where unknown.
     """
@@ -69,6 +70,7 @@ class Trajectory:
     contacts: tuple[Interval, ...] = ()
     camera_switches: int = 0
     pauses: int = 0
+    paused_s: float = 0.0
     fiducials_mm: Mapping[str, np.ndarray] = field(default_factory=dict)
     shortest_path_mm: float | None = None
 

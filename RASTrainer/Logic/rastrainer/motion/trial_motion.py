@@ -68,6 +68,7 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
         "undone_touches": trajectory.undone,
         "camera_switches": trajectory.camera_switches,
         "pauses": trajectory.pauses,
+        "pause_time_s": trajectory.paused_s,
     }
     if len(touch_times):
         metrics["completion_time_s"] = touch_times[-1]

@@ -81,7 +81,9 @@ def scoreRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
                 _("{verdict} the limit of {limit:g} mm").format(verdict=verdict, limit=limit),
             ),
         ]
-    rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s"))
+    paused = trial.motion.get("pause_time_s", 0.0)
+    note = _("{s:.0f} s of pauses are left out").format(s=paused) if paused else ""
+    rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s", note))
     if rigid is not None:
         fre = _("does not predict TRE")
         rows += [

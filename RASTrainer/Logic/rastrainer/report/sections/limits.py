@@ -9,6 +9,7 @@ from rastrainer.report.comparisons import ModeComparison
 from rastrainer.report.markup import bullets, heading, section
 from rastrainer.report.outcomes import task_title
 from rastrainer.report.study_data import StudyData
+from rastrainer.scoring import LONG_PAUSE_S
 
 
 def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
@@ -19,7 +20,7 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         if comparisons
         else ["No trainee did two modes: nothing is said about their difference."]
     )
-    sentences += _missing(data)
+    sentences += _missing(data) + _paused(data)
     if data.without_consent:
         sentences.append(
             f"{data.without_consent} trainees did not agree to research and are left out."
@@ -40,6 +41,16 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
             bullets([f"{who}, {step}: {reason}" for who, step, reason in data.skipped]),
         ]
     return section("What cannot be concluded", *parts)
+
+
+def _paused(data: StudyData) -> list[str]:
+    count = sum(trial.values.get("pause_time_s", 0.0) > LONG_PAUSE_S for trial in data.trials)
+    if not count:
+        return []
+    return [
+        f"{count} of {len(data.trials)} trials were paused for more than {LONG_PAUSE_S:g} s in "
+        "all, which completion time and score leave out: time to think that others did not have."
+    ]
 
 
 def _missing(data: StudyData) -> list[str]:

@@ -1,0 +1,76 @@
+"""Waiting never helps: in a trial it costs points, and a pause, which costs none, is told."""
+
+import pytest
+
+from rastrainer.protocol import CommandName
+from rastrainer.scoring import LONG_PAUSE_S
+from rastrainer.scripted_trainee import Skill
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
+from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.virtual_trial import play_virtual_trial
+
+DT = 0.02
+BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)
+WAIT_S = LONG_PAUSE_S + 5.0
+
+
+PAUSE, RESUME = (
+    OperatorInput(commands=(Command(name, {}),)) for name in (CommandName.PAUSE, CommandName.RESUME)
+)
+IDLE = [HANDS_OFF] * round(WAIT_S / DT)
+
+
+class Meanwhile:
+    """Lets inputs come in between after the third touch, and takes the trial's record."""
+
+    def __init__(self, *inputs):
+        self._inputs = list(inputs)
+        self._entries = None
+        self.record = None
+
+    def __call__(self, simulation, before, operator_input, result):
+        if self._entries is None:
+            self._entries = TrialEntries.begun(simulation, before, result, DT)
+        self._take(simulation, operator_input, result)
+        while self._inputs and len(simulation.state.training.touches) == 3:
+            given = self._inputs.pop(0)
+            self._take(simulation, given, simulation.step(DT, given))
+
+    def _take(self, simulation, operator_input, result):
+        self.record = self._entries.add(simulation, operator_input, result) or self.record
+
+
+@pytest.fixture(scope="module")
+def played(setup):
+    """The analyses of one trial: played in one go, with idleness, and with a pause."""
+    simulation = Simulation(setup, 5)
+
+    def play(*inputs):
+        meanwhile = Meanwhile(*inputs)
+        play_virtual_trial(simulation, "task-1", 3, BRISK, DT, meanwhile)
+        return analyze_trial(meanwhile.record, setup.scenario)
+
+    return play(), play(*IDLE), play(PAUSE, *IDLE, RESUME)
+
+
+def test_waiting_in_a_trial_costs_points(played):
+    at_once, idle, _ = played
+    assert idle.record.completion_time_s > at_once.record.completion_time_s + 0.9 * WAIT_S
+    assert idle.score.score < at_once.score.score
+    assert idle.record.motion["idle_time_s"] > WAIT_S - 1.0
+
+
+def test_a_pause_changes_no_score_and_is_told_beside_it_with_its_length(played):
+    at_once, _, paused = played
+    assert paused.record.completion_time_s == pytest.approx(
+        at_once.record.completion_time_s, abs=2.0
+    )
+    assert paused.score.score <= at_once.score.score + 1.0
+    motion = paused.record.motion
+    assert motion["pauses"] == 1
+    assert motion["pause_time_s"] == pytest.approx(WAIT_S, abs=3 * DT)
+    assert motion["idle_time_s"] < at_once.record.motion["idle_time_s"] + 2.0
+    assert any(f"Paused for {WAIT_S:.0f} s" in words for words in paused.feedback.sentences)
+    assert not any("Paused" in words for words in at_once.feedback.sentences)
