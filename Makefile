@@ -48,7 +48,7 @@ format: .venv/test-installed
 
 # Hashes, but no addresses: the locks hold at whatever index a site uses.
 lock: .venv/installed
-	$(BIN)/pip install -q uv
+	$(BIN)/pip install -q uv==0.13.9
 	$(COMPILE) --extra page --extra slicer -o requirements.lock
 	$(COMPILE) --extra test --constraints requirements.lock -o requirements-test.lock
 	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock

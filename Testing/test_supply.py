@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
@@ -16,9 +17,19 @@ ROOT = Path(__file__).parents[1]
 LOCKS = sorted(ROOT.glob("requirements*.lock"))
 PACKAGE_LOCK = ROOT / "RASTrainerSimulatorServer" / "web" / "package-lock.json"
 sys.path.insert(0, str(ROOT / "tools"))
-audit_packages, bill_of_materials, third_party_notices = map(
-    import_module, ("audit_packages", "bill_of_materials", "third_party_notices")
+audit_packages, bill_of_materials, third_party_notices, wheel_page = map(
+    import_module, ("audit_packages", "bill_of_materials", "third_party_notices", "wheel_page")
 )
+
+EXTRAS = {
+    "requirements.lock": ("page", "slicer"),
+    "requirements-test.lock": ("test",),
+    "requirements-bench.lock": ("bench",),
+    "requirements-soak.lock": ("soak",),
+    "requirements-supply.lock": ("supply",),
+}
+"""What `make lock` makes each lock from, beside the project's own dependencies."""
+NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 
 ENTRY = re.compile(r"^[a-z0-9][a-z0-9._-]*==[^\s\\]+(?: ; [^\\]+)? \\$")
 HASH = re.compile(r"^    --hash=sha256:[0-9a-f]{64}(?: \\)?$")
@@ -39,6 +50,40 @@ def test_every_locked_package_is_fixed_by_hashes_and_by_no_address(lock):
     packages = json.loads(PACKAGE_LOCK.read_text(encoding="utf-8"))["packages"]
     assert all("integrity" in entry for place, entry in packages.items() if place)
     assert not any("resolved" in entry for entry in packages.values())
+
+
+def asked_for(project: dict, extras: Iterable[str]) -> set[str]:
+    """Return the names of the packages that the project asks for, with those of some extras."""
+    names = set()
+    optional = project["optional-dependencies"]
+    for line in [*project["dependencies"], *(line for extra in extras for line in optional[extra])]:
+        name, others = NAME.match(line).groups()
+        if name == project["name"]:
+            names |= asked_for(project, others.split(","))
+        else:
+            names.add(re.sub(r"[-_.]+", "-", name).lower())
+    return names
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="the standard library reads no TOML")
+def test_each_lock_holds_every_package_that_the_project_asks_for():
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert {lock.name for lock in LOCKS} == set(EXTRAS)
+    for lock in LOCKS:
+        locked = set(re.findall(r"^([a-z0-9._-]+)==", lock.read_text(encoding="utf-8"), re.M))
+        assert asked_for(project, EXTRAS[lock.name]) - locked == set(), lock.name
+
+
+def test_a_wheel_brings_the_notices_of_what_its_page_is_made_of(tmp_path):
+    build_data = {"force_include": {}}
+    hook = wheel_page.WheelPage(str(ROOT), {}, None, None, str(tmp_path), "wheel")
+    hook.initialize("standard", build_data)
+    (folder,) = build_data["force_include"]
+    notices = Path(folder, "third-party-notices.txt").read_text(encoding="utf-8")
+    assert re.search(r"^three \d\S*\nLicense: MIT", notices, re.MULTILINE)
+    assert "Permission is hereby granted" in notices
 
 
 def test_the_notices_name_every_installed_package_with_its_license(tmp_path):

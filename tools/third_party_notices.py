@@ -83,6 +83,18 @@ def write_notices(output: Path = OUTPUT) -> int:
     return len(notices)
 
 
+def write_page_notices(output: Path) -> None:
+    """Write the notices of what goes into the page; npm has installed it.
+
+    Raises:
+        RuntimeError: it has not.
+    """
+    notices = list(page_notices())
+    if not notices:
+        raise RuntimeError("The packages of the page are not installed: its notices are missing.")
+    output.write_text("\n".join(map(str, notices)), encoding="utf-8")
+
+
 def _license(told: importlib.metadata.PackageMetadata) -> str:
     expression = told.get("License-Expression") or told.get("License") or ""
     if expression and len(expression) < 80 and "\n" not in expression:

@@ -1,4 +1,8 @@
-"""Build hook of the wheel: the browser page comes with it, as rastrainer_simulator/web."""
+"""Build hook of the wheel: the browser page comes with it, as rastrainer_simulator/web.
+
+With it come the notices of what the page is made of. Python's packages are not in the wheel: each
+brings its own when it is installed.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,8 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 sys.path.insert(0, str(Path(__file__).parent))
-from build_page import build_page, has_node
+from build_page import build_page, has_node, install_packages
+from third_party_notices import write_page_notices
 
 
 class WheelPage(BuildHookInterface):
@@ -22,4 +27,7 @@ class WheelPage(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build the page and add it to the wheel."""
         if version != "editable":
-            build_data["force_include"][str(build_page())] = "rastrainer_simulator/web"
+            page = build_page()
+            install_packages()
+            write_page_notices(page / "third-party-notices.txt")
+            build_data["force_include"][str(page)] = "rastrainer_simulator/web"
