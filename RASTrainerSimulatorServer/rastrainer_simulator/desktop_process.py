@@ -7,6 +7,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 from rastrainer_simulator.child_process import VIEW_KEY_VARIABLE
 
@@ -20,10 +21,11 @@ GONE = (
 class DesktopProcess:
     """Runs the desktop window of one simulator."""
 
-    def __init__(self, url: str, key: str):
-        """`url` is where views are served, `key` one that they are served for."""
+    def __init__(self, url: str, key: str, logs: Path):
+        """`url` is where views are served, `key` one they are served for; it logs to `logs`."""
         self._url = url
         self._key = key
+        self._logs = logs
         self._process: asyncio.subprocess.Process | None = None
 
     async def run(self, on_closed: Callable[[], None], tell: Callable[[str], None]) -> None:
@@ -32,7 +34,8 @@ class DesktopProcess:
         `on_closed` is called if its user has closed it. If it ended in any other way the
         simulator stays, with the trial that is running; `tell` says how to come back.
         """
-        command = ("-m", "rastrainer_simulator.cli", "window", "--connect", self._url)
+        options = ("--connect", self._url, "--log-folder", str(self._logs))
+        command = ("-m", "rastrainer_simulator.cli", "window", *options)
         environment = {**os.environ, VIEW_KEY_VARIABLE: self._key}
         self._process = await asyncio.create_subprocess_exec(
             sys.executable, *command, env=environment

@@ -28,6 +28,7 @@ from rastrainer_simulator.flow.study_guide import StudyGuide
 from rastrainer_simulator.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.igtl.state_feed import StateFeed
 from rastrainer_simulator.limits_file import read_limits
+from rastrainer_simulator.logs.log_folder import log_folder
 from rastrainer_simulator.logs.trial_log import TrialLog
 from rastrainer_simulator.precise_clock import stand_second_in_line
 from rastrainer_simulator.record.interrupted_trial import find_interrupted
@@ -68,6 +69,7 @@ class ServerOptions:
         has_gamepad: whether gamepads at this computer are read.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
         config: folder of the user's settings; None is the usual one.
+        logs: folder of the logs of the window; None is the usual one.
         goes_on: whether a trial that the simulator's end has interrupted is taken up.
     """
 
@@ -85,6 +87,7 @@ class ServerOptions:
     has_gamepad: bool = True
     has_desktop: bool = False
     config: Path | None = None
+    logs: Path | None = None
     goes_on: bool = True
 
 
@@ -160,7 +163,9 @@ class SimulatorServer:
                     on_ready(self._interruption())
                 if self._options.has_desktop and views is not None:
                     window = DesktopProcess(
-                        f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open()
+                        f"http://{DEFAULT_HOST}:{views.port}",
+                        views.sessions.open(),
+                        self._options.logs or log_folder(),
                     )
                     tasks.append(loop.create_task(window.run(stop.set, on_ready)))
                 await self._until(stop)

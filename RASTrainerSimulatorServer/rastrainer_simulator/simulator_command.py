@@ -125,6 +125,7 @@ def run(arguments: argparse.Namespace) -> int:
         has_gamepad=arguments.gamepad,
         has_desktop=arguments.desktop,
         config=arguments.config,
+        logs=logs,
         goes_on=arguments.go_on,
         connect_to=connect_to,
         speed=arguments.speed,

@@ -50,6 +50,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         default="high",
         help="light and shadows of these pictures (default: %(default)s)",
     )
+    parser.add_argument(
+        "--log-folder", type=Path, metavar="DIR", help="folder of the logs (default: the usual)"
+    )
     parser.add_argument("--frame-log", type=Path, help=argparse.SUPPRESS)
     parser.set_defaults(run=run)
 
@@ -69,14 +72,14 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("--code must be the pairing code that the simulator shows.")
     # Only here: VTK takes time to import.
     import asyncio
-    import logging
 
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     from rastrainer_simulator.desktop.app import DesktopWindow, WindowOptions
     from rastrainer_simulator.desktop.connection import pair
     from rastrainer_simulator.desktop.quality import Quality
+    from rastrainer_simulator.logs.log_files import keep_logs
+    from rastrainer_simulator.logs.log_folder import log_folder
 
-    logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if arguments.code is not None:
         key = asyncio.run(pair(arguments.connect, arguments.code))
     options = WindowOptions(
@@ -89,8 +92,8 @@ def run(arguments: argparse.Namespace) -> int:
         picture_quality=Quality(arguments.picture_quality),
         frame_log=arguments.frame_log,
     )
-    window = DesktopWindow(options)
-    asyncio.run(window.run())
+    with keep_logs(arguments.log_folder or log_folder(), "window"):
+        asyncio.run(DesktopWindow(options).run())
     return 0
 
 

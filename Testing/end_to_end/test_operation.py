@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import resource
 import signal
 import socket
@@ -98,8 +99,8 @@ def ended(tmp_path_factory):
     return folder, result, simulator.code
 
 
-def log_lines(folder):
-    path = folder / "records-config" / "logs" / "simulator-0.log"
+def log_lines(folder, name="simulator-0.log"):
+    path = folder / "records-config" / "logs" / name
     return [json.loads(line) for line in path.read_text().splitlines()]
 
 
@@ -131,6 +132,18 @@ def test_no_secret_and_no_pseudonym_stands_in_the_log(ended):
     for secret in (code, KEY, TRAINEE):
         assert secret not in written
         assert secret not in errors
+
+
+def test_a_window_that_fails_is_told_of_and_its_log_beside_the_simulator_s_says_why(tmp_path):
+    environment = {**os.environ, "SDL_VIDEODRIVER": "none-such"}
+    options = ["--view-port", "0", "--no-gamepad", "--desktop"]
+    with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
+        simulator.next_line()
+        assert "goes on without its window" in simulator.next_line()
+        assert simulator.stop()[0] == 0
+    (line,) = log_lines(tmp_path, "window.log")
+    assert line["message"].startswith("No window can be opened on this machine: ")
+    assert log_lines(tmp_path)[-1]["message"] == "The simulator has ended."
 
 
 def test_a_view_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):

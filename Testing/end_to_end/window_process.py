@@ -32,7 +32,7 @@ class WindowProcess:
         self._process = subprocess.Popen(
             [
                 *(*COMMAND, "--connect", url, "--pictures", str(folder)),
-                *("--frame-log", str(self._log), *arguments),
+                *("--log-folder", str(folder / "logs"), "--frame-log", str(self._log), *arguments),
             ],
             env={
                 **os.environ,

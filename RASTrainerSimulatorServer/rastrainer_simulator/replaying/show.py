@@ -13,6 +13,7 @@ from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.controls.config_folder import config_folder
 from rastrainer_simulator.desktop_process import DesktopProcess
 from rastrainer_simulator.flow.preferences import FILE_NAME, Preferences, read_preferences
+from rastrainer_simulator.logs.log_folder import log_folder
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replaying.film import make_film
 from rastrainer_simulator.replaying.replay_desk import ReplayDesk
@@ -46,7 +47,7 @@ async def _serve(loop: ReplayLoop, port: int | None, has_window: bool, tell: Cal
             tasks.append(asyncio.create_task(loop.run()))
             if has_window:
                 window = DesktopProcess(
-                    f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open()
+                    f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open(), log_folder()
                 )
                 tasks.append(asyncio.create_task(window.run(stop.set, tell)))
             await stop.wait()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -32,6 +33,7 @@ class Window:
             [
                 *(sys.executable, "-m", "rastrainer_simulator.cli", "window", "--connect", url),
                 *("--size", "640x360", "--frame-log", str(self.frames)),
+                *("--log-folder", str(folder / "logs")),
             ],
             env={
                 **os.environ,
@@ -130,12 +132,15 @@ def test_wrong_arguments_end_with_one_sentence_and_status_2(
     assert len(said.splitlines()) == 1
 
 
-def test_without_a_display_the_window_ends_with_one_sentence():
+def test_without_a_display_the_window_ends_with_one_sentence_which_its_log_keeps(tmp_path):
     environment = {**os.environ, "RASTRAINER_VIEW_KEY": "k" * 40, "SDL_VIDEODRIVER": "none-such"}
     command = [sys.executable, "-m", "rastrainer_simulator.cli", "window"]
+    command += ["--log-folder", str(tmp_path)]
     done = subprocess.run(
         command, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
     assert done.returncode == 2
     assert done.stderr.startswith("rastrainer: No window can be opened on this machine: ")
     assert len(done.stderr.splitlines()) == 1
+    (line,) = map(json.loads, (tmp_path / "window.log").read_text().splitlines())
+    assert line["message"] == done.stderr.removeprefix("rastrainer: ").rstrip()
