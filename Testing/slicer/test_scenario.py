@@ -84,6 +84,22 @@ def test_showing_a_scenario_again_adds_no_node(scene, planned):
     assert scene.GetNumberOfNodes() == count
 
 
+def test_a_scenario_that_was_built_anew_under_its_name_is_shown_anew(scene, planned):
+    showScenario(scene, planned)
+    showTask(scene, planned, "task-1")
+    write_head_mesh(planned.head_mesh, ball_head(70.0))
+    write_head_mesh(planned.skull_mesh, ball_head(60.0))
+    task = planned.task("task-1")
+    moved = replace(task, fiducials=task.fiducials * 70.0 / 90.0)
+    rebuilt = replace(planned, tasks=(moved,))
+    showScenario(scene, rebuilt)
+    node = showTask(scene, rebuilt, "task-1")
+    for role, radius in ((Role.HEAD_MODEL, 70.0), (Role.SKULL, 60.0)):
+        bounds = findNode(scene, MODEL, role).GetPolyData().GetBounds()
+        np.testing.assert_allclose(bounds, [-radius, radius] * 3, atol=1.0)
+    np.testing.assert_allclose(worldPoints(node), moved.fiducials)
+
+
 def test_the_fiducials_of_a_task_are_numbered_and_locked(scene, scenario):
     node = showTask(scene, scenario, "task-2")
     assert node.GetName() == "Task 2 fiducials"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ from rastrainer.tasks import Task
 
 SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
 TASK_ATTRIBUTE = "RASTrainer.task"
+CONTENT_ATTRIBUTE = "RASTrainer.content"
+"""Digest of what a node shows: a scenario that is built anew may keep its name."""
 
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
@@ -48,14 +51,22 @@ def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
     node = findOrAddNode(
         scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
     )
-    if node.GetAttribute(TASK_ATTRIBUTE) != f"{scenario.name}/{task.name}":
-        _fillFiducials(node, scenario, task)
+    if _isNews(node, TASK_ATTRIBUTE, f"{scenario.name}/{task.name}", task.fiducials):
+        _fillFiducials(node, task)
     return node
 
 
-def _fillFiducials(node: Any, scenario: Scenario, task: Task) -> None:
+def _isNews(node: Any, attribute: str, name: str, *content: np.ndarray) -> bool:
+    """Note what a node is to show, and tell whether it shows something else yet."""
+    former = node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)
+    digest = sha256(b"".join(array.tobytes() for array in content)).hexdigest()
+    node.SetAttribute(attribute, name)
+    node.SetAttribute(CONTENT_ATTRIBUTE, digest)
+    return former != (name, digest)
+
+
+def _fillFiducials(node: Any, task: Task) -> None:
     node.SetName(f"{task.title} fiducials")
-    node.SetAttribute(TASK_ATTRIBUTE, f"{scenario.name}/{task.name}")
     setPoints(node, task.labels, task.fiducials)
     node.SetLocked(True)
     display = node.GetDisplayNode()
@@ -66,11 +77,9 @@ def _fillFiducials(node: Any, scenario: Scenario, task: Task) -> None:
 
 def _showHead(scene: Any, scenario: Scenario) -> None:
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL, "Head")
-    if node.GetAttribute(SCENARIO_ATTRIBUTE) == scenario.name:
-        return
-    _fillModel(node, scenario, scenario.head_mesh, SKIN_COLOR)
-    opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
-    node.GetDisplayNode().SetOpacity(opacity)
+    if _fill(node, scenario, scenario.head_mesh, SKIN_COLOR):
+        opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
+        node.GetDisplayNode().SetOpacity(opacity)
 
 
 def _showSkull(scene: Any, scenario: Scenario) -> None:
@@ -78,21 +87,20 @@ def _showSkull(scene: Any, scenario: Scenario) -> None:
         removeNode(scene, "vtkMRMLModelNode", Role.SKULL)
         return
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.SKULL, "Skull")
-    if node.GetAttribute(SCENARIO_ATTRIBUTE) == scenario.name:
-        return
-    node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
-    _fillModel(node, scenario, scenario.skull_mesh, SKULL_COLOR)
+    if _fill(node, scenario, scenario.skull_mesh, SKULL_COLOR):
+        node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
 
 
-def _fillModel(
-    node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]
-) -> None:
+def _fill(node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]) -> bool:
+    """Show a mesh of a scenario, and tell whether something else was shown."""
     mesh = read_head_mesh(path)
+    if not _isNews(node, SCENARIO_ATTRIBUTE, scenario.name, mesh.vertices, mesh.triangles):
+        return False
     node.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
-    node.SetAttribute(SCENARIO_ATTRIBUTE, scenario.name)
     display = node.GetDisplayNode()
     display.SetColor(color)
     display.SetVisibility2D(True)
+    return True
 
 
 def _showTargets(scene: Any, scenario: Scenario) -> None:

@@ -7,20 +7,23 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.scenario import Scenario, load_scenario
+from rastrainer.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer.scenario_library import ListedScenario, list_folders, list_scenarios
 from rastrainer.scenario_writer import scenario_name
 from rastrainer.slicer.translation import _
 
 
 class ScenarioShelf:
-    """Reads scenarios when they are first asked for; `refresh` looks what has come since."""
+    """Reads scenarios when they are asked for, anew where they were built anew.
+
+    `refresh` looks what has come since.
+    """
 
     def __init__(self, *folders: Path) -> None:
         """Put the scenarios of these folders on the shelf."""
         self._list: Callable[[], Iterable[ListedScenario]] = lambda: list_folders(folders)
         self._listed: tuple[ListedScenario, ...] | None = None
-        self._scenarios: dict[str, Scenario] = {}
+        self._scenarios: dict[str, tuple[int, Scenario]] = {}
 
     @classmethod
     def below(cls, *libraries: Path) -> ScenarioShelf:
@@ -46,10 +49,13 @@ class ScenarioShelf:
         Raises:
             InputError: there is none, or it cannot be used.
         """
-        if name not in self._scenarios:
+        stamp, scenario = self._scenarios.get(name, (0, None))
+        if scenario is None or stamp != _stamp(scenario.folder):
             self._listed = None
-            self._scenarios[name] = load_scenario(self._folder(name))
-        return self._scenarios[name]
+            folder = self._folder(name)
+            stamp, scenario = _stamp(folder), load_scenario(folder)
+            self._scenarios[name] = stamp, scenario
+        return scenario
 
     def newName(self, title: str) -> str:
         """Return the name of a scenario of that title, which is not here yet.
@@ -72,3 +78,11 @@ class ScenarioShelf:
                 return entry.folder
         known = ", ".join(entry.name for entry in self.listed() if not entry.problem) or "none"
         raise InputError(f"The scenario {json.dumps(name)} is not here; those that are: {known}.")
+
+
+def _stamp(folder: Path) -> int:
+    """Return when a scenario was written, ns; 0 where it is not there."""
+    try:
+        return (folder / FILE_NAME).stat().st_mtime_ns
+    except OSError:
+        return 0
