@@ -189,10 +189,11 @@ def test_the_setup_that_is_shown_is_the_usual_one_until_it_is_changed(host):
     assert panel._setUp.setUp() == SetUp()
     host.type("head0SpinBox", "500")
     host.type("shift0SpinBox", "3")
+    host.type("turn0SpinBox", "180")
     host.type("base1SpinBox", "-40")
     changed = panel._setUp.setUp()
     assert changed.head_center == (500.0, 0.0, 220.0)
-    assert changed.perturbation == Perturbation(3.0, 8.0, 3.0)
+    assert changed.perturbation == Perturbation(3.0, 180.0, 3.0)
     assert changed.robot_base == (0.0, -40.0)
 
 

@@ -12,7 +12,9 @@ from rastrainer.errors import InputError
 
 MOST_BYTES = 64_000_000
 MOST_TRIANGLES = 1_000_000
-LIMIT_MM = 2000.0
+RAS_LIMIT_MM = 2000.0
+"""Of every place in a patient: scanners may count from far away."""
+
 
 _HEADER = """ply
 format binary_little_endian 1.0
@@ -153,8 +155,10 @@ def _checked(path: Path, vertex_count: int, triangle_count: int, body: bytes) ->
     vertices = np.frombuffer(body, "<f4", 3 * vertex_count).reshape(-1, 3)
     faces = np.frombuffer(body, _FACE, triangle_count, 12 * vertex_count)
     corners = faces["corners"]
-    if not np.all(np.abs(vertices) <= LIMIT_MM):
-        raise InputError(f"The head mesh {path} has a vertex that is not within ±{LIMIT_MM:g} mm.")
+    if not np.all(np.abs(vertices) <= RAS_LIMIT_MM):
+        raise InputError(
+            f"The head mesh {path} has a vertex that is not within ±{RAS_LIMIT_MM:g} mm."
+        )
     if (faces["count"] != 3).any() or corners.min() < 0 or corners.max() >= vertex_count:
         raise InputError(f"The head mesh {path} has a face that is no triangle of its vertices.")
     return HeadMesh(vertices.astype(float), corners.astype(np.int32))

@@ -24,6 +24,10 @@ class Perturbation:
     tilt_deg: float
 
 
+WIDEST = Perturbation(200.0, 180.0, 45.0)
+"""What a scenario or a set-up may ask for at most."""
+
+
 def perturbed_pose(
     head_to_world: np.ndarray, pivot: np.ndarray, limits: Perturbation, seed: int
 ) -> np.ndarray:

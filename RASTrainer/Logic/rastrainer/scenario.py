@@ -14,7 +14,8 @@ import numpy as np
 
 from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
-from rastrainer.head_pose import Perturbation, perturbed_pose
+from rastrainer.head_mesh import RAS_LIMIT_MM
+from rastrainer.head_pose import WIDEST, Perturbation, perturbed_pose
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario_plan import (
     PlannedTarget,
@@ -22,13 +23,14 @@ from rastrainer.scenario_plan import (
     read_targets,
     read_trajectory,
 )
-from rastrainer.tasks import LIMIT_MM, Task, is_task_name, read_task
+from rastrainer.tasks import Task, is_task_name, read_task
 
 FILE_NAME = "scenario.json"
 PREVIEW_NAME = "preview.png"
 FORMAT_VERSION = 1
 CAMERAS = ("close-up", "far")
 MOST_TASKS = 20
+STAND_DIAMETERS_MM = (1.0, 500.0)
 SKULL_KINDS = ("bone", "approximation")
 UNKNOWN_LICENSE = "Not to be given away: nothing is known about its license."
 
@@ -172,7 +174,7 @@ def _load(folder: Path) -> Scenario:
         title=fields.text("title", 80),
         head_mesh=fields.file("head"),
         target_name=target.text("name", 60),
-        target_position=_array(target.numbers("positionRas", 3, LIMIT_MM)),
+        target_position=_array(target.numbers("positionRas", 3, RAS_LIMIT_MM)),
         head_to_world=_rigid(fields, "headToWorld"),
         perturbation=_perturbation(fields.fields("perturbation")),
         tasks=_tasks(fields),
@@ -208,9 +210,9 @@ def _tasks(fields: Fields) -> tuple[Task, ...]:
 
 def _perturbation(fields: Fields) -> Perturbation:
     return Perturbation(
-        fields.number("translationMm", 0, 200),
-        fields.number("yawDeg", 0, 180),
-        fields.number("tiltDeg", 0, 45),
+        fields.number("translationMm", 0, WIDEST.translation_mm),
+        fields.number("yawDeg", 0, WIDEST.yaw_deg),
+        fields.number("tiltDeg", 0, WIDEST.tilt_deg),
     )
 
 
@@ -230,7 +232,7 @@ def _furniture(fields: Fields) -> Furniture:
     return Furniture(
         _array(table.numbers("centerMm", 2, WORLD_LIMIT_MM)),
         _array(table.numbers("sizeMm", 3, WORLD_LIMIT_MM)),
-        stand.number("diameterMm", 1, 500),
+        stand.number("diameterMm", *STAND_DIAMETERS_MM),
     )
 
 

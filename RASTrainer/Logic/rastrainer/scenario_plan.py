@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.checked_json import Fields
-from rastrainer.tasks import LIMIT_MM
+from rastrainer.head_mesh import RAS_LIMIT_MM
 
 MOST_TARGETS = 20
 SHORTEST_TRAJECTORY_MM = 1.0
@@ -71,6 +71,6 @@ def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
 
 
 def _point(fields: Fields, name: str) -> np.ndarray:
-    point = np.array(fields.numbers(name, 3, LIMIT_MM), dtype=float)
+    point = np.array(fields.numbers(name, 3, RAS_LIMIT_MM), dtype=float)
     point.setflags(write=False)
     return point

@@ -11,10 +11,10 @@ import numpy as np
 from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
 from rastrainer.files import write_text
-from rastrainer.head_pose import Perturbation
-from rastrainer.scenario import Camera, Furniture
+from rastrainer.head_pose import WIDEST, Perturbation
+from rastrainer.protocol import WORLD_LIMIT_MM
+from rastrainer.scenario import STAND_DIAMETERS_MM, Camera, Furniture
 
-LIMIT_MM = 3000.0
 FAR_EYE_MM, FAR_FOCUS_MM = (240.0, -2050.0, 1050.0), (240.0, 0.0, 430.0)
 CLOSE_UP_FROM_HEAD_MM, FOCUS_FROM_HEAD_MM = (0.0, -600.0, 220.0), (0.0, 0.0, 5.0)
 LOWEST_BASE_MM = 20.0
@@ -102,13 +102,19 @@ def read_setup(path: Path) -> SetUp:
         _point(head, "centerMm", usual.head_center),
         _number(head, "yawDeg", -180.0, 180.0, usual.head_yaw_deg),
         Perturbation(
-            _number(limits, "translationMm", 0.0, 200.0, usual.perturbation.translation_mm),
-            _number(limits, "yawDeg", 0.0, 180.0, usual.perturbation.yaw_deg),
-            _number(limits, "tiltDeg", 0.0, 45.0, usual.perturbation.tilt_deg),
+            _number(
+                limits,
+                "translationMm",
+                0.0,
+                WIDEST.translation_mm,
+                usual.perturbation.translation_mm,
+            ),
+            _number(limits, "yawDeg", 0.0, WIDEST.yaw_deg, usual.perturbation.yaw_deg),
+            _number(limits, "tiltDeg", 0.0, WIDEST.tilt_deg, usual.perturbation.tilt_deg),
         ),
         _point(table, "centerMm", usual.table_center),
         _point(table, "sizeMm", usual.table_size),
-        _number(stand, "diameterMm", 1.0, 500.0, usual.stand_diameter),
+        _number(stand, "diameterMm", *STAND_DIAMETERS_MM, usual.stand_diameter),
         _point(fields, "robotBaseMm", usual.robot_base),
     )
 
@@ -140,7 +146,7 @@ def _part(fields: Fields, name: str) -> Fields | None:
 def _point(fields: Fields | None, name: str, usual: tuple[float, ...]) -> tuple[float, ...]:
     if fields is None or name not in fields.names():
         return usual
-    return tuple(fields.numbers(name, len(usual), LIMIT_MM))
+    return tuple(fields.numbers(name, len(usual), WORLD_LIMIT_MM))
 
 
 def _number(fields: Fields | None, name: str, lowest: float, highest: float, usual: float) -> float:

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.head_mesh import RAS_LIMIT_MM
 from rastrainer.markups import read_markups
 from rastrainer.protocol import FIDUCIAL_COUNT
 
 LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
-LIMIT_MM = 1000.0
 _NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
@@ -54,8 +54,8 @@ def read_task(
             "order to touch."
         )
     fiducials = np.array(points.points, dtype=float)
-    if not np.all(np.abs(fiducials) <= LIMIT_MM):
-        raise InputError(f"{path} has a point that is not within ±{LIMIT_MM:g} mm.")
+    if not np.all(np.abs(fiducials) <= RAS_LIMIT_MM):
+        raise InputError(f"{path} has a point that is not within ±{RAS_LIMIT_MM:g} mm.")
     if len(np.unique(fiducials, axis=0)) != FIDUCIAL_COUNT:
         raise InputError(f"{path} has two points at the same place.")
     fiducials.setflags(write=False)

@@ -15,7 +15,7 @@ from rastrainer.scenario_draft import HeadDraft
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp
 from rastrainer.scenario_writer import new_folder, scenario_name, write_scenario
-from rastrainer.tasks import LIMIT_MM, Task, read_task
+from rastrainer.tasks import Task, read_task
 from rastrainer_simulator.planning.task_check import check_tasks, measured
 from rastrainer_simulator.planning.task_proposal import PLANS
 from rastrainer_simulator.planning.task_set import Progress, TaskSetProposer
@@ -164,8 +164,6 @@ def _placed_tasks(
     for index, (path, plan) in enumerate(zip(files, PLANS, strict=False)):
         progress(f"Checking {plan.title}", index / len(files))
         task = read_task(path, plan.name, plan.title, 0.0)
-        if np.abs(task.fiducials).max() > LIMIT_MM:
-            raise InputError(f"{path} has a point outside of the patient.")
         tasks.append(measured(bench, task))
     wrong = check_tasks(bench, tasks)
     if wrong:

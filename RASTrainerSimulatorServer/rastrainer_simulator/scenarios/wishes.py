@@ -7,10 +7,10 @@ import argparse
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.head_mesh import RAS_LIMIT_MM
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp, read_setup
 from rastrainer.scenario_writer import scenario_name
-from rastrainer.tasks import LIMIT_MM
 from rastrainer_simulator.scenarios.make import Wishes
 
 LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
@@ -71,6 +71,6 @@ def _numbers(option: str, words: list[str]) -> np.ndarray:
         numbers = np.array([float(word) for word in words])
     except ValueError:
         raise InputError(f"{option} needs numbers after its name, RAS mm.") from None
-    if not (np.abs(numbers) <= LIMIT_MM).all():
-        raise InputError(f"{option} must be within ±{LIMIT_MM:g} mm.")
+    if not (np.abs(numbers) <= RAS_LIMIT_MM).all():
+        raise InputError(f"{option} must be within ±{RAS_LIMIT_MM:g} mm.")
     return numbers

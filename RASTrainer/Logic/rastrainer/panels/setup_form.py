@@ -6,25 +6,29 @@ from typing import Any
 
 import qt
 
-from rastrainer.head_pose import Perturbation
-from rastrainer.scenario_setup import LIMIT_MM, SetUp
+from rastrainer.head_pose import WIDEST, Perturbation
+from rastrainer.protocol import WORLD_LIMIT_MM
+from rastrainer.scenario import STAND_DIAMETERS_MM
+from rastrainer.scenario_setup import SetUp
 from rastrainer.slicer.translation import _
 
 _USUAL = SetUp()
-_PLACE, _EXTENT = (-LIMIT_MM, LIMIT_MM), (1.0, LIMIT_MM)
+_MOVED = _USUAL.perturbation
+_PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
 _ROWS = (
     (_("Head's middle, mm:"), "head", _PLACE, _USUAL.head_center),
     (_("Head's turn, °:"), "yaw", (-180.0, 180.0), (_USUAL.head_yaw_deg,)),
-    (_("Shift in a trial, ± mm:"), "shift", (0.0, 200.0), (_USUAL.perturbation.translation_mm,)),
     (
-        _("Turn and tilt in a trial, ± °:"),
-        "turn",
-        (0.0, 45.0),
-        (_USUAL.perturbation.yaw_deg, _USUAL.perturbation.tilt_deg),
+        _("Shift in a trial, ± mm:"),
+        "shift",
+        (0.0, WIDEST.translation_mm),
+        (_MOVED.translation_mm,),
     ),
+    (_("Turn in a trial, ± °:"), "turn", (0.0, WIDEST.yaw_deg), (_MOVED.yaw_deg,)),
+    (_("Tilt in a trial, ± °:"), "tilt", (0.0, WIDEST.tilt_deg), (_MOVED.tilt_deg,)),
     (_("Table's middle, mm:"), "table", _PLACE, _USUAL.table_center),
     (_("Table's size, mm:"), "size", _EXTENT, _USUAL.table_size),
-    (_("Stand's diameter, mm:"), "stand", (1.0, 500.0), (_USUAL.stand_diameter,)),
+    (_("Stand's diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),
     (_("Robot's base, mm:"), "base", _PLACE, _USUAL.robot_base),
 )
 """Label, name, lowest and highest, usual values; places are in the table's frame."""
@@ -55,7 +59,7 @@ class SetUpForm:
         return SetUp(
             head_center=values["head"],
             head_yaw_deg=values["yaw"][0],
-            perturbation=Perturbation(values["shift"][0], *values["turn"]),
+            perturbation=Perturbation(*values["shift"], *values["turn"], *values["tilt"]),
             table_center=values["table"],
             table_size=values["size"],
             stand_diameter=values["stand"][0],

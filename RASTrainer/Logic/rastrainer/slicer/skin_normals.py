@@ -14,7 +14,7 @@ from rastrainer.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration import Registration
 from rastrainer.surface_queries import nearest_on_mesh, outward_normal
 
-ON_SKIN_MM = 3.0
+SAME_HEAD_MM = 3.0
 """Fiducials farther from the surface do not lie on this head."""
 
 
@@ -60,6 +60,6 @@ class SkinNormals:
         key = point.tobytes()
         if key not in self._known:
             isOn = self._mesh is not None
-            isOn = isOn and nearest_on_mesh(self._mesh, point).distance <= ON_SKIN_MM
+            isOn = isOn and nearest_on_mesh(self._mesh, point).distance <= SAME_HEAD_MM
             self._known[key] = outward_normal(self._mesh, point) if isOn else None
         return self._known[key]
