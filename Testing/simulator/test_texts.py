@@ -50,6 +50,14 @@ def test_a_sentence_of_the_simulation_is_said_again_in_another_language():
     assert german.again("what others say") == "what others say"
 
 
+def test_feedback_of_slicers_is_said_with_the_languages_words_and_decimal_sign():
+    german = Texts(LANGUAGES["de"])
+    assert german.say("feedback.touch above", depth=1.25).startswith(
+        ", vor allem in der Tiefe (1,2"
+    )
+    assert german.say("feedback.passed", mark=70.0) == "Bestanden: die Marke ist 70."
+
+
 def test_a_value_with_braces_is_filled_in_as_it_is():
     assert Texts().say("start", trainee="{point} {0}", point="1") == "{point} {0}, touch point 1."
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from rastrainer_simulator.texts.feedback import ENGLISH_FEEDBACK
 from rastrainer_simulator.texts.questionnaires import ENGLISH_ITEMS
 
 ENGLISH: Mapping[str, str] = MappingProxyType(
@@ -133,6 +134,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "questionnaire.keep": "Done",
         "questionnaire.back": "Back, without answers",
         **ENGLISH_ITEMS,
+        **ENGLISH_FEEDBACK,
         "experiment.scenario": "Head",
         "experiment.back": "Back",
         "scenario.title": "Heads",

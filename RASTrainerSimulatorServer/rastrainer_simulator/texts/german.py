@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from rastrainer_simulator.texts.feedback import GERMAN_FEEDBACK
 from rastrainer_simulator.texts.questionnaires import GERMAN_ITEMS
 
 GERMAN: Mapping[str, str] = MappingProxyType(
@@ -140,6 +141,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "questionnaire.keep": "Fertig",
         "questionnaire.back": "Zurück, ohne Antworten",
         **GERMAN_ITEMS,
+        **GERMAN_FEEDBACK,
         "experiment.back": "Zurück",
         "scenario.title": "Köpfe",
         "scenario.text": "An welchem Kopf möchtest du üben?",

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from rastrainer.feedback.wording import say
 from rastrainer.journal.journal_reader import Integrity, read_journal
 from rastrainer_simulator.flow.screen import Tone
 from rastrainer_simulator.record.replay import replay
 
+ABOVE = say("touch above", depth=1.25)
 SCORE = {
     "matrix": np.eye(4).ravel().tolist(),
     "freMm": 1.25,
@@ -17,7 +19,14 @@ SCORE = {
         "ctps": 62.5,
         "passMark": 82.0,
         "warnings": ["Point 3 is far off."],
-        "feedback": ["Hold still before you touch.", 7],
+        "feedback": [
+            "Hold still before you touch.",
+            7,
+            say("touch", label="3", residual=2.5, where=ABOVE, hurry="", tremor="").to_json(),
+            {"key": "of another version", "values": {}, "text": "What only another one knows."},
+            {"key": "passed", "values": {"mark": "high"}, "text": "You passed."},
+            {"key": "passed", "values": {"mark": {"mark": {}}}, "text": 7},
+        ],
     },
 }
 
@@ -53,7 +62,13 @@ def train_and_look_at_the_result(trainee, outside):
     assert trainee.submit("TrialScored", trialId=training.trial_id, **SCORE).ok
     trainee.until_menu("result")
     assert (trainee.menu.facts[0].value, trainee.menu.facts[0].tone) == ("81 / 100", Tone.PLAIN)
-    assert trainee.menu.paragraphs == ("Point 3 is far off.", "Hold still before you touch.")
+    assert trainee.menu.paragraphs == (
+        "Point 3 is far off.",
+        "Hold still before you touch.",
+        "Point 3 was 2.5 mm off, mostly in depth (1.3 mm above the skin).",
+        "What only another one knows.",
+        "You passed.",
+    )
     trainee.choose("next")
     trainee.until_menu("experiment")
     assert trainee.menu.focus == "task-2"

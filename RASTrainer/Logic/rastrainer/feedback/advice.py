@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.feedback.touch_findings import TouchFinding
-from rastrainer.number_text import fixed
+from rastrainer.feedback.wording import Sentence, say
 from rastrainer.scoring import TrialScore, score_trial
 
 GOOD_EFFICIENCY = 0.55
@@ -31,7 +31,7 @@ class Advice:
     """
 
     topic: str
-    sentence: str
+    sentence: Sentence
     gain: float
 
 
@@ -54,13 +54,8 @@ def advise(
 def _safety(motion: Mapping[str, float]) -> Iterator[Advice]:
     count = int(motion.get("unintended_contacts", 0))
     if count:
-        times = "once" if count == 1 else f"{count} times"
-        yield Advice(
-            "contacts",
-            f"You bumped into the head {times} on the way. Lift off before you travel to the next "
-            "point.",
-            0.0,
-        )
+        sentence = say("contact") if count == 1 else say("contacts", count=count)
+        yield Advice("contacts", sentence, 0.0)
 
 
 def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[Advice]:
@@ -74,12 +69,13 @@ def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[A
         better = sum(
             (typical if finding.hurts else finding.residual_mm) ** 2 for finding in findings
         )
-        names = ", ".join(finding.label for finding in hurting)
-        points = "point" if len(hurting) == 1 else "points"
         yield Advice(
             "worst touches",
-            f"Take more care at the {points} {names}: without these errors the registration "
-            f"would be about {100 * (1 - math.sqrt(better / total)):.0f} % more exact.",
+            say(
+                "worst touch" if len(hurting) == 1 else "worst touches",
+                points=", ".join(finding.label for finding in hurting),
+                share=100 * (1 - math.sqrt(better / total)),
+            ),
             _gain(score, error_factor=math.sqrt(better / total)),
         )
     depths = [finding.depth_mm for finding in findings if finding.depth_mm is not None]
@@ -88,8 +84,7 @@ def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[A
         if in_depth > 0.5 * total:
             yield Advice(
                 "depth",
-                "Most of the error is in depth: bring the tip all the way onto the skin, and look "
-                "from the side before you touch.",
+                say("depth"),
                 _gain(score, error_factor=math.sqrt(max(1 - in_depth / total, 0.04) / 0.75)),
             )
 
@@ -100,8 +95,7 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
     if idle > 0:
         yield Advice(
             "idle time",
-            f"The tool stood still for {fixed(idle, 0)} s of {fixed(time, 0)} s: look for the next "
-            "point while you are still at this one.",
+            say("idle time", idle=float(idle), time=time),
             # Half of it is needed to aim and to hold still.
             _gain(score, time_s=time - idle / 2),
         )
@@ -110,24 +104,21 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
         moving = time - idle
         yield Advice(
             "detours",
-            f"The tool went {fixed(1 / efficiency, 1)} times the shortest way: go around the head "
-            "closer to it and in one sweep.",
+            say("detours", times=1 / efficiency),
             _gain(score, time_s=time - moving * (1 - efficiency / GOOD_EFFICIENCY)),
         )
     refused = int(motion.get("refused_touches", 0) + motion.get("undone_touches", 0))
     if refused:
         yield Advice(
             "repeated touches",
-            f"{refused} touch{'es were' if refused > 1 else ' was'} refused or taken back: check "
-            "the number of the point before you touch.",
+            say("repeated touch") if refused == 1 else say("repeated touches", count=refused),
             _gain(score, time_s=max(time - ATTEMPT_S * refused, 0.2 * time)),
         )
     slow = time / score.reference.time_s
     if slow > 1.3:
         yield Advice(
             "pace",
-            f"You took {fixed(time, 0)} s where {fixed(score.reference.time_s, 0)} s are usual: "
-            "travel faster between the points and slow down only near the skin.",
+            say("pace", time=time, usual=float(score.reference.time_s)),
             0.5 * _gain(score, time_s=score.reference.time_s),
         )
 

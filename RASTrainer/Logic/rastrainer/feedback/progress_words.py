@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.feedback.wording import Sentence, say
 from rastrainer.learning.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.learning.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
-from rastrainer.number_text import fixed, percent
 from rastrainer.study_values import PastTrial
 
 ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4
@@ -40,7 +40,7 @@ class Progress:
     passes: bool
     competence: LcCusum
     curve: LearningCurve | None
-    sentences: tuple[str, ...]
+    sentences: tuple[Sentence, ...]
 
 
 def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> Progress:
@@ -71,7 +71,7 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> P
     is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
     passes = _passes(trial, pass_mark)
     sentences = (
-        *_about_scores(scores, is_best),
+        _about_scores(scores, is_best),
         _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )
@@ -82,33 +82,33 @@ def _passes(trial: PastTrial, pass_mark: float) -> bool:
     return trial.acceptable and trial.score >= pass_mark
 
 
-def _about_scores(scores: Sequence[float], is_best: bool) -> list[str]:
+def _about_scores(scores: Sequence[float], is_best: bool) -> Sentence:
     if len(scores) == 1:
-        return ["This is your first trial of this task in this mode."]
+        return say("first trial")
     change = scores[-1] - float(np.mean(scores[:-1][-3:]))
-    words = "more" if change >= 0 else "less"
-    best = " It is your best so far." if is_best else ""
-    return [
-        f"{fixed(abs(change), 0)} points {words} than the mean of your last "
-        f"{min(3, len(scores) - 1)} trials of this task.{best}"
-    ]
+    return say(
+        "more points" if change >= 0 else "less points",
+        points=abs(change),
+        trials=min(3, len(scores) - 1),
+        best=say("best") if is_best else "",
+    )
 
 
-def _about_mark(score: float, acceptable: bool, pass_mark: float) -> str:
+def _about_mark(score: float, acceptable: bool, pass_mark: float) -> Sentence:
     if not acceptable:
-        return "Not passed: the expected target error is beyond what is acceptable."
+        return say("unacceptable")
     if score >= pass_mark:
-        return f"Passed: the mark is {fixed(pass_mark, 0)}."
-    return f"Not passed yet: {fixed(pass_mark - score, 0)} points to the mark of {pass_mark:.0f}."
+        return say("passed", mark=pass_mark)
+    return say("not passed", points=pass_mark - score, mark=pass_mark)
 
 
-def _about_competence(chart: LcCusum, trials: int) -> str:
-    if chart.competent_at is not None:
-        failing, risk = percent(INADEQUATE_FAILURES), percent(chart.false_discovery)
-        return (
-            f"Your trials show competence since number {chart.competent_at}: of those who still "
-            f"fail in {failing} of their trials, {risk} come so far by chance within {trials} "
-            "trials (LC-CUSUM)."
-        )
-    share = chart.scores[-1] / chart.limit
-    return f"{100 * share:.0f} % of the way to proven competence after {trials} trials (LC-CUSUM)."
+def _about_competence(chart: LcCusum, trials: int) -> Sentence:
+    if chart.competent_at is None:
+        return say("not competent", share=100 * chart.scores[-1] / chart.limit, trials=trials)
+    return say(
+        "competent",
+        number=chart.competent_at,
+        failing=100 * INADEQUATE_FAILURES,
+        risk=100 * chart.false_discovery,
+        trials=trials,
+    )

@@ -8,9 +8,9 @@ from enum import Enum
 
 import numpy as np
 
+from rastrainer.feedback.wording import Sentence, say
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.motion.trial_motion import DWELL_RADIUS_MM
-from rastrainer.number_text import fixed
 from rastrainer.registration import Registration
 
 HURTING_SHARE = 2.0
@@ -64,19 +64,22 @@ class TouchFinding:
     replay_s: tuple[float, float] | None
 
     @property
-    def sentence(self) -> str:
+    def sentence(self) -> Sentence:
         """What the trainee is told of it."""
-        words = f"Point {self.label} was {fixed(self.residual_mm, 1)} mm off"
+        where: Sentence | str = ""
         if Reason.DEPTH in self.reasons:
-            where = "above the skin" if self.depth_mm > 0 else "below the skin"
-            words += f", mostly in depth ({fixed(abs(self.depth_mm), 1)} mm {where})"
+            side = "touch above" if self.depth_mm > 0 else "touch below"
+            where = say(side, depth=abs(self.depth_mm))
         elif Reason.ASIDE in self.reasons:
-            words += ", mostly along the skin"
-        if Reason.HURRY in self.reasons:
-            words += "; you hurried: hold still for a moment before you touch"
-        if Reason.TREMOR in self.reasons:
-            words += "; the tip shook: use the fine speed for the last centimeter"
-        return words + "."
+            where = say("touch aside")
+        return say(
+            "touch",
+            label=self.label,
+            residual=self.residual_mm,
+            where=where,
+            hurry=say("touch hurry") if Reason.HURRY in self.reasons else "",
+            tremor=say("touch tremor") if Reason.TREMOR in self.reasons else "",
+        )
 
 
 def touch_findings(

@@ -10,6 +10,7 @@ import numpy as np
 from rastrainer.feedback.advice import Advice, advise
 from rastrainer.feedback.progress_words import Progress
 from rastrainer.feedback.touch_findings import TouchFinding, touch_findings
+from rastrainer.feedback.wording import Sentence, say
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.registration import Registration
@@ -59,11 +60,11 @@ class TrialFeedback:
         )
 
     @property
-    def touch_sentences(self) -> tuple[str, ...]:
+    def touch_sentences(self) -> tuple[Sentence, ...]:
         """The touches that hurt, the worst first; or that none stands out."""
         hurting = sorted((t for t in self.touches if t.hurts), key=lambda t: -t.residual_mm)
         if not hurting:
-            return ("No touch stands out: the errors are spread evenly.",)
+            return (say("no touch"),)
         return tuple(touch.sentence for touch in hurting)
 
     @property
@@ -74,7 +75,7 @@ class TrialFeedback:
         return (*self.score_sentences, *self.touch_sentences, *improve, *progress)
 
     @property
-    def short_sentences(self) -> list[str]:
+    def short_sentences(self) -> list[Sentence]:
         """What a page beside the score has room for: the worst touch, advice, and progress."""
         touches, advice = self.touch_sentences[:1], (a.sentence for a in self.advice)
         progress = () if self.progress is None else self.progress.sentences

@@ -232,6 +232,6 @@ def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
             "ctps": None if published is None else published.published,
             "warnings": [warning.message for warning in analysis.rigid.warnings],
             "passMark": None if progress is None else progress.pass_mark,
-            "feedback": analysis.feedback.short_sentences,
+            "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
         },
     }

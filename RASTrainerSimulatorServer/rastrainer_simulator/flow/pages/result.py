@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import Any
 
@@ -15,12 +16,14 @@ from rastrainer_simulator.flow.screen import Fact, Item, Menu, Tone
 from rastrainer_simulator.flow.session import Session
 from rastrainer_simulator.replaying.film_making import FilmMaking
 from rastrainer_simulator.state import TrialResult
+from rastrainer_simulator.texts.texts import Texts
 
 GOOD_MM = 2.0
 POOR_MM = 4.0
 """Errors up to the first are good, from the second on they are poor: what frameless stereotaxy
 reaches in the clinic lies between them."""
 POOR_SCORE = 40.0
+LONGEST_SENTENCE = 300
 MOST_FEEDBACK = 7
 """Sentences: the worst touch, three things to improve, three on the progress."""
 
@@ -99,8 +102,8 @@ class ResultPage(FinishedPage):
             self.name,
             self.say("result.title", trainee=training.trainee, task=task),
             (
-                *_sentences(result, "warnings", 3),
-                *_sentences(result, "feedback", MOST_FEEDBACK),
+                *_sentences(self.session.texts, result, "warnings", 3),
+                *_sentences(self.session.texts, result, "feedback", MOST_FEEDBACK),
                 *self._what_comes_next(),
             ),
             (*self._facts_of_result(result), *_facts_of_trial(self.session)),
@@ -179,12 +182,42 @@ def _facts_of_trial(session: Session) -> tuple[Fact, ...]:
     )
 
 
-def _sentences(result: TrialResult, name: str, most: int) -> list[str]:
-    """Return what Slicer says about the registration: what is not text is left out."""
-    texts = result.details.get(name)
-    if not isinstance(texts, list):
+def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[str]:
+    """Return what Slicer says about the registration: what is no sentence is left out."""
+    told = result.details.get(name)
+    if not isinstance(told, list):
         return []
-    return [text[:200] for text in texts[:most] if isinstance(text, str) and text.isprintable()]
+    worded = (_worded(texts, each) for each in told[:most])
+    return [sentence[:LONGEST_SENTENCE] for sentence in worded if sentence]
+
+
+def _worded(texts: Texts, told: Any) -> str:
+    """Return a text as it is, and what has a key here in the trainee's language; "" for others."""
+    if not isinstance(told, dict):
+        return told if isinstance(told, str) and told.isprintable() else ""
+    key, values = f"feedback.{told.get('key')}", told.get("values")
+    if key in texts and isinstance(values, dict):
+        # What does not fit the sentence, as that of another version, is said in English.
+        with contextlib.suppress(KeyError, ValueError, TypeError):
+            return texts.say(key, **{name: _value(texts, value) for name, value in values.items()})
+    text = told.get("text")
+    return text if isinstance(text, str) and text.isprintable() else ""
+
+
+def _value(texts: Texts, value: Any) -> Any:
+    """Return a number as it is, and a text or a part of a sentence worded."""
+    if _is_number(value):
+        return value
+    if isinstance(value, dict):
+        # A part has no parts of its own, however deep what is told may be.
+        return _worded(texts, {**value, "values": _plain(value.get("values"))})
+    return _worded(texts, value)
+
+
+def _plain(values: Any) -> dict[str, Any]:
+    """Return those values that are numbers or texts."""
+    told = values.items() if isinstance(values, dict) else ()
+    return {name: value for name, value in told if isinstance(value, str) or _is_number(value)}
 
 
 def _is_number(value: Any) -> bool:

@@ -1,0 +1,84 @@
+"""The feedback's sentences in English, each with a key by which others word it otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+ENGLISH: Mapping[str, str] = {
+    "touch": "Point {label} was {residual:.1f} mm off{where}{hurry}{tremor}.",
+    "touch above": ", mostly in depth ({depth:.1f} mm above the skin)",
+    "touch below": ", mostly in depth ({depth:.1f} mm below the skin)",
+    "touch aside": ", mostly along the skin",
+    "touch hurry": "; you hurried: hold still for a moment before you touch",
+    "touch tremor": "; the tip shook: use the fine speed for the last centimeter",
+    "no touch": "No touch stands out: the errors are spread evenly.",
+    "contact": "You bumped into the head once on the way. Lift off before you travel to the next "
+    "point.",
+    "contacts": "You bumped into the head {count} times on the way. Lift off before you travel to "
+    "the next point.",
+    "worst touch": "Take more care at the point {points}: without this error the registration "
+    "would be about {share:.0f} % more exact.",
+    "worst touches": "Take more care at the points {points}: without these errors the registration "
+    "would be about {share:.0f} % more exact.",
+    "depth": "Most of the error is in depth: bring the tip all the way onto the skin, and look "
+    "from the side before you touch.",
+    "idle time": "The tool stood still for {idle:.0f} s of {time:.0f} s: look for the next point "
+    "while you are still at this one.",
+    "detours": "The tool went {times:.1f} times the shortest way: go around the head closer to it "
+    "and in one sweep.",
+    "repeated touch": "1 touch was refused or taken back: check the number of the point before you "
+    "touch.",
+    "repeated touches": "{count} touches were refused or taken back: check the number of the point "
+    "before you touch.",
+    "pace": "You took {time:.0f} s where {usual:.0f} s are usual: travel faster between the points "
+    "and slow down only near the skin.",
+    "first trial": "This is your first trial of this task in this mode.",
+    "more points": "{points:.0f} points more than the mean of your last {trials} trials of this "
+    "task.{best}",
+    "less points": "{points:.0f} points less than the mean of your last {trials} trials of this "
+    "task.{best}",
+    "best": " It is your best so far.",
+    "unacceptable": "Not passed: the expected target error is beyond what is acceptable.",
+    "passed": "Passed: the mark is {mark:.0f}.",
+    "not passed": "Not passed yet: {points:.0f} points to the mark of {mark:.0f}.",
+    "competent": "Your trials show competence since number {number}: of those who still fail in "
+    "{failing:.0f} % of their trials, {risk:.0f} % come so far by chance within {trials} trials "
+    "(LC-CUSUM).",
+    "not competent": "{share:.0f} % of the way to proven competence after {trials} trials "
+    "(LC-CUSUM).",
+}
+
+_PAST_HALF = 1 + 1e-12
+"""Rounds halves up: 0.25, stored a trifle below, becomes 0.3."""
+
+
+class Sentence(str):
+    """An English sentence that remembers how it was made.
+
+    Attributes:
+        key: of its template.
+        values: what was filled in: numbers, texts, and sentences that are parts of this one.
+    """
+
+    key: str
+    values: Mapping[str, Any]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return key, values and the English text; parts are such objects, too."""
+        values = {
+            name: value.to_json() if isinstance(value, Sentence) else value
+            for name, value in self.values.items()
+        }
+        return {"key": self.key, "values": values, "text": str(self)}
+
+
+def say(key: str, **values: Any) -> Sentence:
+    """Return a sentence with its values filled in."""
+    rounded = {
+        name: value * _PAST_HALF if isinstance(value, float) else value
+        for name, value in values.items()
+    }
+    sentence = Sentence(ENGLISH[key].format(**rounded))
+    sentence.key, sentence.values = key, rounded
+    return sentence
