@@ -1,4 +1,4 @@
-"""Waiting never helps: in a trial it costs points, and a pause, which costs none, is told."""
+"""What is done beside the task never helps: waiting and detours cost points, pauses are told."""
 
 import pytest
 
@@ -20,6 +20,9 @@ PAUSE, RESUME = (
     OperatorInput(commands=(Command(name, {}),)) for name in (CommandName.PAUSE, CommandName.RESUME)
 )
 IDLE = [HANDS_OFF] * round(WAIT_S / DT)
+ROUND_TRIP = [
+    OperatorInput(translation=(0.0, 0.0, way)) for way in (1.0, -1.0) * 8 for _ in range(150)
+]
 
 
 class Meanwhile:
@@ -44,7 +47,7 @@ class Meanwhile:
 
 @pytest.fixture(scope="module")
 def played(setup):
-    """The analyses of one trial: played in one go, with idleness, and with a pause."""
+    """The analyses of one trial: in one go, with idleness, with a pause, and with detours."""
     simulation = Simulation(setup, 5)
 
     def play(*inputs):
@@ -52,18 +55,18 @@ def played(setup):
         play_virtual_trial(simulation, "task-1", 3, BRISK, DT, meanwhile)
         return analyze_trial(meanwhile.record, setup.scenario)
 
-    return play(), play(*IDLE), play(PAUSE, *IDLE, RESUME)
+    return play(), play(*IDLE), play(PAUSE, *IDLE, RESUME), play(*ROUND_TRIP)
 
 
 def test_waiting_in_a_trial_costs_points(played):
-    at_once, idle, _ = played
+    at_once, idle, *_ = played
     assert idle.record.completion_time_s > at_once.record.completion_time_s + 0.9 * WAIT_S
     assert idle.score.score < at_once.score.score
     assert idle.record.motion["idle_time_s"] > WAIT_S - 1.0
 
 
 def test_a_pause_changes_no_score_and_is_told_beside_it_with_its_length(played):
-    at_once, _, paused = played
+    at_once, _, paused, _ = played
     assert paused.record.completion_time_s == pytest.approx(
         at_once.record.completion_time_s, abs=2.0
     )
@@ -74,3 +77,15 @@ def test_a_pause_changes_no_score_and_is_told_beside_it_with_its_length(played):
     assert motion["idle_time_s"] < at_once.record.motion["idle_time_s"] + 2.0
     assert any(f"Paused for {WAIT_S:.0f} s" in words for words in paused.feedback.sentences)
     assert not any("Paused" in words for words in at_once.feedback.sentences)
+
+
+def test_detours_cost_points_and_are_advised_against(played):
+    at_once, *_, around = played
+    direct, detoured = (a.record.motion["path_efficiency"] for a in (at_once, around))
+    assert detoured < 0.7 * direct < 0.7
+    assert around.score.score < at_once.score.score
+    before, after = (
+        {advice.topic: advice.gain for advice in analysis.feedback.advice}.get("detours", 0.0)
+        for analysis in (at_once, around)
+    )
+    assert after > before + 1.0
