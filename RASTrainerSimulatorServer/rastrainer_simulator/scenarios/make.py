@@ -15,12 +15,11 @@ from rastrainer.scenario_draft import HeadDraft
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp
 from rastrainer.scenario_writer import new_folder, scenario_name, write_scenario
-from rastrainer.tasks import Task, read_task
-from rastrainer_simulator.planning.task_check import check_tasks, measured
-from rastrainer_simulator.planning.task_proposal import PLANS
+from rastrainer.tasks import Task
 from rastrainer_simulator.planning.task_set import Progress, TaskSetProposer
 from rastrainer_simulator.planning.workbench import Workbench
 from rastrainer_simulator.scenarios.picture import draw_preview
+from rastrainer_simulator.scenarios.placed_tasks import read_placed_tasks
 from rastrainer_simulator.scenarios.plan_check import check_plan, start_clearance_mm
 
 CENTER = "Center of the head"
@@ -77,12 +76,8 @@ def make_scenario(
     with new_folder(folder) as made:
         scenario = without_tasks(draft, wishes, warn)
         bench = Workbench(scenario, draft.head)
-        wrong = check_plan(bench)
-        if wrong:
-            raise InputError(" ".join(wrong))
-        if wishes.task_files:
-            tasks = _placed_tasks(bench, wishes.task_files, progress)
-        else:
+        tasks = _placed(bench, wishes, progress, warn)
+        if not tasks:
             tasks = TaskSetProposer(bench, progress).propose(wishes.seed)
         progress("Drawing the picture", 0.95)
         draw_preview(made / PREVIEW_NAME, replace(scenario, tasks=tasks), draft.head)
@@ -99,6 +94,28 @@ def make_scenario(
         load_scenario(made)
         progress("Done", 1.0)
     return load_scenario(folder)
+
+
+def check_wishes(
+    draft: HeadDraft, wishes: Wishes, progress: Progress, warn: Callable[[str], None]
+) -> None:
+    """Raise what `make_scenario` would raise of the set-up, the plan and the placed fiducials.
+
+    Raises:
+        InputError: the wishes cannot be met; the sentences say which.
+    """
+    _placed(Workbench(without_tasks(draft, wishes, warn), draft.head), wishes, progress, warn)
+
+
+def _placed(
+    bench: Workbench, wishes: Wishes, progress: Progress, warn: Callable[[str], None]
+) -> tuple[Task, ...]:
+    """Return the tasks that are placed by hand, once nothing is wrong with all that is wished."""
+    wrong = check_plan(bench)
+    tasks, wrong_tasks = read_placed_tasks(bench, wishes.task_files, progress, warn)
+    if wrong or wrong_tasks:
+        raise InputError(" ".join([*wrong, *wrong_tasks]))
+    return tasks
 
 
 def without_tasks(
@@ -153,19 +170,3 @@ def with_main_target(scenario: Scenario, head: HeadMesh, warn: Callable[[str], N
         f"{scenario.target_name}, and {first.name} stays a further target."
     )
     return scenario
-
-
-def _placed_tasks(
-    bench: Workbench, files: tuple[Path, ...], progress: Progress
-) -> tuple[Task, ...]:
-    if len(files) > len(PLANS):
-        raise InputError(f"A scenario has at most {len(PLANS)} tasks; {len(files)} are given.")
-    tasks = []
-    for index, (path, plan) in enumerate(zip(files, PLANS, strict=False)):
-        progress(f"Checking {plan.title}", index / len(files))
-        task = read_task(path, plan.name, plan.title, 0.0)
-        tasks.append(measured(bench, task))
-    wrong = check_tasks(bench, tasks)
-    if wrong:
-        raise InputError(" ".join(wrong))
-    return tuple(tasks)

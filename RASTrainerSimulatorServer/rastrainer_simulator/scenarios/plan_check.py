@@ -10,6 +10,7 @@ from rastrainer.head_mesh import HeadMesh
 from rastrainer.scenario import Scenario
 from rastrainer_simulator.planning.plan_reach import PlanReach
 from rastrainer_simulator.planning.workbench import Workbench
+from rastrainer_simulator.scenarios.standing_check import check_standing
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.start_posture import start_joints
 
@@ -20,7 +21,8 @@ ENTRY_OFF_SKIN_MM = 10.0
 
 def check_plan(bench: Workbench) -> list[str]:
     """Return what is wrong with the set-up, the targets and the trajectory, one sentence each."""
-    scenario, wrong = bench.scenario, []
+    scenario = bench.scenario
+    wrong = check_standing(scenario, bench.mesh)
     height = SimulationSettings().start_height
     if start_clearance_mm(scenario, bench.mesh) <= 0.0:
         wrong.append(

@@ -6,6 +6,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.errors import InputError
 from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.setup_form import SetUpForm
 from rastrainer.panels.widgets import setSentence, setUsable
@@ -29,7 +30,9 @@ class NewScenarioPanel:
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
         ui.makeScenarioButton.connect("clicked()", self.makeOrCancel)
         ui.previewHeadButton.connect("clicked()", self.preview)
+        ui.checkScenarioButton.connect("clicked()", self.check)
         ui.scanComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
+        ui.newScenarioCollapsibleButton.connect("contentsCollapsed(bool)", self._takeShownVolume)
         setSentence(ui.newScenarioText, "")
         self._showUsable()
 
@@ -44,11 +47,19 @@ class NewScenarioPanel:
         ):
             logic = slicer.util.getModuleLogic("SampleData")
             volume = logic.downloadSample(SAMPLE)
+            if volume is None:
+                raise InputError(_("Sample Data has brought no volume."))
             application = slicer.app.applicationLogic()
             application.GetSelectionNode().SetActiveVolumeID(volume.GetID())
             application.PropagateVolumeSelection()
             self._ui.scanComboBox.setCurrentNode(volume)
             self._tell(_("{name} is in the scene.").format(name=volume.GetName()))
+
+    def _takeShownVolume(self, isFolded: bool) -> None:
+        """Choose the volume that the slice views show where none is chosen."""
+        if not isFolded and self._ui.scanComboBox.currentNode() is None:
+            shown = slicer.app.applicationLogic().GetSelectionNode().GetActiveVolumeID()
+            self._ui.scanComboBox.setCurrentNode(slicer.mrmlScene.GetNodeByID(shown or ""))
 
     def preview(self) -> None:
         """Show the head that is found, to accept it or to change it."""
@@ -61,6 +72,15 @@ class NewScenarioPanel:
                 )
                 self._tell(" ".join([told, *warnings]))
                 slicer.util.resetThreeDViews()
+
+    def check(self) -> None:
+        """Tell at once whether set-up, plan and fiducials can be used."""
+        with slicer.util.tryWithErrorDisplay(_("The scenario could not be made so.")):
+            own = self._ui.programPathLineEdit.currentPath
+            warnings = self._work.run(lambda tell: self._maker.check(*self._wanted(), tell, own))
+            if warnings is not None:
+                told = _("Set-up, plan and fiducials can be used.")
+                self._tell(" ".join([told, *warnings]))
 
     def makeOrCancel(self) -> None:
         """Make the scenario and go on with it, or break off."""
@@ -116,6 +136,12 @@ class NewScenarioPanel:
             ui.previewHeadButton,
             hasVolume and not isAtWork,
             _("Show the head that is found, and as a segment that may be edited."),
+            reason if not hasVolume else _("A head is being looked for."),
+        )
+        setUsable(
+            ui.checkScenarioButton,
+            hasVolume and not isAtWork,
+            _("Say what is wrong with set-up, plan and fiducials on this head; make nothing."),
             reason if not hasVolume else _("A head is being looked for."),
         )
         ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not isAtWork

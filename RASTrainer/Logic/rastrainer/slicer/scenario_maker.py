@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
-from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario_setup import SetUp, write_setup
-from rastrainer.slicer.control_points import worldPoints
+from rastrainer.slicer.control_points import labelsOf, worldPoints
+from rastrainer.slicer.hand_placed import handPlacedLists
 from rastrainer.slicer.head_preview import HeadPreview
 from rastrainer.slicer.scenario_files import planWords
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
-from rastrainer.slicer.scene import ROLE_ATTRIBUTE
 from rastrainer.slicer.simulator_desk import SimulatorDesk
 from rastrainer.slicer.translation import _
-from rastrainer.tasks import LABELS
 
 if TYPE_CHECKING:
     from rastrainer.slicer.head.extraction import HeadSettings
 
 SOURCE = "The volume {name} in 3D Slicer."
-MOST_HAND_PLACED = 6
 
 Progress = Callable[[str, float], None]
 
@@ -59,6 +57,25 @@ class ScenarioWishes:
     targets: Any = None
     trajectory: Any = None
     isHandPlaced: bool = False
+
+
+@dataclass(frozen=True)
+class _Planned:
+    """What the simulator is asked for.
+
+    Attributes:
+        title: of the scenario.
+        head: makes the head; see `make_draft`.
+        words: arguments of `rastrainer scenario tasks`.
+        warnings: what of the wishes is left out.
+        folder: of their files.
+    """
+
+    title: str
+    head: Callable[[Progress], tuple[Any, list[str]]]
+    words: list[str]
+    warnings: list[str]
+    folder: Path
 
 
 class ScenarioMaker:
@@ -105,63 +122,69 @@ class ScenarioMaker:
         Raises:
             InputError: something cannot be used; the sentence says what.
         """
-        from rastrainer.slicer.head.head_draft import make_draft
         from rastrainer.slicer.head.scenario_build import build_scenario
+
+        with self._planned(volumeNode, wishes) as planned:
+            folder = self._library / self._shelf.newName(planned.title)
+            command, environment = self._simulator.command([], ownProgram)
+            scenario, warnings = build_scenario(
+                planned.head, folder, planned.words, command, environment, progress
+            )
+        self._shelf.refresh()
+        return scenario, [*planned.warnings, *warnings]
+
+    def check(
+        self,
+        volumeNode: Any,
+        wishes: ScenarioWishes,
+        progress: Progress,
+        ownProgram: str = "",
+    ) -> list[str]:
+        """Find out whether set-up, plan and fiducials can be used, and make nothing of them.
+
+        Arguments, warnings and errors are those of `make`.
+        """
+        from rastrainer.slicer.head.scenario_build import plan_scenario
+
+        with self._planned(volumeNode, replace(wishes, hasSkull=False)) as planned:
+            command, environment = self._simulator.command([], ownProgram)
+            words = [*planned.words, "--check"]
+            warnings = plan_scenario(
+                planned.head, planned.folder / "none", words, command, environment, progress
+            )
+        return [*planned.warnings, *warnings]
+
+    @contextmanager
+    def _planned(self, volumeNode: Any, wishes: ScenarioWishes) -> Iterator[_Planned]:
+        """Yield what the simulator is asked for; its files are there as long as the context."""
+        from rastrainer.slicer.head.head_draft import make_draft
         from rastrainer.slicer.head.volume import volume_from_node
 
         volume, settings = volume_from_node(_chosen(volumeNode)), _settings(wishes)
         segment = self._preview.segment(volumeNode, settings)
-        command, environment = self._simulator.command([], ownProgram)
         title = wishes.title.strip() or volumeNode.GetName()
-        folder = self._library / self._shelf.newName(title)
         source = wishes.source.strip() or SOURCE.format(name=volumeNode.GetName())
         terms = wishes.license.strip() or UNKNOWN_LICENSE
         words = [f"--title={title}", f"--source={source}", f"--license={terms}"]
+        lists, leftOut = [], []
+        if wishes.isHandPlaced:
+            lists, leftOut = handPlacedLists(self._scene, wishes.targets)
         with tempfile.TemporaryDirectory() as temporary:
-            made = build_scenario(
+            folder = Path(temporary)
+            yield _Planned(
+                title,
                 lambda tell: make_draft(volume, settings, wishes.hasSkull, tell, segment),
+                [*words, *self._words(wishes, folder), *_tasks(lists, folder)],
+                leftOut,
                 folder,
-                [*words, *self._words(wishes, Path(temporary))],
-                command,
-                environment,
-                progress,
             )
-        self._shelf.refresh()
-        return made
 
     def _words(self, wishes: ScenarioWishes, folder: Path) -> tuple[str, ...]:
         """Return the arguments of `rastrainer scenario tasks`; files go into `folder`."""
         setUp = folder / "setup.json"
         write_setup(setUp, wishes.setUp)
         words = ["--setup", str(setUp)]
-        words += planWords(wishes.targets, wishes.trajectory)
-        if wishes.isHandPlaced:
-            words += ["--tasks", *self._writeHandPlaced(folder)]
-        return tuple(words)
-
-    def _writeHandPlaced(self, folder: Path) -> list[str]:
-        paths = []
-        for node in self._handPlaced()[:MOST_HAND_PLACED]:
-            paths.append(folder / f"task-{len(paths)}.mrk.json")
-            write_markups(paths[-1], PointList(LABELS, worldPoints(node)))
-        if not paths:
-            raise InputError(
-                _("There is no point list of {count} fiducials in the scene.").format(
-                    count=FIDUCIAL_COUNT
-                )
-            )
-        return [str(path) for path in paths]
-
-    def _handPlaced(self) -> list[Any]:
-        nodes = self._scene.GetNodesByClass("vtkMRMLMarkupsFiducialNode")
-        nodes.UnRegister(None)
-        found = [nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems())]
-        return [
-            node
-            for node in found
-            if node.GetAttribute(ROLE_ATTRIBUTE) is None
-            and node.GetNumberOfControlPoints() == FIDUCIAL_COUNT
-        ]
+        return (*words, *planWords(wishes.targets, wishes.trajectory))
 
 
 def _chosen(volumeNode: Any) -> Any:
@@ -174,3 +197,11 @@ def _settings(wishes: ScenarioWishes) -> HeadSettings:
     from rastrainer.slicer.head.extraction import HeadSettings
 
     return HeadSettings(threshold=wishes.threshold, base_mm=wishes.cutMm)
+
+
+def _tasks(lists: list[Any], folder: Path) -> list[str]:
+    """Return the arguments for fiducials that are placed by hand, whose files go into `folder`."""
+    paths = [folder / f"task-{index}.mrk.json" for index in range(len(lists))]
+    for path, node in zip(paths, lists, strict=True):
+        write_markups(path, PointList(labelsOf(node), worldPoints(node)))
+    return ["--tasks", *map(str, paths)] if paths else []

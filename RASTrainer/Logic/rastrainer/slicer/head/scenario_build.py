@@ -39,12 +39,26 @@ def build_scenario(
     environment: Mapping[str, str] | None = None,
     progress: Progress = lambda _step, _share: None,
 ) -> tuple[Scenario, list[str]]:
-    """Build a scenario and return it with warnings, one sentence each.
+    """Build a scenario and return it with warnings, one sentence each; see `plan_scenario`."""
+    warnings = plan_scenario(make, folder, words, command, environment, progress)
+    return load_scenario(folder), warnings
+
+
+def plan_scenario(
+    make: Callable[[Progress], tuple[HeadDraft, list[str]]],
+    folder: Path,
+    words: Sequence[str],
+    command: Sequence[str],
+    environment: Mapping[str, str] | None = None,
+    progress: Progress = lambda _step, _share: None,
+) -> list[str]:
+    """Make a head, have the simulator plan on it, and return warnings, one sentence each.
 
     Args:
         make: makes the head with its warnings, such as `make_draft`, in a thread of its own.
         folder: to be made; must be new or empty.
-        words: further arguments of `rastrainer scenario tasks`, such as `--title TITLE`.
+        words: further arguments of `rastrainer scenario tasks`, such as `--title TITLE`; with
+            `--check` nothing is made.
         command: words that run `rastrainer` of the simulator's Python.
         environment: of that process; None is this one's.
         progress: told each step's name and the share of the work done, ten times a second; it may
@@ -57,8 +71,7 @@ def build_scenario(
     with tempfile.TemporaryDirectory() as temporary:
         write_draft(Path(temporary), draft)
         planner = [*command, "scenario", "tasks", temporary, "-o", str(folder), *words]
-        more = _run(planner, environment, progress)
-    return load_scenario(folder), [*warnings, *more]
+        return [*warnings, *_run(planner, environment, progress)]
 
 
 def in_background(work: Callable[[Progress], T], progress: Progress) -> T:

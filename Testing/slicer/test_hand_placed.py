@@ -1,0 +1,47 @@
+"""Point lists of the scene as tasks: which are taken, which left out and why, which refused."""
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.hand_placed import handPlacedLists
+from rastrainer.slicer.scene import ROLE_ATTRIBUTE
+
+
+def add_list(scene, name, count=15, labels=None):
+    node = scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", name)
+    labels = labels or [f"{name}-{number}" for number in range(1, count + 1)]
+    setPoints(node, labels, np.arange(3.0 * count).reshape(count, 3))
+    return node
+
+
+def test_lists_of_another_length_and_a_seventh_are_left_out_and_named(scene):
+    add_list(scene, "Short", 14)
+    good = [add_list(scene, f"Task {letter}") for letter in "ABCDEFG"]
+    add_list(scene, "Long", 16)
+    half = add_list(scene, "Half placed")
+    half.UnsetNthControlPointPosition(3)
+    ours = add_list(scene, "Touched points", 7)
+    ours.SetAttribute(ROLE_ATTRIBUTE, "touched")
+    targets = add_list(scene, "Targets", 2)
+    taken, left_out = handPlacedLists(scene, targets)
+    assert taken == good[:6]
+    assert left_out == [
+        "The point list Short is left out: it has 14 placed points, not 15.",
+        "The point list Task G is left out: a scenario has at most 6 tasks.",
+        "The point list Long is left out: it has 16 placed points, not 15.",
+        "The point list Half placed is left out: it has 14 placed points, not 15.",
+    ]
+
+
+def test_a_scene_without_such_a_list_says_which_lists_there_are(scene):
+    add_list(scene, "Short", 14)
+    with pytest.raises(InputError, match=r"no point list of 15.*Short is left out: it has 14"):
+        handPlacedLists(scene, None)
+
+
+def test_a_list_whose_labels_are_no_order_is_refused_by_its_name(scene):
+    add_list(scene, "Mixed", labels=["nose", *[str(number) for number in range(2, 16)]])
+    with pytest.raises(InputError, match=r"The point list Mixed cannot be used: .* no number"):
+        handPlacedLists(scene, None)
