@@ -1,0 +1,109 @@
+"""`rastrainer scenario`: preview, check and unpack, and what is left of a build by Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import zipfile
+
+import pytest
+
+from rastrainer.scenario_library import user_library
+from rastrainer.scenario_package import pack
+from rastrainer.scenario_writer import new_folder, write_scenario
+from rastrainer_simulator.cli import main
+from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
+from Testing.read_png import read_png
+from Testing.slicer.head.phantoms import phantom
+from Testing.slicer.head.volume_file import write_volume
+
+RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli", "scenario"]
+
+
+@pytest.fixture
+def volume(tmp_path):
+    return write_volume(tmp_path / "head.nii.gz", phantom(spacing=(3.0, 3.0, 3.0)))
+
+
+@pytest.fixture
+def ball(tmp_path):
+    """A scenario whose tasks are no good: their fiducials are within the head or beside it."""
+    with new_folder(tmp_path / "ball") as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+        (made / "preview.png").write_bytes(png())
+    return tmp_path / "ball"
+
+
+def test_a_head_is_pictured_before_anything_is_made_of_it(volume, tmp_path, capsys):
+    picture = tmp_path / "head.png"
+    assert main(["scenario", "preview", str(volume), str(picture), "--cut=-15"]) == 0
+    assert "cut flat at -15.0 mm" in capsys.readouterr().out
+    pixels = read_png(picture)
+    assert pixels.shape == (480, 640, 3)
+    assert pixels.std() > 20.0
+
+
+def test_a_head_that_is_not_there_has_no_picture(volume, tmp_path, capsys):
+    words = ["scenario", "preview", str(volume), str(tmp_path / "head.png"), "--cut=500"]
+    assert main(words) == 2
+    assert "its base must be there, not at 500 mm" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == [volume.name]
+
+
+def test_the_check_tells_each_thing_that_is_wrong_and_its_status_says_so(ball, tmp_path, capsys):
+    assert main(["scenario", "check", str(ball)]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert len(told) > 3
+    assert all(line.endswith(".") for line in told)
+    assert any("off the skin" in line for line in told)
+    assert main(["scenario", "check", str(tmp_path / "none")]) == 2
+    assert "none does not exist" in capsys.readouterr().err
+
+
+def test_a_package_is_unpacked_into_the_library_once(ball, tmp_path, monkeypatch, capsys):
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(tmp_path / "home"))
+    package = pack(ball, tmp_path / "ball.zip")
+    assert main(["scenario", "unpack", str(package)]) == 0
+    assert capsys.readouterr().out.strip() == str(user_library() / "ball")
+    assert (user_library() / "ball" / "scenario.json").is_file()
+    before = sorted(user_library().rglob("*"))
+    assert main(["scenario", "unpack", str(package)]) == 2
+    assert "already" in capsys.readouterr().err
+    assert sorted(user_library().rglob("*")) == before
+
+
+def test_a_package_that_climbs_out_is_refused_and_changes_nothing(tmp_path, capsys):
+    bad, library = tmp_path / "bad.zip", tmp_path / "deep" / "library"
+    with zipfile.ZipFile(bad, "w") as archive:
+        archive.writestr("../../evil.txt", "x")
+    assert main(["scenario", "unpack", str(bad), "--library", str(library)]) == 2
+    assert "holds a file with the path" in capsys.readouterr().err
+    assert sorted(tmp_path.iterdir()) == [bad]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has other signals")
+def test_a_build_that_ctrl_c_ends_leaves_nothing(volume, tmp_path):
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    words = [*RASTRAINER, "build", str(volume), "-o", str(tmp_path / "made")]
+    # A terminal sends the signal to all processes in front of it, which a new session stands for.
+    build = subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"TMPDIR": str(temporary)},
+        start_new_session=True,
+    )
+    with build:
+        assert "Reading the volume" in build.stdout.readline()
+        assert list(temporary.iterdir())
+        os.killpg(build.pid, signal.SIGINT)
+        said = build.stderr.read()
+    assert build.returncode == 130
+    assert "Traceback" not in said
+    assert not list(temporary.iterdir())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["head.nii.gz", "temporary"]
