@@ -4,20 +4,29 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
+from rastrainer import transforms
 from rastrainer.scenario_draft import HeadDraft
 from rastrainer.surface_queries import nearest_on_mesh, outward_normal
 from rastrainer.tasks import LABELS
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.table_clearance import Surroundings
 from rastrainer_simulator.planning.task_set import TaskSetProposer
+from rastrainer_simulator.planning.touch_planner import TouchPlanner
 from rastrainer_simulator.planning.workbench import Workbench
+from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scenarios.make import Wishes, without_tasks
 from rastrainer_simulator.scene.skin_marks import skin_marks
 from Testing.simulator.scenarios.heads import HEADS
 
 SETS = {"egg": range(34), "colin27": range(100, 133), "deformed": range(200, 233)}
-ON_SKIN_MM = 0.05
+ON_SKIN_MM, MM = 0.05, 1000.0
 APART_MM = 0.3
 OTHER_POSES = range(60_000, 60_003)
+SAMPLE = 9
+"""Every so manieth fiducial is touched in the collision model of a simulation."""
+CLEARANCE_M, AT_PLACE_M = 0.005, 1e-4
 
 
 @pytest.mark.soak
@@ -45,13 +54,45 @@ def broken_promises(bench, tasks):
     # The nominal pose, and poses that the proposal has not tried.
     if not bench.touchable(unique, normals, bench.poses(OTHER_POSES)).all():
         broken.append("a fiducial cannot be touched with 5 mm clearance")
+    poses = bench.poses(OTHER_POSES[:1])
+    broken += [f"{place} is crowded" for place in crowded(bench, unique[::SAMPLE], poses)]
     return broken + [
         f"{task.name}: {label} overlaps" for task in tasks for label in hidden(task, bench)
     ]
 
 
+def crowded(bench, places, poses):
+    """Return the places at whose touch something else than the tip is within 5 mm, or the tip off.
+
+    The planner's posture is judged by a collision model of its own, as a simulation makes it.
+    """
+    stand = Surroundings(stand_radius=bench.scenario.furniture.stand_diameter / 2.0 / MM)
+    collision = Collision(bench.setup.shape, bench.mesh.vertices / MM, bench.mesh.triangles, stand)
+    kinematics = make_kinematics(bench.setup.robot)
+    planner = TouchPlanner(bench.setup.robot, bench.collision)
+    found = []
+    for pose in poses:
+        head_to_world = np.array(pose)
+        head_to_world[:3, 3] /= MM
+        for each in (collision, bench.collision):
+            each.set_head_pose(head_to_world)
+        for place in places:
+            position = transforms.apply(head_to_world, place / MM)
+            normal = head_to_world[:3, :3] @ outward_normal(bench.mesh, place)
+            touch = planner.touch(position, normal)
+            near = collision.check(kinematics.links(touch.q))
+            least = min(near.links_m, near.self_m, near.table_m)
+            away = np.linalg.norm(kinematics.tip(touch.q)[:3, 3] - position)
+            if least < CLEARANCE_M or near.shaft_m <= 0.0 or away > AT_PLACE_M:
+                found.append(place)
+    return found
+
+
 def hidden(task, bench):
-    """Return the labels whose number overlaps an arrow, a dot or another number."""
+    """Return the labels whose number overlaps an arrow, a dot or another number.
+
+    Also those whose arrow overlaps another arrow, or a dot that it does not join.
+    """
     marks = skin_marks(bench.mesh, task.fiducials, LABELS)
     shapes = [mark.arrow.points for mark in marks if mark.arrow] + [
         mark.rim.points for mark in marks
@@ -63,4 +104,14 @@ def hidden(task, bench):
         away = np.linalg.norm(mark.number.points[:, None] - around[None], axis=2)
         if away.min() <= APART_MM:
             overlapping.append(mark.label)
-    return overlapping
+    return overlapping + [mark.label for row, mark in enumerate(marks) if meets(marks, row)]
+
+
+def meets(marks, row):
+    """Tell whether a mark's arrow meets another arrow, or the dot of one that it does not join."""
+    if marks[row].arrow is None:
+        return False
+    others = [mark.arrow.points for mark in marks[row + 1 :] if mark.arrow]
+    others += [mark.rim.points for each, mark in enumerate(marks) if each not in (row, row + 1)]
+    tree = cKDTree(np.concatenate(others))
+    return tree.query(marks[row].arrow.points)[0].min() <= APART_MM
