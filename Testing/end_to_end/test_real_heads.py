@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -36,9 +35,7 @@ def mri():
 @pytest.mark.parametrize(("volume", "kind"), [("mri", "approximation"), ("ct", "bone")])
 def test_a_real_head_becomes_a_sound_scenario(request, tmp_path, volume, kind):
     path, folder = request.getfixturevalue(volume), tmp_path / "made"
-    begin = time.monotonic()
     subprocess.run([*RASTRAINER, "build", str(path), "-o", str(folder)], check=True)
-    print(f"{volume}: {time.monotonic() - begin:.0f} s")
     scenario = load_scenario(folder)
     mesh = read_head_mesh(scenario.head_mesh)
     assert mesh.is_closed
