@@ -139,9 +139,10 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
     if not (0.1 <= arguments.hmd_speed <= 10 and 0.1 <= arguments.hmd_aim <= 10):
         raise InputError("The effects of a mode must be factors from 0.1 to 10.")
     fallback = TASK_REFERENCES["task-1"]
+    tasks = protocol.tasks * protocol.repetitions
     model = OutcomeModel(
-        task_times_s=[TASK_REFERENCES.get(task, fallback).time_s for task in protocol.tasks],
-        task_fle_mm=[TYPICAL_FLE_MM] * len(protocol.tasks),
+        task_times_s=[TASK_REFERENCES.get(task, fallback).time_s for task in tasks],
+        task_fle_mm=[TYPICAL_FLE_MM] * len(tasks),
         trainee_time_sd=arguments.spread,
         trainee_fle_sd=arguments.spread,
         learning=arguments.learning,

@@ -101,7 +101,12 @@ def test_what_one_trial_cannot_define_is_none():
 def test_tasks_are_numbered_by_the_digits_of_their_names():
     trials = [
         Trial("desktop", "a", name, time, 1.0)
-        for name, time in [("task-2", 20.0), ("trial-run", 500.0), ("task-10", 100.0)]
+        for name, time in [
+            ("task-2", 20.0),
+            ("trial-run", 500.0),
+            ("task-10", 100.0),
+            ("task-4", 40.0),
+        ]
     ]
     assert score_cohort(trials).pearson_r == pytest.approx(1.0)
 

@@ -11,7 +11,7 @@ from rastrainer.inference.correlation import correlation
 from rastrainer.inference.few_subjects import what_cannot_be_concluded, what_it_shows
 from rastrainer.inference.paired import (
     compare_paired,
-    equivalence_p,
+    equivalence_margin,
     holm,
     small_sample_factor,
 )
@@ -118,14 +118,12 @@ def test_the_interval_of_the_effect_size_covers_the_truth():
     assert hits / 100 == pytest.approx(0.95, abs=0.05)
 
 
-def test_equivalence_is_the_larger_of_two_one_sided_tests():
+def test_at_the_margin_of_equivalence_the_larger_of_two_one_sided_tests_has_5_percent():
     values = SAMPLES[5]
-    comparison = compare_paired(np.zeros(25), values)
-    above = scipy.stats.ttest_1samp(values, -1.0, alternative="greater").pvalue
-    below = scipy.stats.ttest_1samp(values, 1.0, alternative="less").pvalue
-    assert equivalence_p(comparison, 1.0) == pytest.approx(max(above, below), rel=1e-7)
-    with pytest.raises(InputError, match="margin of equivalence"):
-        equivalence_p(comparison, 0.0)
+    margin = equivalence_margin(compare_paired(np.zeros(25), values))
+    above = scipy.stats.ttest_1samp(values, -margin, alternative="greater").pvalue
+    below = scipy.stats.ttest_1samp(values, margin, alternative="less").pvalue
+    assert max(above, below) == pytest.approx(0.05, rel=1e-7)
 
 
 def test_holms_correction_is_that_of_his_example_by_hand():

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from rastrainer.cohort.outcome_model import OutcomeModel, draw_outcomes, draw_study
+from rastrainer.cohort.outcome_model import (
+    DOF,
+    OutcomeModel,
+    draw_outcomes,
+    draw_study,
+    expected_outcomes,
+)
 from rastrainer.cohort.population import ModeEffect, Population
 from rastrainer.cohort.rejection_rates import rejection_rates
 from rastrainer.errors import InputError
@@ -75,12 +81,35 @@ def test_with_an_effect_intervals_cover_and_power_is_as_computed():
     assert rates["rmse_mm"].t_test < 0.08
 
 
-def test_the_quick_rejections_are_those_of_the_comparison():
+def test_the_quick_rates_are_those_of_the_comparison():
+    truth = model(mode_time={"hmd": 1.05})
+    quick = rejection_rates(truth, 9, MODES, 60, seed=9)
     random = np.random.default_rng(9)
-    times, _ = draw_outcomes(model(), 9, MODES, random)
-    result = compare_paired(*times.mean(axis=2).T)
-    low, high = result.interval
-    assert (result.p < 0.05) == (not low <= 0 <= high)
+    studies = [draw_outcomes(truth, 9, MODES, random) for _ in range(60)]
+    for index, rates in enumerate(quick):
+        found = [compare_paired(*study[index].mean(axis=2).T) for study in studies]
+        assert rates.t_test == np.mean([one.p < 0.05 for one in found])
+        assert rates.wilcoxon == np.mean([one.signed_ranks.p < 0.05 for one in found])
+        covered = [one.interval[0] <= rates.true_difference <= one.interval[1] for one in found]
+        assert rates.coverage == np.mean(covered)
+
+
+def test_the_expected_outcomes_are_those_of_very_many_trainees():
+    truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
+    drawn = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
+    for expected, values in zip(expected_outcomes(truth, MODES), drawn, strict=True):
+        np.testing.assert_allclose(values.mean(axis=0), expected, rtol=0.006)
+
+
+def test_the_spread_between_trainees_is_recovered(cohort):
+    """Of the logarithms of means over tasks and modes: σ² = σ²ₜ + σ²ᵢ/2 + σ²ₑ/20."""
+    for name, noise in (("completion_time_s", 0.12), ("rmse_mm", 1 / np.sqrt(2 * DOF))):
+        own = [
+            np.mean([np.log(t.values[name]) for t in cohort.trials if t.trainee == trainee])
+            for trainee in cohort.trainees
+        ]
+        beside = 0.05**2 / 2 + noise**2 / (2 * TASKS)
+        assert np.sqrt(np.var(own, ddof=1) - beside) == pytest.approx(0.15, rel=0.15)
 
 
 def test_the_same_seed_gives_the_same_trainees_however_many():

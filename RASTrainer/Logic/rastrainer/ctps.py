@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.inference.correlation import correlation
 
 CTPS_WARNING = (
     "CTPS rises with a slower completion, depends on who else is in the cohort and has no bounds; "
@@ -154,14 +155,17 @@ def _means(
 
 
 def _task_correlation(trials: Sequence[Trial]) -> float | None:
-    """Return Pearson's r of task number and task-mean CT; tasks without a number do not count."""
+    """Return Pearson's r of task number and task-mean CT; tasks without a number do not count.
+
+    None where there are fewer than three, or none takes longer than another.
+    """
     times = [trial.completion_time_s for trial in trials]
     means = {
         int(match.group()): mean
         for task, mean in _means(trials, times, lambda trial: trial.task).items()
         if (match := re.search(r"[0-9]{1,9}$", task))
     }
-    numbers, values = list(means), list(means.values())
-    if len(numbers) < 2 or np.ptp(values) == 0:
+    try:
+        return correlation(list(means), list(means.values())).r
+    except InputError:
         return None
-    return float(np.corrcoef(numbers, values)[0, 1])

@@ -2,12 +2,14 @@
 
 import functools
 import json
+import re
 
 import numpy as np
 import pytest
 
 from rastrainer.cohort.jobs import trial_jobs
 from rastrainer.errors import InputError
+from rastrainer.experiment.study_protocol import StudyProtocol
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.report.report import report_html
 from rastrainer.report.study_data import read_study_data
@@ -101,6 +103,13 @@ def test_every_engine_gives_the_results_in_the_order_of_the_jobs(engine):
     assert found == [number * number for number in range(20)]
 
 
+def test_dask_plays_the_same_trial_as_this_process(protocol, population):
+    job = next(iter(trial_jobs(protocol, population, 1, 7)))
+    play = functools.partial(play_job, settings=PlaySettings())
+    (there,) = run_jobs(play, [job], "dask", workers=1)
+    assert numbers(there) == numbers(play(job))
+
+
 def test_a_scheduler_that_is_not_there_is_told():
     with pytest.raises(InputError, match="no Dask scheduler at tcp"):
         list(run_jobs(squared, [1], "dask", address="tcp://127.0.0.1:1"))
@@ -119,6 +128,20 @@ def test_the_command_tells_power_without_playing(capsys):
     text = capsys.readouterr().out
     assert "50 studies of 12 trainees" in text
     assert "not played" in text
+
+
+def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
+    shares = []
+    for repetitions in (1, 8):
+        protocol = StudyProtocol(
+            "p", "P", ("desktop", "hmd"), "fixed", ("task-1",), "fixed", repetitions
+        )
+        path = tmp_path / f"{repetitions}.json"
+        path.write_text(json.dumps(protocol.to_json()))
+        words = ["--protocol", str(path), "--power", "200", "--hmd-speed", "1.1"]
+        assert main(["simulate-cohort", "--trainees", "8", *words]) == 0
+        shares.append(re.search(r"completion_time_s +\S+ +([0-9.]+) %", capsys.readouterr().out)[1])
+    assert float(shares[1]) > float(shares[0]) + 15
 
 
 @pytest.mark.parametrize(

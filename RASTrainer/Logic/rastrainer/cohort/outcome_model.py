@@ -9,6 +9,7 @@ and head play no part.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -79,19 +80,33 @@ def draw_outcomes(
         + random.normal(0, model.interaction_sd, (trainees, len(modes), 1))
         for sd in (model.trainee_time_sd, model.trainee_fle_sd)
     )
-    mode_time, mode_fle = (
-        np.log([factors.get(mode, 1.0) for mode in modes])[None, :, None]
-        for factors in (model.mode_time, model.mode_fle)
-    )
-    practice = -model.learning * np.log(np.arange(1, tasks + 1))
-    log_times = (
-        np.log(model.task_times_s)
-        + practice
-        + own_time
-        + mode_time
-        + random.normal(0, model.trial_time_sd, shape)
-    )
-    fle = np.exp(np.log(model.task_fle_mm) + own_fle + mode_fle)
+    median_times, median_fle = _medians(model, modes)
+    times = median_times * np.exp(own_time + random.normal(0, model.trial_time_sd, shape))
+    fle = median_fle * np.exp(own_fle)
     # The expected FRE² is FLE²·(1 − 2/N), and 3N − 6 residuals are left after a rigid fit.
     squares = fle**2 * (1 - 2 / FIDUCIAL_COUNT) * random.chisquare(DOF, shape) / DOF
-    return np.exp(log_times), np.sqrt(squares)
+    return times, np.sqrt(squares)
+
+
+def expected_outcomes(model: OutcomeModel, modes: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the means that very many trainees have: times in s and RMSE in mm, (modes, tasks).
+
+    A log-normal's mean is exp(σ²/2) times its median; that of χ is √2·Γ((k + 1)/2)/Γ(k/2).
+    """
+    times, fle = _medians(model, modes)
+    time_sds = (model.trainee_time_sd, model.interaction_sd, model.trial_time_sd)
+    fle_sds = (model.trainee_fle_sd, model.interaction_sd)
+    of_time, of_fle = (math.exp(sum(sd**2 for sd in sds) / 2) for sds in (time_sds, fle_sds))
+    chi = math.sqrt(2) * math.exp(math.lgamma((DOF + 1) / 2) - math.lgamma(DOF / 2))
+    return times * of_time, fle * of_fle * math.sqrt((1 - 2 / FIDUCIAL_COUNT) / DOF) * chi
+
+
+def _medians(model: OutcomeModel, modes: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return time in s and localization error in mm of the typical trainee, (modes, tasks)."""
+    mode_time, mode_fle = (
+        np.array([factors.get(mode, 1.0) for mode in modes])[:, None]
+        for factors in (model.mode_time, model.mode_fle)
+    )
+    practice = np.arange(1, len(model.task_times_s) + 1) ** -model.learning
+    times = mode_time * np.asarray(model.task_times_s) * practice
+    return times, mode_fle * np.asarray(model.task_fle_mm)

@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.inference.signed_ranks import SignedRankTest, signed_rank_test
-from rastrainer.inference.student import noncentrality_interval, t_quantile, two_sided_p, upper_p
+from rastrainer.inference.student import noncentrality_interval, t_quantile, two_sided_p
 
 CONFIDENCE = 0.95
 
@@ -84,19 +84,15 @@ def small_sample_factor(dof: float) -> float:
     return math.exp(log) / math.sqrt(dof / 2)
 
 
-def equivalence_p(comparison: PairedComparison, margin: float) -> float:
-    """Return the p of two one-sided tests that the difference is within ±margin (Schuirmann 1987).
+def equivalence_margin(comparison: PairedComparison) -> float:
+    """Return the least margin within which the difference is shown to lie, in its unit.
 
-    Raises:
-        InputError: the margin is not above 0.
+    For every margin above it two one-sided tests at 5 % both reject (Schuirmann 1987). Whether so
+    small a difference may be neglected must be decided before the study.
     """
-    if not margin > 0:
-        raise InputError("The margin of equivalence must be above 0.")
     standard_error = comparison.sd_difference / math.sqrt(comparison.n)
-    dof = comparison.n - 1
-    above = upper_p((comparison.mean_difference + margin) / standard_error, dof)
-    below = upper_p((margin - comparison.mean_difference) / standard_error, dof)
-    return max(above, below)
+    reach = t_quantile(CONFIDENCE, comparison.n - 1) * standard_error
+    return abs(comparison.mean_difference) + reach
 
 
 def holm(p_values: list[float]) -> list[float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rastrainer.inference.few_subjects import what_it_shows
+from rastrainer.inference.paired import equivalence_margin
 from rastrainer.number_text import fixed
 from rastrainer.report.charts.effect_sizes import effect_sizes
 from rastrainer.report.charts.paired_lines import paired_lines
@@ -36,7 +37,9 @@ def paired_statistics(comparisons: Sequence[ModeComparison]) -> str:
     first, second = (mode_title(m) for m in (comparisons[0].first, comparisons[0].second))
     intro = (
         f"Each trainee counts once, with the mean over the tasks done in both modes. Differences "
-        f"are {second} minus {first}."
+        f"are {second} minus {first}. “Equivalent within ±” is the least margin within which two "
+        "one-sided tests at the 5 % level show the true difference to lie; how small a difference "
+        "may be neglected must be decided before the study."
     )
     return section(
         "Paired statistics",
@@ -63,7 +66,16 @@ def _table(comparisons: Sequence[ModeComparison]) -> str:
     modes = [
         mode_title(mode).split(" ")[0] for mode in (comparisons[0].first, comparisons[0].second)
     ]
-    headers = ["Outcome", "n", *modes, "difference [95 %]", "t", "p", "p (Holm)"]
+    headers = [
+        "Outcome",
+        "n",
+        *modes,
+        "difference [95 %]",
+        "equivalent within ±",
+        "t",
+        "p",
+        "p (Holm)",
+    ]
     return table([[*headers, "Wilcoxon p", "g_z"]], rows, "wide")
 
 
@@ -72,11 +84,12 @@ def _row(comparison: ModeComparison) -> list[Cell | str]:
     means = [outcome.text(float(values.mean())) for values in _both(comparison)]
     start = [outcome.heading, str(len(comparison.trainees)), *means]
     if result is None:
-        return [*start, Cell(comparison.reason, 6, kind="text")]
+        return [*start, Cell(comparison.reason, 7, kind="text")]
     ranks = result.signed_ranks
     return [
         *start,
         interval_text(result.mean_difference, result.interval, outcome.digits + 1),
+        fixed(equivalence_margin(result), outcome.digits + 1),
         fixed(result.t, 2),
         p_text(result.p),
         "–" if comparison.adjusted_p is None else p_text(comparison.adjusted_p),
