@@ -1,0 +1,94 @@
+"""A head is found, edited and made into a scenario in the module; and what Cancel leaves."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+import slicer
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk
+
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.scenario_library import user_library
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.head.segment import SEGMENT_NAME
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.tasks import LABELS
+from Testing.end_to_end.module.story import Story, unfold
+from Testing.slicer.head.phantoms import phantom
+from Testing.slicer.head.placed import add_volume, fiducials, vtk_matrix
+from Testing.slicer.host.cancels import cancels
+from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
+
+SCAN = phantom(spacing=(2.0, 2.0, 2.0))
+WEN, WEN_RADIUS = np.array([0.0, -74.0, 0.0]), 12.0
+"""What is painted at the back of the head, RAS mm."""
+
+
+@pytest.fixture(autouse=True)
+def _scan_is_chosen(host, tmp_path):
+    """A scan is chosen, with fiducials placed by hand and a program that plans on it."""
+    Story(host, tmp_path).choose_own_program()
+    unfold(host, "newScenarioCollapsibleButton")
+    unfold(host, "adjustHeadGroupBox")
+    unfold(host, "planForScenarioGroupBox")
+    placed = host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "By hand")
+    setPoints(placed, LABELS, fiducials())
+    host.check("handPlacedCheckBox")
+    host.check("skullCheckBox", False)
+    host.choose("scanComboBox", add_volume(host.scene, SCAN, "Ms X"))
+
+
+def paint_wen(node):
+    """Paint a ball into the segment as the Segment Editor does: on the grid of the scan."""
+    ijk = np.indices(SCAN.values.shape).reshape(3, -1).T
+    ras = ijk @ SCAN.ijk_to_ras[:3, :3].T + SCAN.ijk_to_ras[:3, 3]
+    ball = (np.linalg.norm(ras - WEN, axis=1) < WEN_RADIUS).reshape(SCAN.values.shape)
+    image = slicer.vtkOrientedImageData()
+    image.SetDimensions(ball.shape)
+    image.SetImageToWorldMatrix(vtk_matrix(SCAN.ijk_to_ras))
+    values = np.ascontiguousarray(ball.transpose(2, 1, 0), np.uint8).ravel()
+    image.GetPointData().SetScalars(numpy_to_vtk(values, array_type=vtk.VTK_UNSIGNED_CHAR, deep=1))
+    logic = slicer.vtkSlicerSegmentationsModuleLogic
+    segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)
+    assert logic.SetBinaryLabelmapToSegment(image, node, segment, logic.MODE_MERGE_MAX)
+
+
+def test_the_scenario_has_the_edited_head_on_the_base_that_was_shown(host):
+    host.press("previewHeadButton")
+    assert host.messages == []
+    shown = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
+    paint_wen(findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT))
+    host.press("makeScenarioButton")
+    assert host.messages == []
+    made = read_head_mesh(user_library() / "ms-x" / "head.ply").vertices
+    assert made[:, 2].min() == pytest.approx(shown[4], abs=0.51)
+    assert made[:, 2].max() == pytest.approx(shown[5], abs=1.0)
+    assert shown[2] == pytest.approx(-76.0, abs=1.5)
+    assert made[:, 1].min() == pytest.approx(WEN[1] - WEN_RADIUS, abs=1.5)
+
+
+def test_a_scenario_that_is_canceled_while_its_head_is_found_leaves_nothing_behind(host, tmp_path):
+    with cancels(host, "makeScenarioButton"):
+        host.press("makeScenarioButton")
+    assert not (tmp_path / "simulator.pid").exists()
+    assert_nothing_is_left(host)
+
+
+def test_a_scenario_that_is_canceled_while_it_is_planned_leaves_nothing_behind(host, tmp_path):
+    pid_file = tmp_path / "simulator.pid"
+    with cancels(host, "makeScenarioButton", lambda: pid_file.exists() and pid_file.read_text()):
+        host.press("makeScenarioButton")
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(pid_file.read_text()), 0)
+    assert_nothing_is_left(host)
+
+
+def assert_nothing_is_left(host):
+    """Hold that the module is as before the scenario was begun."""
+    assert host.text("newScenarioText") == "Canceled; nothing has changed."
+    assert host.text("makeScenarioButton") == "Make scenario"
+    assert host.find("scenarioComboBox").count == 1
+    assert not user_library().exists() or not list(user_library().iterdir())
