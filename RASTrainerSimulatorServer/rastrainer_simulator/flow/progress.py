@@ -18,7 +18,7 @@ _TAIL_BYTES = 1 << 16
 _REGISTERED = b'"kind":"registered"'
 
 
-class Progress:
+class DoneTasks:
     """Counts a task as done when it was registered, and the trial run when it was begun."""
 
     def __init__(self, records: Path) -> None:

@@ -27,7 +27,7 @@ from rastrainer_simulator.flow.feedback import Happening
 from rastrainer_simulator.flow.pages_open import OpenPages
 from rastrainer_simulator.flow.preferences import FILE_NAME as PREFERENCES_FILE
 from rastrainer_simulator.flow.preferences import Preferences, write_preferences
-from rastrainer_simulator.flow.progress import Progress
+from rastrainer_simulator.flow.progress import DoneTasks
 from rastrainer_simulator.flow.screen import Message, Tone
 from rastrainer_simulator.flow.study_guide import StudyGuide, step_sentence
 from rastrainer_simulator.operator_input import OperatorInput
@@ -103,7 +103,7 @@ class Session:
         self.has_read_introduction = False
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
-        self.progress = Progress(surroundings.records)
+        self.progress = DoneTasks(surroundings.records)
         self.happened = happened
         self.pages = OpenPages(happened)
         self.list_scenarios = surroundings.list_scenarios

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rastrainer.journal.journal_line import NO_LINE, encode_line
-from rastrainer_simulator.flow.progress import Progress
+from rastrainer_simulator.flow.progress import DoneTasks
 
 HEAD = "colin27"
 ORDER = ("trial-run", "task-1", "task-2")
@@ -24,7 +24,7 @@ def test_a_task_counts_once_registered_and_the_trial_run_once_begun(tmp_path):
     write_journal(tmp_path, "2", "P01", "task-1", "registered", "scored")
     write_journal(tmp_path, "3", "P01", "task-2", "aborted")
     write_journal(tmp_path, "4", "P02", "task-1", "registered")
-    progress = Progress(tmp_path)
+    progress = DoneTasks(tmp_path)
     assert [progress.has_done("P01", HEAD, task) for task in ORDER] == [True, True, False]
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) is None
     assert progress.missing_before("P02", HEAD, "task-2", ORDER) == "trial-run"
@@ -33,7 +33,7 @@ def test_a_task_counts_once_registered_and_the_trial_run_once_begun(tmp_path):
 
 def test_a_task_of_one_head_is_not_that_of_another(tmp_path):
     write_journal(tmp_path, "1", "P01", "trial-run", "registered", scenario="other")
-    progress = Progress(tmp_path)
+    progress = DoneTasks(tmp_path)
     progress.note("P01", "other", "task-1")
     assert progress.missing_before("P01", "other", "task-2", ORDER) is None
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) == "trial-run"
@@ -48,10 +48,10 @@ def test_what_is_no_journal_tells_nothing(tmp_path):
     (tmp_path / "noise.journal").write_bytes(bytes(range(256)) * 100)
     (tmp_path / "folder.journal").mkdir()
     write_journal(tmp_path, "odd", ["P03"], {"task": 1}, "registered")
-    progress = Progress(tmp_path)
+    progress = DoneTasks(tmp_path)
     assert progress.has_done("P01", HEAD, "task-1")
     assert not progress.has_done("P02", HEAD, "task-1")
 
 
 def test_a_folder_that_is_not_there_yet_tells_nothing(tmp_path):
-    assert not Progress(tmp_path / "later").has_done("P01", HEAD, "task-1")
+    assert not DoneTasks(tmp_path / "later").has_done("P01", HEAD, "task-1")

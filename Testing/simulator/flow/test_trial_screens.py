@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer_simulator.flow import working
-from rastrainer_simulator.flow.progress import Progress
+from rastrainer_simulator.flow.progress import DoneTasks
 from rastrainer_simulator.simulation import Simulation
 
 
@@ -88,7 +88,7 @@ def test_what_was_done_is_known_after_the_simulator_was_started_again(trainee, o
     trainee.until_menu("experiment")
     trainee.close()
     loop.stop()
-    progress, scenario = Progress(outside.surroundings.records), loop.setup.scenario.name
+    progress, scenario = DoneTasks(outside.surroundings.records), loop.setup.scenario.name
     assert progress.has_done("P07", scenario, "trial-run")
     assert not progress.has_done("P07", scenario, "task-1")
     assert not progress.has_done("P08", scenario, "trial-run")

@@ -18,7 +18,7 @@ from rastrainer.experiment.williams import williams_design
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind
 from rastrainer.questionnaires.catalog import QUESTIONNAIRES
 
-MODE_TITLES = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
+_IN_MODE = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Step:
     @property
     def sentence(self) -> str:
         """What the trainee is told to do."""
-        where = f" {MODE_TITLES[self.mode]}" if self.mode else ""
+        where = f" {_IN_MODE[self.mode]}" if self.mode else ""
         if self.kind is StepKind.QUESTIONNAIRE:
             return f"Answer the questionnaire {QUESTIONNAIRES[self.questionnaire].title}."
         if self.kind is StepKind.BREAK:

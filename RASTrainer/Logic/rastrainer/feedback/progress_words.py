@@ -21,7 +21,7 @@ the risk of the trials that there really are."""
 
 
 @dataclass(frozen=True)
-class Progress:
+class Standing:
     """A trainee's way so far, this trial included.
 
     Attributes:
@@ -43,7 +43,7 @@ class Progress:
     sentences: tuple[Sentence, ...]
 
 
-def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> Progress:
+def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> Standing:
     """Return how a trial stands.
 
     Args:
@@ -75,7 +75,7 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> P
         _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )
-    return Progress(scores, pass_mark, is_best, passes, competence, curve, sentences)
+    return Standing(scores, pass_mark, is_best, passes, competence, curve, sentences)
 
 
 def _passes(trial: PastTrial, pass_mark: float) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.feedback.advice import Advice, advise
-from rastrainer.feedback.progress_words import Progress
+from rastrainer.feedback.progress_words import Standing
 from rastrainer.feedback.touch_findings import TouchFinding, touch_findings
 from rastrainer.feedback.wording import Sentence, say
 from rastrainer.motion.trajectory import Trajectory
@@ -34,7 +34,7 @@ class TrialFeedback:
     touches: tuple[TouchFinding, ...]
     worst: TouchFinding
     advice: tuple[Advice, ...]
-    progress: Progress | None
+    progress: Standing | None
     paused_s: float = 0.0
 
     @property
@@ -88,7 +88,7 @@ def trial_feedback(
     normals: np.ndarray | None = None,
     motion: Mapping[str, float] | None = None,
     trajectory: Trajectory | None = None,
-    progress: Progress | None = None,
+    progress: Standing | None = None,
 ) -> TrialFeedback:
     """Return the feedback on a trial; what is not known is left out.
 

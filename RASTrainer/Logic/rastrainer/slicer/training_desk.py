@@ -22,7 +22,7 @@ OPEN = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
 
 
 @dataclass(frozen=True)
-class Progress:
+class TrialStatus:
     """Where the simulator's trial stands.
 
     Attributes:
@@ -93,13 +93,13 @@ class TrainingDesk:
         self._link.pointsChanged.disconnect(self._tellChange)
 
     @property
-    def progress(self) -> Progress:
+    def progress(self) -> TrialStatus:
         """Where the trial stands now; its time goes on between two messages."""
         state = self._state
         elapsed = _number(state.get("elapsedS")) or 0.0
         if state.get("phase") == Phase.RUNNING.value:
             elapsed += self._clock() - self._stateTime
-        return Progress(
+        return TrialStatus(
             phase=str(state.get("phase", Phase.IDLE.value)),
             trainee=str(state.get("trainee", "")),
             task=str(state.get("task", "")),
