@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.scenario_library import user_library
 from rastrainer.scenario_writer import new_folder, write_scenario
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from Testing.domain.made_up_scenario import ball_head, made_up_scenario
@@ -37,3 +38,23 @@ def test_a_scenario_that_was_removed_is_told(tmp_path):
     shutil.rmtree(tmp_path / "ball")
     with pytest.raises(InputError, match="is not here"):
         shelf.find("ball")
+
+
+def test_a_title_that_is_taken_is_answered_with_one_that_is_free(tmp_path):
+    for name in ("ball", "ball-2"):
+        build(tmp_path / name, "Ball")
+        text = (tmp_path / name / "scenario.json").read_text()
+        (tmp_path / name / "scenario.json").write_text(text.replace('"ball"', f'"{name}"'))
+    with pytest.raises(InputError, match=r"another title, such as Ball 3\.$"):
+        ScenarioShelf.below(tmp_path).newName("Ball")
+
+
+def test_a_scenario_of_ones_own_may_be_moved_away_to_make_it_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    mine = user_library()
+    build(mine / "ball", "Ball")
+    shelf = ScenarioShelf.below(mine)
+    with pytest.raises(InputError, match=r"Ball 2, or first move the folder .*ball elsewhere"):
+        shelf.newName("Ball")
+    (mine / "ball").rename(tmp_path / "elsewhere")
+    assert shelf.newName("Ball") == "ball"

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
+from itertools import count
 from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.scenario import FILE_NAME, Scenario, load_scenario
-from rastrainer.scenario_library import ListedScenario, list_folders, list_scenarios
+from rastrainer.scenario_library import (
+    ListedScenario,
+    list_folders,
+    list_scenarios,
+    user_library,
+)
 from rastrainer.scenario_writer import scenario_name
 from rastrainer.slicer.translation import _
+
+LONGEST_STEM = 30
+"""Characters of a title to which a number is added: a name of 40 must have room for it."""
 
 
 class ScenarioShelf:
@@ -64,13 +73,21 @@ class ScenarioShelf:
             InputError: there is one of that name, or no name can be made of the title.
         """
         name = scenario_name(title)
-        if any(entry.name == name for entry in self.listed()):
-            raise InputError(
-                _("There is a scenario {name} already: give this one another title.").format(
-                    name=name
-                )
+        self._listed = None
+        taken = {entry.name: entry.folder for entry in self.listed()}
+        if name not in taken:
+            return name
+        titles = (f"{title[:LONGEST_STEM]} {number}" for number in count(2))
+        free = next(each for each in titles if scenario_name(each) not in taken)
+        sentence = _(
+            "There is a scenario {name} already: give this one another title, such as {free}."
+        )
+        if taken[name].parent == user_library():
+            sentence = _(
+                "There is a scenario {name} already: give this one another title, such as {free}, "
+                "or first move the folder {folder} elsewhere."
             )
-        return name
+        raise InputError(sentence.format(name=name, free=free, folder=taken[name]))
 
     def _folder(self, name: str) -> Path:
         for entry in self.listed():
