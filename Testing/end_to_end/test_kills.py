@@ -178,9 +178,7 @@ def kill_slicer(lab, kills, seed, trials, also_server):
             end_simulator(signal.SIGKILL)
             end_simulator = lab.start_simulator()
         slicer = lab.start_slicer()
-    slicer.let_print()
-    wait_until_delivered(lab, trials)
-    slicer.end(signal.SIGKILL)
+    deliver_the_rest(lab, slicer, trials)
     end_simulator(signal.SIGTERM)
     with Study.open(lab.output / "study.db") as study:
         assert {trial.record.trial_id for trial in study.history(TRAINEE)} == wanted
@@ -188,13 +186,24 @@ def kill_slicer(lab, kills, seed, trials, also_server):
     assert all(read_journal(path).integrity is Integrity.INTACT for path in lab.journals)
 
 
-def wait_until_delivered(lab, trials):
-    """Wait until the study holds so many trials with their truth, and all are acknowledged.
+def deliver_the_rest(lab, slicer, trials):
+    """Have so many trials stored and acknowledged, then their truths known, and end Slicer's side.
 
-    A busy machine takes its time, so patience ends only where nothing more arrives.
+    An answer that came too late on a busy machine is asked for again over the next connection.
     """
+    slicer.let_print()
+    wait_for_study(lab, lambda stored: stored[0] == trials and not find_unacknowledged(lab.records))
+    slicer.end(signal.SIGKILL)
+    slicer = lab.start_slicer()
+    slicer.let_print()
+    wait_for_study(lab, lambda stored: stored == (trials, trials))
+    slicer.end(signal.SIGKILL)
+
+
+def wait_for_study(lab, is_complete):
+    """Wait for what is stored; patience ends only where nothing more arrives."""
     stored, give_up = None, 0.0
-    while (now := lab.stored()) != (trials, trials) or find_unacknowledged(lab.records):
+    while not is_complete(now := lab.stored()):
         if now != stored:
             stored, give_up = now, time.monotonic() + PATIENCE_S
         assert time.monotonic() < give_up, stored
@@ -230,8 +239,8 @@ def kill_both_in_play(lab, kills, seed):
             slicer = lab.start_slicer()
             slicer.let_print()
     assert player.play(lab.port, None, 1)
-    wait_until_delivered(lab, len(check_records(lab, player)))
     slicer.end(signal.SIGKILL)
+    deliver_the_rest(lab, lab.start_slicer(), len(check_records(lab, player)))
     end_simulator(signal.SIGTERM)
     return player
 
