@@ -12,7 +12,13 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.extraction import SPACING_MM, HeadBody, HeadSettings
-from rastrainer.slicer.head.volume import Volume, matrix_of, on_ras_grid, to_world
+from rastrainer.slicer.head.volume import (
+    Volume,
+    lowest_slice,
+    matrix_of,
+    on_ras_grid,
+    to_world,
+)
 
 SEGMENT_NAME = "Head"
 BASE_TAG = "RASTrainer.baseMm"
@@ -71,17 +77,28 @@ def volume_of_segment(node: Any, segment_id: str) -> Volume:
     image.GetImageToWorldMatrix(matrix)
     first = np.array(image.GetExtent()[::2], dtype=float)
     to_ras = to_world(node) @ matrix_of(matrix)
-    # The segment's image ends where the segment does: there has to be air around it.
-    to_ras[:3, 3] += to_ras[:3, :3] @ (first - _AIR)
+    to_ras[:3, 3] += to_ras[:3, :3] @ first
     values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    padded = np.pad((values > 0).astype(np.float32), _AIR)
-    grid = on_ras_grid(Volume(padded, to_ras), SPACING_MM)
-    return _from_base(grid, _base_of(node, segment_id))
+    bare = Volume((values > 0).astype(np.float32), to_ras)
+    return _from_base(on_ras_grid(_in_air(bare), SPACING_MM), _base_of(node, segment_id))
 
 
 def for_segment(settings: HeadSettings) -> HeadSettings:
     """Return the settings for a segment's volume."""
     return replace(settings, threshold=_HALF, noise_mm=EDITED_NOISE_MM)
+
+
+def _in_air(bare: Volume) -> Volume:
+    """Return a segment with air around it, but below, where its neck goes on.
+
+    The segment's image ends where the segment does.
+    """
+    widths = np.full((3, 2), _AIR)
+    axis, end = lowest_slice(bare)
+    widths[axis, 0 if end == 0 else 1] = 0
+    matrix = bare.ijk_to_ras.copy()
+    matrix[:3, 3] -= matrix[:3, :3] @ widths[:, 0]
+    return Volume(np.pad(bare.values, widths), matrix)
 
 
 def _base_of(node: Any, segment_id: str) -> float:

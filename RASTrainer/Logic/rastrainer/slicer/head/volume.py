@@ -95,7 +95,7 @@ def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
     """
     indices = np.array(np.meshgrid(*[(0, n - 1) for n in volume.values.shape])).reshape(3, -1).T
     corners = indices @ volume.ijk_to_ras[:3, :3].T + volume.ijk_to_ras[:3, 3]
-    axis, end = _lowest_slice(volume)
+    axis, end = lowest_slice(volume)
     heights = corners[indices[:, axis] == end, 2]
     origin, top = corners.min(axis=0), corners.max(axis=0)
     origin[2] = heights.mean()
@@ -116,7 +116,7 @@ def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
     return Volume(values, grid_to_ras)
 
 
-def _lowest_slice(volume: Volume) -> tuple[int, int]:
+def lowest_slice(volume: Volume) -> tuple[int, int]:
     """Return the axis that is nearest to the vertical, and the index of its lower end."""
     axis = int(np.abs(volume.ijk_to_ras[2, :3]).argmax())
     return axis, 0 if volume.ijk_to_ras[2, axis] > 0 else volume.values.shape[axis] - 1
