@@ -16,6 +16,9 @@ from rastrainer.number_text import fixed
 from rastrainer.registration import Registration
 from rastrainer.scoring import LONG_PAUSE_S, TrialScore
 
+MOST_SHORT = 6
+"""Sentences that fit beside the figures of a result at 1280 × 720."""
+
 
 @dataclass(frozen=True)
 class TrialFeedback:
@@ -76,10 +79,13 @@ class TrialFeedback:
 
     @property
     def short_sentences(self) -> list[Sentence]:
-        """What a page beside the score has room for: the worst touch, advice, and progress."""
-        touches, advice = self.touch_sentences[:1], (a.sentence for a in self.advice)
+        """What a page beside the score has room for: the worst touch, advice, and progress.
+
+        The pass mark and the competence come last and are always among them.
+        """
         progress = () if self.progress is None else self.progress.sentences
-        return [*touches, *advice, *progress]
+        others = [*self.touch_sentences[:1], *(a.sentence for a in self.advice)]
+        return [*others, *progress[max(0, len(others) + len(progress) - MOST_SHORT) :]]
 
 
 def trial_feedback(

@@ -8,6 +8,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_step import StudyStep
+from rastrainer.feedback.trial_feedback import MOST_SHORT
 from rastrainer.scoring import PASS_MARK
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
@@ -24,8 +25,6 @@ POOR_MM = 4.0
 reaches in the clinic lies between them."""
 POOR_SCORE = 40.0
 LONGEST_SENTENCE = 300
-MOST_FEEDBACK = 7
-"""Sentences: the worst touch, three things to improve, three on the progress."""
 
 
 class FinishedPage(Page):
@@ -103,7 +102,7 @@ class ResultPage(FinishedPage):
             self.say("result.title", trainee=training.trainee, task=task),
             (
                 *_sentences(self.session.texts, result, "warnings", 3),
-                *_sentences(self.session.texts, result, "feedback", MOST_FEEDBACK),
+                *_sentences(self.session.texts, result, "feedback", MOST_SHORT),
                 *self._what_comes_next(),
             ),
             (*self._facts_of_result(result), *_facts_of_trial(self.session)),
