@@ -93,7 +93,7 @@ def test_the_most_rewarding_advice_comes_first_and_safety_before_all():
     findings = touch_findings(registered(errors), NORMALS)
     motion = {
         "idle_time_s": 4.0,
-        "path_efficiency": 0.5,
+        "path_efficiency": 0.3,
         "refused_touches": 1,
         "unintended_contacts": 2,
     }
