@@ -1,0 +1,148 @@
+"""Volumes given to `rastrainer scenario build`: the broken get a sentence, the odd a right head."""
+
+from __future__ import annotations
+
+import tempfile
+
+import numpy as np
+import pytest
+
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.markups import write_markups
+from rastrainer.point_list import PointList
+from rastrainer.scenario import load_scenario
+from rastrainer.tasks import LABELS
+from rastrainer_simulator.cli import main
+from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE
+from Testing.slicer.head.dicom_series import write_series
+from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, NOSE, SAGITTAL, depth_mm, phantom
+from Testing.slicer.head.placed import fiducials
+from Testing.slicer.head.volume_file import write_volume
+
+NOTHING_SCANNED_BELOW = 5.0
+"""Height (S) above which no phantom here lacks a part of its head, mm."""
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    """The user's home and the folder of temporary files, for the processes too."""
+    for name in ("home", "temporary"):
+        (tmp_path / name).mkdir()
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(tmp_path / "home"))
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    return tmp_path
+
+
+def nrrd(volume):
+    return lambda folder: write_volume(folder / "head.nrrd", volume)
+
+
+def cut(name, is_compressed=True, share=0.6):
+    """Return what writes a head of which the file's end is missing."""
+
+    def write(folder):
+        volume = phantom(spacing=(3.0, 3.0, 3.0), noise=1.0)
+        path = write_volume(folder / name, volume, is_compressed)
+        path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
+        return path
+
+    return write
+
+
+def content(name, data):
+    def write(folder):
+        (folder / name).write_bytes(data)
+        return folder / name
+
+    return write
+
+
+def dicom(folder):
+    scan = phantom(CT, spacing=(2.0, 2.0, 2.5))
+    # Ours are rows to the left and down from the front, in LPS: turned half about S.
+    values = scan.values[::-1, ::-1].astype(np.int16)
+    first = (-1.0, -1.0, 1.0) * (scan.ijk_to_ras @ [*(np.array(scan.values.shape) - 1), 1.0])[:3]
+    first[2] = scan.ijk_to_ras[2, 3]
+    write_series(folder / "series", values, (2.0, 2.0, 2.5), first=first)
+    return folder / "series"
+
+
+def dicom_with_a_cut_slice(folder):
+    path = sorted(dicom(folder).iterdir())[7]
+    path.write_bytes(path.read_bytes()[:-100])
+    return path.parent
+
+
+def dicom_without_a_slice(folder):
+    path = sorted(dicom(folder).iterdir())[7]
+    path.unlink()
+    return path.parent
+
+
+NO_FILE_OF_A_VOLUME = {
+    "an NRRD file cut short": (cut("head.nrrd", False), "head.nrrd could not be read"),
+    "a compressed one": (cut("head.nrrd"), "head.nrrd could not be read"),
+    "a NIfTI file cut short": (cut("head.nii", False), "head.nii is cut short"),
+    "one byte of it missing": (cut("head.nii", False, 0.999999), "head.nii is cut short"),
+    "a compressed one of it": (cut("head.nii.gz"), "head.nii.gz is cut short"),
+    "a cut header": (cut("head.nii", share=0.0001), "head.nii could not be read"),
+    "DICOM, one slice cut short": (dicom_with_a_cut_slice, "is cut short"),
+    "DICOM, one slice missing": (dicom_without_a_slice, "not evenly spaced"),
+    "a folder without DICOM": (lambda folder: folder / "home", "holds no DICOM files"),
+    "a file of no bytes": (content("head.nrrd", b""), "head.nrrd could not be read"),
+    "a file of something else": (content("head.nii", b"text" * 999), "could not be read"),
+    "no file": (lambda folder: folder / "none.nii", "none.nii does not exist"),
+}
+BROKEN = NO_FILE_OF_A_VOLUME | {
+    name: (nrrd(volume), sentence) for name, (volume, sentence) in (UNUSABLE | HEADLESS).items()
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_volume_gets_one_sentence_and_changes_nothing(place, capfd, name):
+    write, sentence = BROKEN[name]
+    volume = write(place)
+    before = everything_in(place)
+    assert main(["scenario", "build", str(volume), "-o", str(place / "made")]) == 2
+    said = capfd.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert sentence in said[0]
+    assert everything_in(place) == before
+
+
+ODD = {
+    "double oblique": (nrrd(phantom(spacing=(2.0, 2.0, 2.0), axes=DOUBLE_OBLIQUE)), []),
+    "NIfTI, stored slice by slice from the left": (
+        lambda folder: write_volume(
+            folder / "head.nii.gz", phantom(spacing=(2.0, 2.0, 2.0), axes=SAGITTAL)
+        ),
+        ["--cut=-12"],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_an_odd_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name):
+    write, options = ODD[name]
+    write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials()))
+    words = ["scenario", "build", str(write(place)), "-o", str(place / "made"), "--no-skull"]
+    status = main([*words, *options, "--tasks", str(place / "mine.mrk.json")])
+    told = capfd.readouterr()
+    assert status == 0, told.err
+    scenario = load_scenario(place / "made")
+    assert [task.title for task in scenario.tasks] == ["Trial run"]
+    mesh = read_head_mesh(scenario.head_mesh)
+    assert mesh.is_closed
+    assert mesh.euler_characteristic == 2
+    scanned = mesh.vertices[mesh.vertices[:, 2] > NOTHING_SCANNED_BELOW]
+    away = scanned[np.linalg.norm(scanned - NOSE, axis=1) > 20.0]
+    assert np.abs(depth_mm(away)).mean() < 0.6
+
+
+def everything_in(folder):
+    """Return the content of every file below a folder, None of a folder, by its path."""
+    return {
+        path: path.read_bytes() if path.is_file() else None for path in sorted(folder.rglob("*"))
+    }
