@@ -29,6 +29,9 @@ from rastrainer.trial_record import TrialRecord
 from rastrainer.trial_results import RevealedTruth
 from rastrainer.trial_review import review, with_progress
 
+SCORED_TIMEOUT_S = 60.0
+"""Nobody waits for this answer, and one that is given up would be asked for again only over the
+next connection: a busy simulator gets the time it needs."""
 _UNDER_WAY = {Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value}
 
 
@@ -191,7 +194,8 @@ class TrialDesk:
                 self.trialScored.emit(ScoredTrial(analysis, truth))
             goOn()
 
-        self._link.send(CommandName.TRIAL_SCORED, _scoreArguments(analysis), takeAnswer)
+        arguments = _scoreArguments(analysis)
+        self._link.send(CommandName.TRIAL_SCORED, arguments, takeAnswer, SCORED_TIMEOUT_S)
 
     def _openedStudy(self) -> Study:
         if self._study is None:
