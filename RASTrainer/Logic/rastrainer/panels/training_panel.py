@@ -19,7 +19,7 @@ from rastrainer.panels.widgets import (
 from rastrainer.protocol import TRIAL_RUN, Mode, Phase, Proximity
 from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.session import Session
-from rastrainer.slicer.training_desk import Progress
+from rastrainer.slicer.training_desk import TrialStatus
 from rastrainer.slicer.translation import _
 
 PHASES = {
@@ -123,7 +123,7 @@ class TrainingPanel:
             mode = chosenData(self._ui.modeComboBox)
             self._session.study.startTrial(task, mode)
 
-    def _showButtons(self, progress: Progress, isConnected: bool) -> None:
+    def _showButtons(self, progress: TrialStatus, isConnected: bool) -> None:
         ui = self._ui
         reason = _("Connect to the simulator first.")
         if isConnected:
@@ -159,7 +159,7 @@ def _clock(seconds: float) -> str:
     return f"{minutes}:{rest:02d} min"
 
 
-def _clearance(progress: Progress) -> str:
+def _clearance(progress: TrialStatus) -> str:
     if progress.clearanceMm is None:
         return "–"
     color, words = NEARNESS.get(progress.proximity, (GREEN, progress.proximity))
