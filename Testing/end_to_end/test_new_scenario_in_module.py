@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import slicer
 
 from rastrainer.scenario import load_scenario
 from rastrainer.scenario_library import user_library
@@ -11,13 +12,17 @@ from rastrainer.slicer.scene import Role, findNode
 from rastrainer.tasks import LABELS
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.slicer.head.phantoms import phantom
-from Testing.slicer.head.placed import add_volume, fiducials
+from Testing.slicer.head.placed import fiducials
+from Testing.slicer.head.volume_file import write_volume
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 from Testing.slicer.host.other_modules import SampleDataLogic
 
+SAMPLE_SHAPE, SAMPLE_SPACING = (256, 256, 112), (0.9375, 0.9375, 1.4)
+"""Of MRBrainTumor1."""
+
 
 class Clicks:
-    """Counts what a user clicks."""
+    """Does what a user does with the mouse, and counts each click."""
 
     def __init__(self, host):
         self.count = 0
@@ -31,12 +36,23 @@ class Clicks:
         self.count += 1
         self._host.press(name)
 
-    def choose(self, name, choice):
+    def tick(self, name):
         self.count += 1
-        self._host.choose(name, choice)
+        self._host.check(name)
+
+    def start_trial_on(self, title):
+        """Start the trial run once it may start, and wait until it runs on that scenario."""
+        host = self._host
+        host.wait_until(lambda: title in host.find("scenarioComboBox").currentText, "it is chosen")
+        host.wait_until(lambda: host.find("startTrialRunButton").enabled, "a trial may start")
+        self.press("startTrialRunButton")
+        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial runs")
+        head = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+        combo = host.find("scenarioComboBox")
+        assert head.GetAttribute("RASTrainer.scenario") == combo.itemData(combo.currentIndex)
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture
 def session_under_way(host, tmp_path):
     """A session under way: the simulator runs, and a trainee is chosen."""
     story = Story(host, tmp_path, ("--no-views", "--no-gamepad"))
@@ -47,32 +63,43 @@ def session_under_way(host, tmp_path):
     story.stop_simulator()
 
 
-def trains_on(host, title, button):
-    """Start a trial by a button, and wait until it runs on that scenario."""
-    host.wait_until(lambda: title in host.find("scenarioComboBox").currentText, "it is chosen")
-    host.wait_until(lambda: host.find(button).enabled, "a trial may start")
-    host.press(button)
-    host.wait_until(lambda: "running" in host.text("phaseText"), "the trial runs")
-    head = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
-    combo = host.find("scenarioComboBox")
-    assert head.GetAttribute("RASTrainer.scenario") == combo.itemData(combo.currentIndex)
+def load_volume(scene, path, name):
+    """Load a file as Slicer does: what is loaded last is what the slice views show."""
+    node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", name)
+    storage = scene.AddNewNodeByClass("vtkMRMLVolumeArchetypeStorageNode")
+    storage.SetFileName(str(path))
+    assert storage.ReadData(node)
+    application = slicer.app.applicationLogic()
+    application.GetSelectionNode().SetActiveVolumeID(node.GetID())
+    application.PropagateVolumeSelection()
+    return node
 
 
-def test_a_volume_with_fiducials_placed_by_hand_is_trained_on_by_five_clicks(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.0, 2.0, 2.0)), "Ms X")
+@pytest.fixture
+def sample(host, tmp_path, monkeypatch):
+    """What Sample Data downloads: a file of the shape of MRBrainTumor1, turned in the scanner."""
+    scan = phantom(spacing=SAMPLE_SPACING, shape=SAMPLE_SHAPE, turn_deg=7.0, noise=3.0)
+    path = write_volume(tmp_path / "sample.nrrd", scan)
+    monkeypatch.setattr(
+        SampleDataLogic, "downloadSample", lambda _logic, name: load_volume(host.scene, path, name)
+    )
+
+
+@pytest.mark.usefixtures("session_under_way")
+def test_a_loaded_volume_with_fiducials_placed_by_hand_is_trained_on_by_five_clicks(host, tmp_path):
+    path = write_volume(tmp_path / "ms-x.nii.gz", phantom(spacing=(2.0, 2.0, 2.0)))
+    load_volume(host.scene, path, "Ms X")
     placed = host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "By hand")
     setPoints(placed, LABELS, fiducials())
-    unfold(host, "planForScenarioGroupBox")
-    host.find("handPlacedCheckBox").checked = True
     clicks = Clicks(host)
     clicks.unfold("newScenarioCollapsibleButton")
-    clicks.choose("scanComboBox", volume)
+    clicks.unfold("planForScenarioGroupBox")
+    clicks.tick("handPlacedCheckBox")
     clicks.press("makeScenarioButton")
     assert host.messages == []
     assert "is made" in host.text("newScenarioText")
     assert host.find("scenarioPicture").visible
-    trains_on(host, "Ms X", "startTrialRunButton")
-    clicks.count += 1
+    clicks.start_trial_on("Ms X")
     assert clicks.count <= 5
     library = user_library()
     assert [path.name for path in library.iterdir()] == ["ms-x"]
@@ -80,20 +107,38 @@ def test_a_volume_with_fiducials_placed_by_hand_is_trained_on_by_five_clicks(hos
     assert [task.title for task in scenario.tasks] == ["Trial run"]
 
 
+@pytest.mark.usefixtures("sample")
+def test_the_sample_is_in_the_scene_and_chosen_by_one_click(host):
+    host.open()
+    unfold(host, "newScenarioCollapsibleButton")
+    host.press("sampleDataButton")
+    assert host.messages == []
+    chosen = host.find("scanComboBox").currentNode()
+    assert chosen.GetName() == "MRBrainTumor1"
+    assert chosen.GetImageData().GetDimensions() == SAMPLE_SHAPE
+    assert chosen.GetSpacing() == pytest.approx(SAMPLE_SPACING)
+    assert host.find("makeScenarioButton").enabled
+
+
+def test_a_sample_that_cannot_be_downloaded_is_told_and_nothing_is_chosen(host, monkeypatch):
+    host.open()
+    unfold(host, "newScenarioCollapsibleButton")
+    monkeypatch.setattr(SampleDataLogic, "downloadSample", lambda _logic, _name: None)
+    host.press("sampleDataButton")
+    assert "Sample Data has brought no volume" in host.messages[-1].text
+    assert "check the network" in host.messages[-1].text
+    assert host.find("scanComboBox").currentNode() is None
+    assert not host.find("makeScenarioButton").enabled
+
+
 @pytest.mark.soak
-def test_the_sample_is_trained_on_by_five_clicks_from_its_download_on(host, monkeypatch):
-    sample = phantom(spacing=(0.9375, 0.9375, 1.4), turn_deg=7.0, noise=3.0)
-
-    def download(_logic, name):
-        return add_volume(host.scene, sample, name)
-
-    monkeypatch.setattr(SampleDataLogic, "downloadSample", download)
+@pytest.mark.usefixtures("sample", "session_under_way")
+def test_the_sample_is_trained_on_by_five_clicks_from_its_download_on(host):
     clicks = Clicks(host)
     clicks.unfold("newScenarioCollapsibleButton")
     clicks.press("sampleDataButton")
     clicks.press("makeScenarioButton")
     assert host.messages == []
-    trains_on(host, "MRBrainTumor1", "startTrialRunButton")
-    clicks.count += 1
+    clicks.start_trial_on("MRBrainTumor1")
     assert clicks.count <= 5
     assert host.find("taskComboBox").count == 6

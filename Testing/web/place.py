@@ -129,15 +129,19 @@ class Trainee(StreamTrainee):
                 before = self.menu
                 self.press("back", lambda b=before: self.menu != b, f"before {before.name}")
 
+    def go_to_experiment(self) -> None:
+        """Go from wherever the last one has stopped to the choice of head and task."""
+        self.go_home()
+        self.choose("train")
+        while self.menu.name != "experiment":
+            self.choose("skip" if self.menu.name == "introduction" else "next")
+
     def begin(self, task: str, page: Page | None = None) -> None:
         """Go from the start menu into a task.
 
         The ID is typed on the page, or without one on the keyboard that the simulator shows.
         """
-        self.go_home()
-        self.choose("train")
-        while self.menu.name != "experiment":
-            self.choose("skip" if self.menu.name == "introduction" else "next")
+        self.go_to_experiment()
         if not self.value("trainee"):
             self._type_id(page)
         self.begin_task(task)

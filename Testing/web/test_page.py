@@ -81,6 +81,19 @@ def test_the_introduction_shows_a_picture_of_what_is_held_with_its_inputs_colore
     assert colored == {PageKeys: 12, BrowserPad: 5}
 
 
+def test_the_menu_of_heads_shows_the_picture_of_the_one_in_focus(place, page):
+    trainee = place.trainee(PageKeys(page))
+    trainee.go_to_experiment()
+    trainee.choose("scenario")
+    trainee.until(lambda: len(trainee.menu.items) > 1, "the heads at hand")
+    trainee.focus("head colin27")
+    picture = page.wait_for_selector("#menu img")
+    assert picture.get_attribute("src").endswith("/scenarios/colin27.png")
+    assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") == 640
+    trainee.focus("back")
+    page.wait_for_selector("#menu img", state="detached")
+
+
 def test_the_page_weighs_less_than_a_megabyte_and_loads_nothing_from_elsewhere(place, page):
     own = (place.simulator.url, "data:")
     assert [url for url in page.loaded if not url.startswith(own)] == []

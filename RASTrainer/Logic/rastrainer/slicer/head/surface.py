@@ -64,7 +64,21 @@ def decimated(surface: vtk.vtkPolyData, triangle_count: int, above_mm: float) ->
     decimation = vtk.vtkQuadricDecimation()
     decimation.SetInputData(surface)
     decimation.SetTargetReduction(1.0 - triangle_count / count_above)
-    return _output(decimation)
+    return _without_fins(_output(decimation))
+
+
+def _without_fins(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
+    """Remove triangles that hang on an edge which two others share: decimation may leave some."""
+    sides = np.sort(mesh_of(surface).triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
+    _, places, uses = np.unique(
+        sides.reshape(-1, 2), axis=0, return_inverse=True, return_counts=True
+    )
+    open_sides = (uses[places.reshape(-1, 3)] == 1).sum(axis=1)
+    surface.BuildCells()
+    for fin in np.flatnonzero(open_sides == 2):
+        surface.DeleteCell(fin)
+    surface.RemoveDeletedCells()
+    return surface
 
 
 def cut_flat(surface: vtk.vtkPolyData, height_mm: float) -> vtk.vtkPolyData:
