@@ -105,6 +105,15 @@ def test_a_loaded_volume_with_fiducials_placed_by_hand_is_trained_on_by_five_cli
     assert [path.name for path in library.iterdir()] == ["ms-x"]
     scenario = load_scenario(library / "ms-x")
     assert [task.title for task in scenario.tasks] == ["Trial run"]
+    a_check_says_what_is_wrong(host, placed)
+    assert [path.name for path in library.iterdir()] == ["ms-x"]
+
+
+def a_check_says_what_is_wrong(host, placed):
+    x, y, z = placed.GetNthControlPointPosition(0)
+    placed.SetNthControlPointPosition(0, x, y, z + 40.0)
+    host.press("checkScenarioButton")
+    assert "off the skin" in host.messages[-1].text
 
 
 @pytest.mark.usefixtures("sample")

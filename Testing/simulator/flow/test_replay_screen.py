@@ -221,7 +221,8 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     study.take(StudyStep("P07", "break", 4, 9, minutes=5.0))
     result.step(20)
     assert result.menu.facts[0].value == "81 / 100"
-    assert result.menu.paragraphs[-1] == "Step 4 of 9: take a break of at least 5 minutes."
+    told = result.menu.paragraphs[-1]
+    assert told.startswith("Step 4 of 9: take a break of at least 5 minutes, 0")
     names = [item.name for item in result.menu.items]
     assert names == ["worst", "replay", "menu"]
     study.take(StudyStep("P07", "trial", 5, 9, "task-2", "desktop"))
@@ -235,7 +236,7 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     ]
     study.take(StudyStep("P07"))
     result.step(20)
-    assert result.menu.paragraphs == ("Point 3 is far off.", "Hold still before you touch.")
+    assert not any(told.startswith("Step") for told in result.menu.paragraphs)
 
 
 def test_a_trial_that_slicer_starts_ends_it_and_is_what_the_views_show(place):
