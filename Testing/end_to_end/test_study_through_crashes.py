@@ -136,6 +136,7 @@ def lab(loop_thread, tmp_path):
     lab.close()
 
 
+@pytest.mark.soak
 def test_a_study_is_led_to_its_end_though_slicer_and_the_simulator_are_killed_in_it(lab):
     player = SurvivingPlayer(load_scenario(COLIN), random.Random(8), TRAINEE)
     with lab.view() as view:
