@@ -336,6 +336,7 @@ def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab
     lab.desk.begin(path)
     lab.desk.enroll()
     lab.desk.skipStep("the headset's battery was empty")
+    lab.room.run_until(lambda: told(lab).get("minutes") == 10.0)
     lab.moment = datetime.now(timezone.utc) + timedelta(minutes=4)
     lab.room.link.disconnect()
     before = len(lab.room.sent("StudyStep"))

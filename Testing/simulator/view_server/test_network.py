@@ -54,7 +54,7 @@ def test_the_page_is_served_by_tls_1_2_and_1_3(port, version):
 @pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1])
 def test_tls_older_than_1_2_is_refused(port, certificates, version):
     # By the server, and not by this side.
-    with pytest.raises(ssl.SSLError, match=r"(?i)alert protocol version|EOF occurred"):
+    with pytest.raises(ssl.SSLError, match=r"(?i)alert protocol version|EOF"):
         connected(port, version)
     # Where the system's own OpenSSL would allow it, too.
     assert tls_context(certificates).minimum_version > version
