@@ -8,6 +8,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import write_head_mesh
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
+from rastrainer.slicer import scenario as shown
 from rastrainer.slicer.control_points import labelsOf, worldPoints
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.scene import Role, findNode
@@ -98,6 +99,18 @@ def test_a_scenario_that_was_built_anew_under_its_name_is_shown_anew(scene, plan
         bounds = findNode(scene, MODEL, role).GetPolyData().GetBounds()
         np.testing.assert_allclose(bounds, [-radius, radius] * 3, atol=1.0)
     np.testing.assert_allclose(worldPoints(node), moved.fiducials)
+
+
+def test_the_mesh_that_is_shown_is_not_read_again_and_one_that_has_gone_is_told(
+    scene, planned, monkeypatch
+):
+    showScenario(scene, planned)
+    with monkeypatch.context() as patch:
+        patch.setattr(shown, "read_head_mesh", None)
+        showScenario(scene, planned)
+    planned.head_mesh.unlink()
+    with pytest.raises(InputError, match="does not exist"):
+        showScenario(scene, planned)
 
 
 def test_the_fiducials_of_a_task_are_numbered_and_locked(scene, scenario):

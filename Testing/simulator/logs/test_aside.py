@@ -12,10 +12,12 @@ class Blocked(logging.Handler):
 
     def __init__(self):
         super().__init__()
+        self.reached = threading.Event()
         self.go = threading.Event()
         self.taken = []
 
     def emit(self, record):
+        self.reached.set()
         self.go.wait()
         self.taken.append(record.getMessage())
 
@@ -27,25 +29,27 @@ def record(text):
 def test_a_log_that_nobody_reads_holds_nobody_up_keeps_what_came_first_and_counts_the_rest():
     blocked = Blocked()
     aside = Aside(blocked)
-    for number in range(3 * MOST_WAITING):
+    aside.handle(record("0"))
+    blocked.reached.wait()
+    for number in range(1, 3 * MOST_WAITING):
         aside.handle(record(str(number)))
     blocked.go.set()
     aside.close()
     *kept, gap = blocked.taken
     assert kept == [str(number) for number in range(len(kept))]
-    assert MOST_WAITING <= len(kept) <= MOST_WAITING + 1
-    assert (
-        gap == f"{3 * MOST_WAITING - len(kept)} lines are missing here: nobody took them in time."
-    )
+    assert len(kept) == MOST_WAITING + 1
+    assert gap == f"{2 * MOST_WAITING - 1} lines are missing here: nobody took them in time."
 
 
 def test_lost_lines_are_told_where_they_would_have_stood():
     blocked = Blocked()
     aside = Aside(blocked)
+    aside.handle(record("kept or lost"))
+    blocked.reached.wait()
     for _ in range(2 * MOST_WAITING):
         aside.handle(record("kept or lost"))
     blocked.go.set()
-    while len(blocked.taken) < MOST_WAITING:
+    while len(blocked.taken) < MOST_WAITING + 1:
         time.sleep(0.001)
     aside.handle(record("later"))
     aside.close()

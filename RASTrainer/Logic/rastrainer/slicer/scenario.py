@@ -18,7 +18,7 @@ from rastrainer.tasks import Task
 SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
 TASK_ATTRIBUTE = "RASTrainer.task"
 CONTENT_ATTRIBUTE = "RASTrainer.content"
-"""Digest of what a node shows: a scenario that is built anew may keep its name."""
+"""Stamp of what a node shows: a scenario that is built anew may keep its name."""
 
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
@@ -51,18 +51,20 @@ def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
     node = findOrAddNode(
         scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
     )
-    if _isNews(node, TASK_ATTRIBUTE, f"{scenario.name}/{task.name}", task.fiducials):
+    name, digest = f"{scenario.name}/{task.name}", sha256(task.fiducials.tobytes()).hexdigest()
+    if not _shows(node, TASK_ATTRIBUTE, name, digest):
         _fillFiducials(node, task)
+        _note(node, TASK_ATTRIBUTE, name, digest)
     return node
 
 
-def _isNews(node: Any, attribute: str, name: str, *content: np.ndarray) -> bool:
-    """Note what a node is to show, and tell whether it shows something else yet."""
-    former = node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)
-    digest = sha256(b"".join(array.tobytes() for array in content)).hexdigest()
+def _shows(node: Any, attribute: str, name: str, content: str) -> bool:
+    return (node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)) == (name, content)
+
+
+def _note(node: Any, attribute: str, name: str, content: str) -> None:
     node.SetAttribute(attribute, name)
-    node.SetAttribute(CONTENT_ATTRIBUTE, digest)
-    return former != (name, digest)
+    node.SetAttribute(CONTENT_ATTRIBUTE, content)
 
 
 def _fillFiducials(node: Any, task: Task) -> None:
@@ -93,14 +95,25 @@ def _showSkull(scene: Any, scenario: Scenario) -> None:
 
 def _fill(node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]) -> bool:
     """Show a mesh of a scenario, and tell whether something else was shown."""
-    mesh = read_head_mesh(path)
-    if not _isNews(node, SCENARIO_ATTRIBUTE, scenario.name, mesh.vertices, mesh.triangles):
+    # Asked before every trial: the file is read only when it is not the one that is shown.
+    stamp = _stamp(path)
+    if _shows(node, SCENARIO_ATTRIBUTE, scenario.name, stamp):
         return False
+    mesh = read_head_mesh(path)
     node.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
+    _note(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
     display = node.GetDisplayNode()
     display.SetColor(color)
     display.SetVisibility2D(True)
     return True
+
+
+def _stamp(path: Path) -> str:
+    """Tell a file from what it was, without reading it."""
+    if not path.is_file():
+        return ""
+    status = path.stat()
+    return f"{status.st_mtime_ns} {status.st_size}"
 
 
 def _showTargets(scene: Any, scenario: Scenario) -> None:
