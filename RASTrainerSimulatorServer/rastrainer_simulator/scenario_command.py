@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.progress import print_progress, print_warning
 from rastrainer.scenario import UNKNOWN_LICENSE
 from rastrainer.scenario_library import list_scenarios, user_library
 from rastrainer.scenario_package import unpack
@@ -134,18 +135,18 @@ def _build(arguments: argparse.Namespace) -> int:
     has_no_skull = arguments.no_skull or arguments.check
     options = [*_head_options(arguments), *(["--no-skull"] if has_no_skull else [])]
     with head_process(arguments.volume, options) as process:
-        head = process.head(lambda step, share: _tell(step, 0.5 * share), _warn)
+        head = process.head(lambda step, share: print_progress(step, 0.5 * share), print_warning)
         if arguments.check:
-            check_wishes(head, wishes, _tell, _warn)
+            check_wishes(head, wishes, print_progress, print_warning)
             print(ALL_RIGHT)
             return 0
         scenario = make_scenario(
             head,
             wishes,
             arguments.output,
-            lambda step, share: _tell(step, 0.5 + 0.5 * share),
+            lambda step, share: print_progress(step, 0.5 + 0.5 * share),
             None if arguments.no_skull else process.whole,
-            _warn,
+            print_warning,
         )
     print(
         f"{scenario.title} is in {arguments.output}; load it with: rastrainer simulator "
@@ -162,10 +163,10 @@ def _tasks(arguments: argparse.Namespace) -> int:
     _clear_away_when_terminated()
     wishes, draft = wishes_of(arguments, "unknown"), read_draft(arguments.draft)
     if arguments.check:
-        check_wishes(draft, wishes, _tell, _warn)
+        check_wishes(draft, wishes, print_progress, print_warning)
         print(ALL_RIGHT)
     else:
-        make_scenario(draft, wishes, arguments.output, _tell, warn=_warn)
+        make_scenario(draft, wishes, arguments.output, print_progress, warn=print_warning)
     return 0
 
 
@@ -176,7 +177,7 @@ def _preview(arguments: argparse.Namespace) -> int:
 
     options = [*_head_options(arguments), "--no-skull"]
     with head_process(arguments.volume, options) as process:
-        draft = process.head(_tell, _warn)
+        draft = process.head(print_progress, print_warning)
     scenario = without_tasks(draft, Wishes("Preview", "none", "none"))
     draw_preview(arguments.picture, scenario, draft.head)
     print(draft.method)
@@ -201,7 +202,7 @@ def _plan(arguments: argparse.Namespace) -> int:
         arguments.output,
         targets_of(arguments),
         trajectory_of(arguments),
-        _warn,
+        print_warning,
     )
     print(f"{scenario.title} is in {arguments.output}.")
     return 0
@@ -238,11 +239,3 @@ def _clear_away_when_terminated() -> None:
 def _head_options(arguments: argparse.Namespace) -> list[str]:
     named = (("--threshold", arguments.threshold), ("--cut", arguments.cut))
     return [f"{name}={value!r}" for name, value in named if value is not None]
-
-
-def _tell(step: str, share: float) -> None:
-    print(f"{share:4.0%}  {step}", flush=True)
-
-
-def _warn(sentence: str) -> None:
-    print(f"Warning: {sentence}", flush=True)

@@ -2,12 +2,15 @@
 
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.experiment.study_protocol import read_study_protocol
+from rastrainer.feedback.progress_words import competence_of
 from rastrainer.report.comparisons import compare_modes, paired_means
 from rastrainer.report.outcomes import MAIN_OUTCOMES
 from rastrainer.report.published_scores import with_ctps
@@ -224,6 +227,21 @@ def test_trials_with_long_pauses_are_counted_among_the_limits():
     assert "1 of 2 trials were paused for more than 30 s in all" in words_of(report_html(once))
     never = StudyData("x", (row(1, 0.0),))
     assert "were paused" not in words_of(report_html(never))
+
+
+def test_who_reached_the_pass_mark_and_whom_lc_cusum_calls_competent_is_counted():
+    rows = []
+    for trainee, score, acceptable in (("A", 70.0, True), ("B", 69.9, True), ("C", 90.0, False)):
+        for number in range(1, 31):
+            values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": score}
+            row = TrialRow(trainee, "hmd", "task-1", number, values, acceptable=acceptable)
+            rows.append(row)
+    protocol = replace(read_study_protocol(STUDIES / "published-protocol.json"), pass_mark=70.0)
+    words = words_of(report_html(StudyData("One mode", tuple(rows), protocol=protocol)))
+    assert "passes with 70 of 100 points (of the protocol)" in words
+    shown_at = competence_of([False] * 30).competent_at
+    assert 1 < shown_at < 30
+    assert f"90 30 (33 %) 1 of 3 {shown_at} " in words
 
 
 def test_hostile_pseudonyms_and_titles_stay_text():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 
@@ -11,6 +10,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.face_removal import face_vertices
 from rastrainer.motion.shortest_path import shortest_path_mm
+from rastrainer.progress import Progress
 from rastrainer.surface_queries import outward_normals
 from rastrainer.tasks import LABELS, Task
 from rastrainer_simulator.planning.skin_places import smooth_places
@@ -42,8 +42,6 @@ MOST_SHARE = 0.94
 """Of the progress, before the tasks are found."""
 
 _DECIMALS = 4
-
-Progress = Callable[[str, float], None]
 
 
 class TaskSetProposer:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
 from rastrainer.errors import InputError
+from rastrainer.progress import HEAD_MADE, Progress, Warn, tell_line
 from rastrainer.scenario_draft import HeadDraft, read_draft
-
-_PROGRESS = re.compile(r"\s*(\d+)%  (.+)")
-_WARNING = "Warning: "
-_HEAD_MADE = "The head is made."
 
 
 class HeadProcess:
@@ -28,9 +24,7 @@ class HeadProcess:
         self._errors = errors
         self._folder = folder
 
-    def head(
-        self, progress: Callable[[str, float], None], warn: Callable[[str], None]
-    ) -> HeadDraft:
+    def head(self, progress: Progress, warn: Warn) -> HeadDraft:
         """Wait for the head and return its draft without a skull.
 
         Args:
@@ -41,9 +35,9 @@ class HeadProcess:
             InputError: there is no head in the volume; the sentence says why.
         """
         for line in self._process.stdout:
-            if line.rstrip() == _HEAD_MADE:
+            if line.rstrip() == HEAD_MADE:
                 return read_draft(self._folder)
-            _tell(line.rstrip(), progress, warn)
+            tell_line(line.rstrip(), progress, warn)
         raise self._failure()
 
     def whole(self) -> HeadDraft:
@@ -85,11 +79,3 @@ def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
                 yield HeadProcess(process, errors, folder)
             finally:
                 process.kill()
-
-
-def _tell(line: str, progress: Callable[[str, float], None], warn: Callable[[str], None]) -> None:
-    step = _PROGRESS.fullmatch(line)
-    if step:
-        progress(step.group(2), int(step.group(1)) / 100.0)
-    elif line.startswith(_WARNING):
-        warn(line.removeprefix(_WARNING))

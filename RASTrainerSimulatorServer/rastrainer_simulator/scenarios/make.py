@@ -10,13 +10,14 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
+from rastrainer.progress import Progress, Warn
 from rastrainer.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
 from rastrainer.scenario_draft import HeadDraft
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp
 from rastrainer.scenario_writer import new_folder, scenario_name, write_scenario
 from rastrainer.tasks import Task
-from rastrainer_simulator.planning.task_set import Progress, TaskSetProposer
+from rastrainer_simulator.planning.task_set import TaskSetProposer
 from rastrainer_simulator.planning.workbench import Workbench
 from rastrainer_simulator.scenarios.picture import draw_preview
 from rastrainer_simulator.scenarios.placed_tasks import read_placed_tasks
@@ -57,7 +58,7 @@ def make_scenario(
     folder: Path,
     progress: Progress = lambda _step, _share: None,
     wait_for_skull: Callable[[], HeadDraft] | None = None,
-    warn: Callable[[str], None] = lambda _sentence: None,
+    warn: Warn = lambda _sentence: None,
 ) -> Scenario:
     """Write the scenario of a head into a new folder and return it.
 
@@ -96,9 +97,7 @@ def make_scenario(
     return load_scenario(folder)
 
 
-def check_wishes(
-    draft: HeadDraft, wishes: Wishes, progress: Progress, warn: Callable[[str], None]
-) -> None:
+def check_wishes(draft: HeadDraft, wishes: Wishes, progress: Progress, warn: Warn) -> None:
     """Raise what `make_scenario` would raise of the set-up, the plan and the placed fiducials.
 
     Raises:
@@ -107,9 +106,7 @@ def check_wishes(
     _placed(Workbench(without_tasks(draft, wishes, warn), draft.head), wishes, progress, warn)
 
 
-def _placed(
-    bench: Workbench, wishes: Wishes, progress: Progress, warn: Callable[[str], None]
-) -> tuple[Task, ...]:
+def _placed(bench: Workbench, wishes: Wishes, progress: Progress, warn: Warn) -> tuple[Task, ...]:
     """Return the tasks that are placed by hand, once nothing is wrong with all that is wished."""
     wrong = check_plan(bench)
     tasks, wrong_tasks = read_placed_tasks(bench, wishes.task_files, progress, warn)
@@ -119,7 +116,7 @@ def _placed(
 
 
 def without_tasks(
-    draft: HeadDraft, wishes: Wishes, warn: Callable[[str], None] = lambda _sentence: None
+    draft: HeadDraft, wishes: Wishes, warn: Warn = lambda _sentence: None
 ) -> Scenario:
     """Return the scenario of a head without tasks; `warn` is told of a target that lies too deep.
 
@@ -149,7 +146,7 @@ def without_tasks(
     return with_main_target(scenario, head, warn)
 
 
-def with_main_target(scenario: Scenario, head: HeadMesh, warn: Callable[[str], None]) -> Scenario:
+def with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenario:
     """Return the scenario with the first planned target as its own, where trials can start so.
 
     A trial starts above the target: with one far below, the tip would start in the head.

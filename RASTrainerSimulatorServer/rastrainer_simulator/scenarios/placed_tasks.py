@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +9,12 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.markups import read_markups
+from rastrainer.progress import Progress, Warn
 from rastrainer.surface_queries import nearest_on_mesh
 from rastrainer.tasks import LABELS, Task
 from rastrainer.touch_order import touch_order
 from rastrainer_simulator.planning.task_check import check_tasks, measured
 from rastrainer_simulator.planning.task_proposal import PLANS, TaskPlan
-from rastrainer_simulator.planning.task_set import Progress
 from rastrainer_simulator.planning.workbench import Workbench
 
 SNAP_MM = 5.0
@@ -31,7 +30,7 @@ def read_placed_tasks(
     bench: Workbench,
     files: tuple[Path, ...],
     progress: Progress,
-    warn: Callable[[str], None],
+    warn: Warn,
 ) -> tuple[tuple[Task, ...], list[str]]:
     """Return the tasks of markups files, and what is wrong with them, one sentence each.
 
@@ -57,7 +56,7 @@ def read_placed_tasks(
     return tuple(tasks), [*wrong, *check_tasks(bench, tasks)]
 
 
-def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Callable[[str], None]) -> Task:
+def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> Task:
     """Return a task on the skin.
 
     Raises:

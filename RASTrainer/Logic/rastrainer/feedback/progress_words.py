@@ -64,8 +64,7 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> S
     same = [other for other in in_mode if other.task == trial.task]
     scores = tuple(other.score for other in same)
     failures = [not _passes(other, pass_mark) for other in in_mode]
-    limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
-    competence = lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
+    competence = competence_of(failures)
     times = [other.completion_time_s for other in same]
     curve = fit_learning_curve(times) if len(times) >= FEWEST_TRIALS else None
     is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
@@ -76,6 +75,12 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> S
         _about_competence(competence, len(failures)),
     )
     return Standing(scores, pass_mark, is_best, passes, competence, curve, sentences)
+
+
+def competence_of(failures: Sequence[bool]) -> LcCusum:
+    """Return the LC-CUSUM of a trainee in one mode; `failures` tells of each trial, in order."""
+    limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
+    return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
 
 
 def _passes(trial: PastTrial, pass_mark: float) -> bool:

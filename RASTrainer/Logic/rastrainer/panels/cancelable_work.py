@@ -7,10 +7,10 @@ from typing import TypeVar
 
 import slicer
 
+from rastrainer.progress import Progress
 from rastrainer.slicer.translation import _
 
 T = TypeVar("T")
-Progress = Callable[[str, float], None]
 
 
 class _CanceledError(Exception):

@@ -25,6 +25,7 @@ from rastrainer.report.sections.mode_comparison import mode_comparison
 from rastrainer.report.sections.motion import motion
 from rastrainer.report.sections.paired_statistics import findings, paired_statistics
 from rastrainer.report.sections.paper_notes import paper_notes
+from rastrainer.report.sections.passing import passing
 from rastrainer.report.sections.published_tables import published_tables
 from rastrainer.report.sections.questionnaires import questionnaires
 from rastrainer.report.sections.spread import spread
@@ -82,6 +83,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         *(paired_statistics(comparisons) for comparisons in main),
         spread(data),
         learning(data),
+        passing(data),
         motion(data, described[0] if described else ()),
         questionnaires(data),
         groups(data),

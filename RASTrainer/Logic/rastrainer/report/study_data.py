@@ -33,6 +33,8 @@ class TrialRow:
         started_utc: ISO 8601; "" where unknown.
         scenario: In which it was played; "" where unknown.
         score_version: Of our score; "" without one.
+        acceptable: Whether the expected target error was within the score's limit; False without
+            a score.
     """
 
     trainee: str
@@ -44,6 +46,7 @@ class TrialRow:
     started_utc: str = ""
     scenario: str = ""
     score_version: str = ""
+    acceptable: bool = False
 
 
 @dataclass(frozen=True)
@@ -217,6 +220,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         started_utc=record.started_utc,
         scenario=record.scenario,
         score_version="" if score is None else score.version,
+        acceptable=score is not None and score.acceptable,
     )
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
+from rastrainer.progress import Progress
 from rastrainer.slicer.polydata import trianglesPolyData
 from rastrainer.slicer.scenario import SKIN_COLOR
 from rastrainer.slicer.scene import Role, findNode, findOrAddNode
@@ -25,9 +25,7 @@ class HeadPreview:
     def __init__(self, scene: Any) -> None:
         self._scene = scene
 
-    def show(
-        self, volumeNode: Any, settings: HeadSettings, progress: Callable[[str, float], None]
-    ) -> list[str]:
+    def show(self, volumeNode: Any, settings: HeadSettings, progress: Progress) -> list[str]:
         """Show the head in a `vtkMRMLScalarVolumeNode`; return warnings, one sentence each.
 
         Raises:

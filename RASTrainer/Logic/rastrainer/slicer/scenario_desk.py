@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from rastrainer.progress import Progress
 from rastrainer.scenario import Scenario
 from rastrainer.scenario_library import ListedScenario
 from rastrainer.slicer.link_nodes import capturedPointsNode
@@ -47,7 +47,7 @@ class ScenarioDesk:
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
 
     def useHead(
-        self, node: Any, progress: Callable[[str, float], None] = lambda _step, _share: None
+        self, node: Any, progress: Progress = lambda _step, _share: None
     ) -> tuple[Any, list[str]]:
         """Let a model or a volume of the scene be the head that is looked at.
 
@@ -75,9 +75,7 @@ class ScenarioDesk:
         model.SetDisplayVisibility(True)
         return model, warnings
 
-    def _skinOf(
-        self, volumeNode: Any, progress: Callable[[str, float], None]
-    ) -> tuple[Any, list[str]]:
+    def _skinOf(self, volumeNode: Any, progress: Progress) -> tuple[Any, list[str]]:
         # Only here: scipy takes time to import.
         from rastrainer.slicer.head.head_draft import find_skin
         from rastrainer.slicer.head.scenario_build import in_background

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.errors import InputError
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
+from rastrainer.progress import Progress
 from rastrainer.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario_setup import SetUp, write_setup
 from rastrainer.slicer.control_points import labelsOf, worldPoints
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from rastrainer.slicer.head.extraction import HeadSettings
 
 SOURCE = "The volume {name} in 3D Slicer."
-
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)

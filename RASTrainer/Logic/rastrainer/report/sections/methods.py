@@ -25,6 +25,8 @@ REFERENCES = (
     "J Qual Technol 12",
     "Balasubramanian et al. 2015, On the analysis of movement smoothness. J Neuroeng Rehabil 12",
     "Newell and Rosenbloom 1981, Mechanisms of skill acquisition and the law of practice",
+    "Biau and Porcher 2010, A method for monitoring a process from an out of control to an in "
+    "control state: application to the learning curve. Stat Med 29",
     "Hennig 2007, Cluster-wise assessment of cluster stability. Comput Stat Data Anal 52",
 )
 

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.progress import HEAD_MADE, print_progress, print_warning
 from rastrainer.scenario_draft import HeadDraft, write_draft
 from rastrainer.scenario_writer import new_folder
 
@@ -37,12 +38,14 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         def head_made(head: HeadDraft, warnings: list[str]) -> None:
             for warning in warnings:
-                print(f"Warning: {warning}", flush=True)
+                print_warning(warning)
             with new_folder(arguments.output) as folder:
                 write_draft(folder, head)
-            print("The head is made.", flush=True)
+            print(HEAD_MADE, flush=True)
 
-        draft, _ = make_draft(volume, settings, not arguments.no_skull, _tell, head_made=head_made)
+        draft, _ = make_draft(
+            volume, settings, not arguments.no_skull, print_progress, head_made=head_made
+        )
         if draft.skull is not None:
             write_draft(arguments.output, draft)
     except InputError as error:
@@ -51,10 +54,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     return 0
-
-
-def _tell(step: str, share: float) -> None:
-    print(f"{share:4.0%}  {step}", flush=True)
 
 
 def _parser() -> argparse.ArgumentParser:

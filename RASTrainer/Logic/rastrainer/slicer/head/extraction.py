@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
+from rastrainer.progress import Progress
 from rastrainer.slicer.head import beyond_image, mask, surface, tissue, topology
 from rastrainer.slicer.head.volume import Volume, on_ras_grid
 
@@ -22,8 +22,6 @@ MOST_DECIMATIONS, BASE_RESERVE = 3, 500
 HAIRS_MM = (0.0, 0.2, 0.4)
 LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
-
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from rastrainer.head_mesh import HeadMesh
+from rastrainer.progress import Progress
 from rastrainer.scenario_draft import HeadDraft
 from rastrainer.slicer.head.dicom_series import read_dicom_folder
-from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, Progress, find_head, skin_of
+from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, find_head, skin_of
 from rastrainer.slicer.head.segment import for_segment
 from rastrainer.slicer.head.skull import SCALP_MM, skull_of
 from rastrainer.slicer.head.tissue import is_hounsfield

@@ -7,7 +7,6 @@ process of its own.
 from __future__ import annotations
 
 import contextlib
-import re
 import tempfile
 import threading
 import time
@@ -18,17 +17,15 @@ from pathlib import Path
 from typing import TypeVar
 
 from rastrainer.errors import InputError
+from rastrainer.progress import Progress, tell_line
 from rastrainer.scenario import Scenario, load_scenario
 from rastrainer.scenario_draft import HeadDraft, write_draft
 from rastrainer.slicer.child_process import ChildProcess
-from rastrainer.slicer.head.extraction import Progress
 
 T = TypeVar("T")
 
 HEAD_SHARE = 0.5
 PERIOD_S = 0.1
-_WARNING = "Warning: "
-_PROGRESS = re.compile(r"\s*(\d+)%  (.+)")
 
 
 def build_scenario(
@@ -118,20 +115,17 @@ def _run(
 ) -> list[str]:
     """Run the planner of tasks to its end and return its warnings; `progress` may raise to stop."""
     child = ChildProcess(command, environment)
-    step, share, last = "Placing fiducials", HEAD_SHARE, "it said nothing"
+    told = [("Placing fiducials", 0.0)]
+    last = "it said nothing"
     warnings: list[str] = []
     try:
         while True:
             status = child.exitStatus
             for line in child.takeLines():
-                told = _PROGRESS.fullmatch(line)
-                if told:
-                    step = told.group(2)
-                    share = HEAD_SHARE + (1.0 - HEAD_SHARE) * int(told.group(1)) / 100.0
-                if line.startswith(_WARNING):
-                    warnings.append(line.removeprefix(_WARNING))
+                tell_line(line, lambda *step: told.append(step), warnings.append)
                 last = line or last
-            progress(step, share)
+            step, share = told[-1]
+            progress(step, HEAD_SHARE + (1.0 - HEAD_SHARE) * share)
             if status is not None:
                 break
             time.sleep(PERIOD_S)

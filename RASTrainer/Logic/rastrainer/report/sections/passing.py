@@ -1,0 +1,64 @@
+"""Which trials reached the pass mark, and which trainees the LC-CUSUM calls competent."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+
+from rastrainer.feedback.progress_words import (
+    ADEQUATE_FAILURES,
+    INADEQUATE_FAILURES,
+    competence_of,
+)
+from rastrainer.number_text import percent
+from rastrainer.report.markup import paragraph, section, table
+from rastrainer.report.outcomes import mode_title
+from rastrainer.report.study_data import StudyData
+from rastrainer.scoring import PASS_MARK
+
+HEADER = ["mode", "trials", "passed", "trainees competent", "median trial that showed it"]
+
+
+def passing(data: StudyData) -> str:
+    """Return the section; "" where no trial has a score."""
+    mark = PASS_MARK if data.protocol is None else data.protocol.pass_mark
+    rows = [_row(data, mode, mark) for mode in data.modes if _failures(data, mode, mark)]
+    if not rows:
+        return ""
+    return section("Pass mark", table([HEADER], rows), paragraph(_words(data, mark), "small"))
+
+
+def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
+    """Return of each trainee whether each scored trial failed, in their order."""
+    failures: dict[str, list[bool]] = defaultdict(list)
+    for trial in sorted(data.of_mode(mode), key=lambda trial: trial.number):
+        if "score" in trial.values:
+            passed = trial.acceptable and trial.values["score"] >= mark
+            failures[trial.trainee].append(not passed)
+    return failures
+
+
+def _row(data: StudyData, mode: str, mark: float) -> list[str]:
+    failures = _failures(data, mode, mark)
+    trials = [failed for own in failures.values() for failed in own]
+    shown_at = [competence_of(own).competent_at for own in failures.values()]
+    competent = [number for number in shown_at if number is not None]
+    passed = len(trials) - sum(trials)
+    return [
+        mode_title(mode),
+        str(len(trials)),
+        f"{passed} ({percent(passed / len(trials))})",
+        f"{len(competent)} of {len(failures)}",
+        f"{np.median(competent):g}" if competent else "–",
+    ]
+
+
+def _words(data: StudyData, mark: float) -> str:
+    source = "the default" if data.protocol is None else "of the protocol"
+    return (
+        f"A trial passes with {mark:g} of 100 points ({source}) and an expected target error "
+        "within the limit of its task. A trainee is called competent by LC-CUSUM (Biau and "
+        f"Porcher 2010) for failing in {percent(ADEQUATE_FAILURES)} of trials and not in "
+        f"{percent(INADEQUATE_FAILURES)}, over all tasks of a mode; few trials can hardly show it."
+    )
