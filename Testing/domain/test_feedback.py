@@ -151,7 +151,9 @@ def test_progress_tells_best_mark_and_competence():
     assert not early.passes
     assert early.scores == (40.0, 41.0, 42.0)
     assert early.sentences[1] == "Not passed yet: 3 points to the mark of 45."
-    assert early.sentences[2].startswith("0 % of the way to proven competence after 3 trials")
+    assert early.sentences[2].startswith(
+        "0 % of the way to proven competence (LC-CUSUM; trials so far: 3)"
+    )
 
 
 def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
@@ -203,4 +205,4 @@ def test_the_feedback_reads_in_order():
     busy = replace(feedback, advice=feedback.advice[:1] * 3).short_sentences
     assert (len(busy), tuple(busy[-2:])) == (MOST_SHORT, feedback.progress.sentences[-2:])
     assert any("to the mark of 55" in s or "mark is 55" in s for s in short)
-    assert "10 points more than the mean of your last 1 trials" in sentences[-3]
+    assert "10 points more than in your last trial of this task" in sentences[-3]

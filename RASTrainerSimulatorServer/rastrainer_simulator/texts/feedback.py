@@ -42,6 +42,10 @@ GERMAN_FEEDBACK: Mapping[str, str] = {
     "Versuche dieser Aufgabe.{best}",
     "feedback.less points": "{points:.0f} Punkte weniger als im Mittel deiner letzten {trials} "
     "Versuche dieser Aufgabe.{best}",
+    "feedback.more points than last": "{points:.0f} Punkte mehr als in deinem letzten Versuch "
+    "dieser Aufgabe.{best}",
+    "feedback.less points than last": "{points:.0f} Punkte weniger als in deinem letzten Versuch "
+    "dieser Aufgabe.{best}",
     "feedback.best": " Es ist dein bisher bester.",
     "feedback.unacceptable": "Nicht bestanden: der zu erwartende Fehler am Ziel ist größer als "
     "zulässig.",
@@ -51,6 +55,6 @@ GERMAN_FEEDBACK: Mapping[str, str] = {
     "feedback.competent": "Deine Versuche zeigen Können seit Nummer {number}: von denen, die noch "
     "in {failing:.0f} % ihrer Versuche scheitern, kommen durch Zufall {risk:.0f} % in {trials} "
     "Versuchen so weit (LC-CUSUM).",
-    "feedback.not competent": "{share:.0f} % des Wegs zum nachgewiesenen Können nach {trials} "
-    "Versuchen (LC-CUSUM).",
+    "feedback.not competent": "{share:.0f} % des Wegs zum nachgewiesenen Können (LC-CUSUM; "
+    "Versuche bisher: {trials}).",
 }

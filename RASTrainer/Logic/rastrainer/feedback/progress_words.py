@@ -90,13 +90,13 @@ def _passes(trial: PastTrial, pass_mark: float) -> bool:
 def _about_scores(scores: Sequence[float], is_best: bool) -> Sentence:
     if len(scores) == 1:
         return say("first trial")
-    change = scores[-1] - float(np.mean(scores[:-1][-3:]))
-    return say(
-        "more points" if change >= 0 else "less points",
-        points=abs(change),
-        trials=min(3, len(scores) - 1),
-        best=say("best") if is_best else "",
-    )
+    earlier = scores[:-1][-3:]
+    change = scores[-1] - float(np.mean(earlier))
+    key = "more points" if change >= 0 else "less points"
+    best = say("best") if is_best else ""
+    if len(earlier) == 1:
+        return say(f"{key} than last", points=abs(change), best=best)
+    return say(key, points=abs(change), trials=len(earlier), best=best)
 
 
 def _about_mark(score: float, acceptable: bool, pass_mark: float) -> Sentence:

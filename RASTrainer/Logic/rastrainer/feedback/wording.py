@@ -38,6 +38,8 @@ ENGLISH: Mapping[str, str] = {
     "task.{best}",
     "less points": "{points:.0f} points less than the mean of your last {trials} trials of this "
     "task.{best}",
+    "more points than last": "{points:.0f} points more than in your last trial of this task.{best}",
+    "less points than last": "{points:.0f} points less than in your last trial of this task.{best}",
     "best": " It is your best so far.",
     "unacceptable": "Not passed: the expected target error is beyond what is acceptable.",
     "passed": "Passed: the mark is {mark:.0f}.",
@@ -45,8 +47,8 @@ ENGLISH: Mapping[str, str] = {
     "competent": "Your trials show competence since number {number}: of those who still fail in "
     "{failing:.0f} % of their trials, {risk:.0f} % come so far by chance within {trials} trials "
     "(LC-CUSUM).",
-    "not competent": "{share:.0f} % of the way to proven competence after {trials} trials "
-    "(LC-CUSUM).",
+    "not competent": "{share:.0f} % of the way to proven competence (LC-CUSUM; trials so "
+    "far: {trials}).",
 }
 
 _PAST_HALF = 1 + 1e-12

@@ -160,7 +160,7 @@ class TraineesPanel:
             setUsable(button, bool(history), tip, hasTrials)
         if hasTrainee:
             self._say(
-                _("{name}: {count} trials, since {day}."),
+                _("{name}, since {day}. Trials: {count}."),
                 name=trainee.pseudonym,
                 count=len(history),
                 day=trainee.created_utc[:10],
