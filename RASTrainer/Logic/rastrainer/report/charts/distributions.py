@@ -11,6 +11,8 @@ from rastrainer.report.charts.svg import FAINT, INK, Axis, Sheet, axis_over, num
 WIDTH, LANE = 330, 74
 LEFT, RIGHT = 66, 318
 MOST_DOTS = 300
+STACK = 38.0
+"""Height of the highest stack of dots, px."""
 
 
 def distributions(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]) -> str:
@@ -47,13 +49,16 @@ def _lane(sheet: Sheet, axis: Axis, y: float, color: str, values: Sequence[float
 
 
 def _swarm(xs: np.ndarray, size: float) -> list[tuple[float, float]]:
-    """Return positions of dots such that they do not hide each other, stacked up to 24 px."""
+    """Return positions of dots that are stacked where they would hide each other.
+
+    Stacks that would be too high are pressed together, all alike, so that their shape remains.
+    """
     placed: list[tuple[float, float]] = []
     for x in xs:
         row = 0.0
-        while row < 24 and any(
-            abs(x - ox) < size and abs(row - orow) < size for ox, orow in placed
-        ):
-            row += size * 0.9
-        placed.append((float(x), min(row, 24.0)))
-    return placed
+        while any(abs(x - ox) < size and abs(row - orow) < 0.9 * size for ox, orow in placed):
+            row += size
+        placed.append((float(x), row))
+    highest = max((row for _, row in placed), default=0.0)
+    share = min(1.0, STACK / highest) if highest else 1.0
+    return [(x, share * row) for x, row in placed]
