@@ -121,6 +121,8 @@ export class Overlay {
     const help = element("p", focused?.help ?? "");
     help.className = "help";
     parent.append(help);
+    // The last menu may have been scrolled down: a title is seen wherever the focus leaves room.
+    parent.scrollTop = 0;
     list.querySelector('[aria-selected="true"]')?.scrollIntoView({ block: "nearest" });
   }
 
