@@ -7,6 +7,7 @@ cuts, delays, lets messages overtake each other and leaves links half-open.
 
 from __future__ import annotations
 
+import gc
 import random
 import time
 
@@ -96,6 +97,8 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
             if rng.random() < 0.04:
                 ends[0] += 1
                 slicer.close()
+                # Nothing is collected by itself within a test, and a thousand trials are many.
+                gc.collect()
                 slicer = SlicerSide(study, scenario, proxy.port, scored)
             if rng.random() < 0.04:
                 ends[1] += 1

@@ -126,6 +126,16 @@ def test_the_history_is_a_table_and_two_learning_curves(scene, add_trial):
         assert table.GetColumnIndex(series.GetYColumnName()) >= 0
 
 
+def test_the_plot_of_the_learning_curves_begins_at_nought_and_holds_every_trial(scene, add_trial):
+    trials = [add_trial(number, trainee="a") for number in range(1, 8)]
+    assert showLearningCurve(scene, "a", trials[:1]).GetXAxisRange() == (0.0, 5.0)
+    chart = showLearningCurve(scene, "a", trials)
+    assert chart.GetXAxisRange() == (0.0, 8.0)
+    low, high = chart.GetYAxisRange()
+    assert (low, high > max(trial.record.completion_time_s for trial in trials)) == (0.0, True)
+    assert not chart.GetXAxisRangeAuto()
+
+
 def test_a_trial_without_results_has_empty_cells(scene, desk, make_record):
     desk.study.add_trial(make_record(str(uuid.UUID(int=1))))
     table = showHistory(scene, "T-001", desk.study.history("T-001"))

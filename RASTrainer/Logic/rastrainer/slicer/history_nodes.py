@@ -10,6 +10,9 @@ from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNod
 from rastrainer.slicer.tables import Column, showTable
 from rastrainer.study import StoredTrial
 
+BEST_SCORE = 100.0
+FEWEST_SHOWN = 5.0
+"""Trials for which there is room in the plot from the first one on."""
 TRIAL_COLUMN = "trial"
 SCORE_COLUMN = "score"
 _SERIES = {
@@ -54,6 +57,11 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
     chart.SetTitle(f"Learning curve of {pseudonym}")
     chart.SetXAxisTitle("Trial")
     chart.SetYAxisTitle("Score, and completion time in s")
+    chart.SetXAxisRangeAuto(False)
+    chart.SetXAxisRange(0.0, max(FEWEST_SHOWN, len(trials) + 1.0))
+    chart.SetYAxisRangeAuto(False)
+    times = (trial.record.completion_time_s for trial in trials)
+    chart.SetYAxisRange(0.0, 1.05 * max((BEST_SCORE, *times)))
     return chart
 
 

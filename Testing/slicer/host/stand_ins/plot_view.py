@@ -109,8 +109,15 @@ def draw_chart(node: Any, width: int, height: int) -> QtGui.QImage:
     view.GetScene().AddItem(chart)
     chart.SetTitle(node.GetTitle() or "")
     chart.SetShowLegend(node.GetLegendVisibility())
-    chart.GetAxis(vtk.vtkAxis.BOTTOM).SetTitle(node.GetXAxisTitle() or "")
-    chart.GetAxis(vtk.vtkAxis.LEFT).SetTitle(node.GetYAxisTitle() or "")
+    for place, title, isAuto, span in (
+        (vtk.vtkAxis.BOTTOM, node.GetXAxisTitle(), node.GetXAxisRangeAuto(), node.GetXAxisRange()),
+        (vtk.vtkAxis.LEFT, node.GetYAxisTitle(), node.GetYAxisRangeAuto(), node.GetYAxisRange()),
+    ):
+        axis = chart.GetAxis(place)
+        axis.SetTitle(title or "")
+        if not isAuto:
+            axis.SetBehavior(vtk.vtkAxis.FIXED)
+            axis.SetRange(*span)
     for index in range(node.GetNumberOfPlotSeriesNodes()):
         _add_series(chart, node.GetNthPlotSeriesNode(index))
     view.Render()
