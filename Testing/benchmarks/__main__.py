@@ -2,7 +2,8 @@
 
 A benchmark is a file `bench_*.py` here with a function `rows(quick: bool) -> list[dict]`; each row
 has the keys of `COLUMNS`, with None where there is nothing to compare with. What takes minutes is
-in a function `long_rows() -> list[dict]`, which `--long` adds.
+in a function `long_rows() -> list[dict]`, which `--long` adds. Before each stands
+how fast the machine is.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ import importlib
 import json
 from itertools import chain
 from pathlib import Path
+
+from Testing.benchmarks.host_speed import host_row
 
 COLUMNS = ("name", "median", "p99", "unit", "peer", "peer_median", "peer_p99", "success", "n")
 HERE = Path(__file__).parent
@@ -30,7 +33,7 @@ def main() -> None:
     print(_line(COLUMNS))
     for name in arguments.names or found:
         module = importlib.import_module(f"Testing.benchmarks.bench_{name}")
-        measures = [lambda m=module: m.rows(arguments.quick)]
+        measures = [lambda n=name: [host_row(n)], lambda m=module: m.rows(arguments.quick)]
         if arguments.long and hasattr(module, "long_rows"):
             measures.append(module.long_rows)
         for row in chain.from_iterable(measure() for measure in measures):
