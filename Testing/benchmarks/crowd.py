@@ -13,6 +13,7 @@ import aiohttp
 
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
+from Testing.benchmarks.loop_health import health_of
 
 CLIENTS, VIEWS = 100, 20
 PROBE_PERIOD_S = 0.5
@@ -51,10 +52,7 @@ class Served:
     @property
     def on_time(self) -> float:
         """Share of the control loop's ticks that were on time, 0…1."""
-        ticks, skipped, late = (
-            self.after[key] - self.before[key] for key in ("ticks", "skippedTicks", "lateTicks")
-        )
-        return (ticks - late) / (ticks + skipped)
+        return health_of(self.after).since(health_of(self.before)).on_time
 
 
 def serve_crowd(port: int, view_port: int, key: str, seconds: float, results) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -28,10 +30,14 @@ class Punctuality:
     ticks: int
 
 
+def health_of(beat: Mapping[str, Any]) -> LoopStatistics:
+    """Return what a heartbeat tells of the loop."""
+    return LoopStatistics(beat["ticks"], beat["lateTicks"], beat["skippedTicks"])
+
+
 def read_health(client: Client) -> LoopStatistics:
     """Wait for the next heartbeat, which comes once a second."""
-    beat = json.loads(client.wait_for(Device.SIM_SERVER).content.message)
-    return LoopStatistics(beat["ticks"], beat["lateTicks"], beat["skippedTicks"])
+    return health_of(json.loads(client.wait_for(Device.SIM_SERVER).content.message))
 
 
 def punctuality(healths: list[LoopStatistics]) -> Punctuality:

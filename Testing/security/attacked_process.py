@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.igtl.client import Client
+from rastrainer_simulator.loop_statistics import LoopStatistics
 from Testing.benchmarks.bare_loop import BareLoop
+from Testing.benchmarks.loop_health import health_of
 from Testing.benchmarks.process_cost import resident_mb
 
 MOST_GROWTH_MB = 8.0
@@ -30,22 +32,15 @@ class Cost:
 
     resident_mb: float
     descriptors: int
-    ticks: int
-    late: int
-    skipped: int
+    loop: LoopStatistics
 
 
 def cost_of(pid: int, client: Client) -> Cost:
     """Return what a simulator costs now, as Linux and its own heartbeat tell it."""
     old = client.latest.get("SimServer")
     beat = json.loads(client.wait_for("SimServer", lambda now: now is not old).content.message)
-    return Cost(
-        resident_mb(pid),
-        len(list(Path(f"/proc/{pid}/fd").iterdir())),
-        beat["ticks"],
-        beat["lateTicks"],
-        beat["skippedTicks"],
-    )
+    descriptors = len(list(Path(f"/proc/{pid}/fd").iterdir()))
+    return Cost(resident_mb(pid), descriptors, health_of(beat))
 
 
 def settled(pid: int, client: Client, wanted: Cost) -> Cost:
@@ -57,20 +52,14 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
             return cost
 
 
-def on_time(before: Cost, after: Cost) -> float:
-    """Return the share of the ticks that were on time, 0…1, of those that were due."""
-    ticks = after.ticks - before.ticks
-    late = after.late - before.late
-    return (ticks - late) / max(1, ticks + after.skipped - before.skipped)
-
-
 def told(before: Cost, after: Cost, bare: BareLoop) -> str:
     """Return in words what has changed, the share of ticks on time among it.
 
     `bare` is a loop that did nothing beside it: where that is late, the machine is to blame.
     """
+    meanwhile = after.loop.since(before.loop)
     return (
-        f"{100.0 * on_time(before, after):.3f} % of {after.ticks - before.ticks} ticks on time "
+        f"{100.0 * meanwhile.on_time:.3f} % of {meanwhile.ticks} ticks on time "
         f"({100.0 * bare.punctuality.on_time:.3f} % of a loop that does nothing), "
         f"{after.resident_mb - before.resident_mb:+.1f} MB, "
         f"{after.descriptors - before.descriptors:+d} descriptors"
@@ -81,7 +70,8 @@ def check_unharmed(before: Cost, after: Cost, bare: BareLoop) -> None:
     """Check that an attack has left nothing behind and has not kept the loop from its ticks."""
     assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
     assert after.resident_mb - before.resident_mb <= MOST_GROWTH_MB
-    assert on_time(before, after) >= bare.punctuality.on_time - MOST_MORE_MISSED
+    on_time = after.loop.since(before.loop).on_time
+    assert on_time >= bare.punctuality.on_time - MOST_MORE_MISSED
 
 
 def counted_in_log(said: str) -> Counter[str]:
