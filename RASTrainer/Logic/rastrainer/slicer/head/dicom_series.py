@@ -63,7 +63,7 @@ def _is_dicom(path: Path) -> bool:
 
 def _read_slice(path: Path) -> tuple[str, _Slice]:
     if is_cut_dicom(path):
-        raise InputError(f"The DICOM file {path} is cut short; copy the series again.")
+        raise InputError(f"The DICOM file {path} is cut short or damaged; copy the series again.")
     reader = slicer.vtkITKArchetypeImageSeriesScalarReader()
     reader.SetArchetype(str(path))
     reader.SetSingleFile(1)

@@ -1,0 +1,96 @@
+"""A DICOM file that announces more than it has is refused before a reader asks for the memory."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.head import dicom_series
+from rastrainer.slicer.head.cut_files import is_cut_dicom
+from Testing.slicer.head.dicom_series import element, slice_file
+
+SLICE = slice_file(np.zeros((8, 8), np.int16), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), "1.2.3", 0)
+META = 132 + SLICE[132:].index(b"\x08\x00\x16\x00")
+FOUR_GB = 0xFFFFFFF0
+UNDEFINED = 0xFFFFFFFF
+ITEM, END_OF_ITEM, END_OF_SEQUENCE = ((0xFFFE, number) for number in (0xE000, 0xE00D, 0xE0DD))
+
+
+def plain(tag, length=0):
+    """An element of implicit kind, or one of a sequence's own."""
+    return struct.pack("<HHI", *tag, length)
+
+
+def long(tag, kind, length):
+    """The head of an element whose length has four bytes."""
+    return struct.pack("<HH2sHI", *tag, kind, 0, length)
+
+
+def with_first(elements, syntax=b"1.2.840.10008.1.2.1\0"):
+    """The slice with elements at the begin of its data set, and in another transfer syntax."""
+    meta = SLICE[:META].replace(b"1.2.840.10008.1.2.1\0", syntax)
+    assert len(meta) == META
+    return meta + elements + SLICE[META:]
+
+
+def sequence(length, items):
+    return long((0x0008, 0x1140), b"SQ", length) + items
+
+
+HUGE = long((0x0009, 0x1001), b"OB", FOUR_GB)
+SMALL = element(0x0008, 0x1155, "UI", "1.2.3")
+ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        pytest.param(with_first(HUGE), id="an element"),
+        pytest.param(
+            with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + HUGE + ENDS)), id="in an item"
+        ),
+        pytest.param(
+            with_first(sequence(8 + len(HUGE), plain(ITEM, len(HUGE)) + HUGE)), id="of told length"
+        ),
+        pytest.param(
+            with_first(plain((0x0009, 0x1001), FOUR_GB), b"1.2.840.10008.1.2\0  "), id="implicit"
+        ),
+        pytest.param(SLICE[:132] + b"\x02\x00garbage" * 40, id="an odd kind in the meta group"),
+        pytest.param(SLICE[:-2], id="pixels"),
+    ],
+)
+def test_what_announces_more_than_the_file_has_is_refused_unread(content, tmp_path, monkeypatch):
+    path = tmp_path / "a.dcm"
+    path.write_bytes(content)
+    monkeypatch.setattr(dicom_series.slicer, "vtkITKArchetypeImageSeriesScalarReader", None)
+    with pytest.raises(InputError, match=r"a\.dcm is cut short or damaged"):
+        dicom_series.read_dicom_folder(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        pytest.param(SLICE, id="plain"),
+        pytest.param(
+            with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + SMALL + ENDS)), id="sequence"
+        ),
+        pytest.param(
+            with_first(sequence(8 + len(SMALL), plain(ITEM, len(SMALL)) + SMALL)), id="told length"
+        ),
+        pytest.param(with_first(sequence(0, b"")), id="empty sequence"),
+        pytest.param(
+            SLICE[: SLICE.rindex(b"\xe0\x7f\x10\x00")]
+            + long((0x7FE0, 0x0010), b"OB", UNDEFINED)
+            + plain(ITEM)
+            + (plain(ITEM, 6) + b"\xff\xd8pixl")
+            + plain(END_OF_SEQUENCE),
+            id="pixels in pieces",
+        ),
+        pytest.param(with_first(HUGE, b"1.2.840.10008.1.2.2\0"), id="big-endian, not followed"),
+    ],
+)
+def test_what_fits_is_not_called_cut(content, tmp_path):
+    path = tmp_path / "a.dcm"
+    path.write_bytes(content)
+    assert not is_cut_dicom(path)
