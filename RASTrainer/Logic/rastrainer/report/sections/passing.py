@@ -55,7 +55,7 @@ def _row(data: StudyData, mode: str, mark: float) -> list[str]:
 
 
 def _words(data: StudyData, mark: float) -> str:
-    source = "the default" if data.protocol is None else "of the protocol"
+    source = "the default, which stands on no data" if data.protocol is None else "of the protocol"
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and an expected target error "
         "within the limit of its task. A trainee is called competent by LC-CUSUM (Biau and "
