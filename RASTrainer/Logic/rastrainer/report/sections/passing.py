@@ -12,7 +12,9 @@ from rastrainer.feedback.progress_words import (
     competence_of,
 )
 from rastrainer.number_text import percent
-from rastrainer.report.markup import paragraph, section, table
+from rastrainer.report.charts.learning_curves import learning_curves
+from rastrainer.report.charts.svg import mode_color
+from rastrainer.report.markup import figure, paragraph, section, table
 from rastrainer.report.outcomes import mode_title
 from rastrainer.report.study_data import StudyData
 from rastrainer.scoring import PASS_MARK
@@ -23,10 +25,19 @@ HEADER = ["mode", "trials", "passed", "trainees competent", "median trial that s
 def passing(data: StudyData) -> str:
     """Return the section; "" where no trial has a score."""
     mark = PASS_MARK if data.protocol is None else data.protocol.pass_mark
-    rows = [_row(data, mode, mark) for mode in data.modes if _failures(data, mode, mark)]
-    if not rows:
+    found = {mode: _failures(data, mode, mark) for mode in data.modes}
+    found = {mode: failures for mode, failures in found.items() if failures}
+    if not found:
         return ""
-    return section("Pass mark", table([HEADER], rows), paragraph(_words(data, mark), "small"))
+    return section(
+        "Pass mark",
+        table([HEADER], [_row(mode, failures) for mode, failures in found.items()]),
+        figure(
+            [_chart(data, mode, failures) for mode, failures in found.items()],
+            "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
+        ),
+        paragraph(_words(data, mark), "small"),
+    )
 
 
 def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
@@ -39,8 +50,7 @@ def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
     return failures
 
 
-def _row(data: StudyData, mode: str, mark: float) -> list[str]:
-    failures = _failures(data, mode, mark)
+def _row(mode: str, failures: dict[str, list[bool]]) -> list[str]:
     trials = [failed for own in failures.values() for failed in own]
     shown_at = [competence_of(own).competent_at for own in failures.values()]
     competent = [number for number in shown_at if number is not None]
@@ -52,6 +62,24 @@ def _row(data: StudyData, mode: str, mark: float) -> list[str]:
         f"{len(competent)} of {len(failures)}",
         f"{np.median(competent):g}" if competent else "–",
     ]
+
+
+def _chart(data: StudyData, mode: str, failures: dict[str, list[bool]]) -> str:
+    charts = {trainee: competence_of(own) for trainee, own in failures.items()}
+    points = {
+        trainee: [(float(number), score) for number, score in enumerate(chart.scores, start=1)]
+        for trainee, chart in charts.items()
+    }
+    limit = max(chart.limit for chart in charts.values())
+    last = max(len(own) for own in failures.values())
+    return learning_curves(
+        f"{mode_title(mode).split(' ')[0]}: LC-CUSUM",
+        mode_color(mode, data.modes.index(mode)),
+        points,
+        "trial",
+        [(1.0, limit), (float(last), limit)],
+        (0.0, limit),
+    )
 
 
 def _words(data: StudyData, mark: float) -> str:
