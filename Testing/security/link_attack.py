@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 import itertools
 from collections import Counter
 
@@ -16,6 +17,7 @@ from Testing.security.wire_police import WirePolice
 HOST = "127.0.0.1"
 MESSAGES_A_CONNECTION = 200
 PIECE = 8
+CONNECTIONS_PER_COLLECTION = 20
 SWALLOWED = 3
 """So many messages in a row that complete nothing are taken for the body of one before them."""
 PATIENCE_S = 120.0
@@ -71,6 +73,9 @@ class LinkAttack:
                 with contextlib.suppress(ConnectionError):
                     await writer.wait_closed()
             self._count_in(messages)
+            if self.connections % CONNECTIONS_PER_COLLECTION == 0:
+                # Nothing is collected by itself within a test, and streams are circles.
+                gc.collect(1)
 
     async def _send(
         self, messages: _Messages, reading: asyncio.Task, writer: asyncio.StreamWriter
