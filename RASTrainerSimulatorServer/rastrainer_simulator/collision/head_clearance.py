@@ -91,19 +91,28 @@ class HeadClearance:
     def are_links_off(self, posed: PosedArm, clearance: float) -> bool:
         """Tell whether every link is at least so far, m, from the head."""
         rows = range(self._arm.link_count)
-        away = np.linalg.norm(posed.middles[: len(rows)] - self._middle, axis=1)
-        rough = (away - self._arm.reach[: len(rows)] - self._head.radius).tolist()
-        bounds = list(map(max, rough, self._bounds(posed, rows)))
+        bounds = list(map(max, self._off_sphere(posed), self._bounds(posed, rows)))
         return self._nearest(posed, rows, bounds, clearance)[0] is None
 
     def _bounds(self, posed: PosedArm, rows: Sequence[int]) -> list[float]:
         """Return below what the clearance of each of these capsules cannot be, m."""
-        bounds = []
+        bounds: list[float] = []
+        off_sphere: list[float] = []
         for row in rows:
-            start, end = posed.axis(row)
             known, start_then, end_then = self._known[row]
+            if known == -math.inf:
+                # Not asked about since the head was put here: its sphere tells what is far.
+                off_sphere = off_sphere or self._off_sphere(posed)
+                bounds.append(off_sphere[row])
+                continue
+            start, end = posed.axis(row)
             bounds.append(known - max(dist(start, start_then), dist(end, end_then)))
         return bounds
+
+    def _off_sphere(self, posed: PosedArm) -> list[float]:
+        """Return how far each capsule is at least from the sphere about the head, m."""
+        away = np.linalg.norm(posed.middles - self._middle, axis=1)
+        return (away - self._arm.reach - self._head.radius).tolist()
 
     def _nearest(
         self, posed: PosedArm, rows: Sequence[int], bounds: list[float], limit: float
