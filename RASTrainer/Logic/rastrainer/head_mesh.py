@@ -52,11 +52,20 @@ class HeadMesh:
     @cached_property
     def edges(self) -> np.ndarray:
         """(e, 2) int: every edge once, the lower vertex first."""
-        low, high = np.sort(self.sides, axis=1).T.astype(np.int64)
-        # As one number an edge, which sorts many times faster than a row.
-        keys = np.unique(low * len(self.vertices) + high)
-        edges = np.stack(np.divmod(keys, len(self.vertices)), axis=1)
+        edges = np.stack(np.divmod(np.unique(self._side_keys), len(self.vertices)), axis=1)
         return edges.astype(self.triangles.dtype)
+
+    @property
+    def side_uses(self) -> np.ndarray:
+        """(m, 3) int: how many triangles share each side of each triangle."""
+        _, places, uses = np.unique(self._side_keys, return_inverse=True, return_counts=True)
+        return uses[places].reshape(3, -1).T
+
+    @property
+    def _side_keys(self) -> np.ndarray:
+        """(3 m,) int: each side as one number, which sorts many times faster than a row."""
+        low, high = np.sort(self.sides, axis=1).T.astype(np.int64)
+        return low * len(self.vertices) + high
 
     @cached_property
     def base(self) -> np.ndarray:

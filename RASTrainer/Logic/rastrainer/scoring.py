@@ -130,6 +130,11 @@ def task_reference(task: str) -> ScoreReference:
         ) from None
 
 
+def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
+    """Tell whether a trial reaches the mark with an acceptable expected target error."""
+    return acceptable and score >= pass_mark
+
+
 def score_trial(
     completion_time_s: float, expected_tre_mm: float, reference: ScoreReference
 ) -> TrialScore:

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from rastrainer.ctps import Trial
 from rastrainer.experiment.study_progress import StudyProgress
+from rastrainer.experiment.study_protocol import pass_mark_of
 from rastrainer.feedback.progress_words import progress_of
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario import Scenario
-from rastrainer.scoring import PASS_MARK
 from rastrainer.study import Study
 from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
 from rastrainer.trial_record import TrialRecord
@@ -55,7 +55,6 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
     record = analysis.record
     if record.task == TRIAL_RUN or study.trial(record.trial_id).score is None:
         return analysis
-    protocol = StudyProgress(study).protocol()
-    pass_mark = PASS_MARK if protocol is None else protocol.pass_mark
+    pass_mark = pass_mark_of(StudyProgress(study).protocol())
     progress = progress_of(study.past_trials(record.trainee), record.trial_id, pass_mark)
     return replace(analysis, feedback=replace(analysis.feedback, progress=progress))

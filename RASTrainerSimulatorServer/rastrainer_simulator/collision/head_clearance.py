@@ -91,13 +91,15 @@ class HeadClearance:
     def are_links_off(self, posed: PosedArm, clearance: float) -> bool:
         """Tell whether every link is at least so far, m, from the head."""
         rows = range(self._arm.link_count)
-        bounds = list(map(max, self._off_sphere(posed), self._bounds(posed, rows)))
+        off_sphere = self._off_sphere(posed)
+        bounds = list(map(max, off_sphere, self._bounds(posed, rows, off_sphere)))
         return self._nearest(posed, rows, bounds, clearance)[0] is None
 
-    def _bounds(self, posed: PosedArm, rows: Sequence[int]) -> list[float]:
+    def _bounds(
+        self, posed: PosedArm, rows: Sequence[int], off_sphere: Sequence[float] = ()
+    ) -> list[float]:
         """Return below what the clearance of each of these capsules cannot be, m."""
         bounds: list[float] = []
-        off_sphere: list[float] = []
         for row in rows:
             known, start_then, end_then = self._known[row]
             if known == -math.inf:

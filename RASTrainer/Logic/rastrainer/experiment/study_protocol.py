@@ -106,6 +106,11 @@ class StudyProtocol:
         }
 
 
+def pass_mark_of(protocol: StudyProtocol | None) -> float:
+    """Return the score that passes; that of free practice without a protocol."""
+    return PASS_MARK if protocol is None else protocol.pass_mark
+
+
 def read_study_protocol(path: Path | str) -> StudyProtocol:
     """Read a protocol file.
 

@@ -11,6 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.feedback.wording import Sentence, say
 from rastrainer.learning.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.learning.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
+from rastrainer.scoring import passes
 from rastrainer.study_values import PastTrial
 
 ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4
@@ -63,28 +64,24 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> S
     in_mode = [other for other in until if other.mode == trial.mode]
     same = [other for other in in_mode if other.task == trial.task]
     scores = tuple(other.score for other in same)
-    failures = [not _passes(other, pass_mark) for other in in_mode]
+    failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
     competence = competence_of(failures)
     times = [other.completion_time_s for other in same]
     curve = fit_learning_curve(times) if len(times) >= FEWEST_TRIALS else None
     is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
-    passes = _passes(trial, pass_mark)
+    has_passed = passes(trial.score, trial.acceptable, pass_mark)
     sentences = (
         _about_scores(scores, is_best),
         _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )
-    return Standing(scores, pass_mark, is_best, passes, competence, curve, sentences)
+    return Standing(scores, pass_mark, is_best, has_passed, competence, curve, sentences)
 
 
 def competence_of(failures: Sequence[bool]) -> LcCusum:
     """Return the LC-CUSUM of a trainee in one mode; `failures` tells of each trial, in order."""
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
-
-
-def _passes(trial: PastTrial, pass_mark: float) -> bool:
-    return trial.acceptable and trial.score >= pass_mark
 
 
 def _about_scores(scores: Sequence[float], is_best: bool) -> Sentence:

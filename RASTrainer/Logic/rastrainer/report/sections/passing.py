@@ -6,34 +6,40 @@ from collections import defaultdict
 
 import numpy as np
 
+from rastrainer.experiment.study_protocol import pass_mark_of
 from rastrainer.feedback.progress_words import (
     ADEQUATE_FAILURES,
     INADEQUATE_FAILURES,
     competence_of,
 )
+from rastrainer.learning.lc_cusum import LcCusum
 from rastrainer.number_text import percent
 from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
 from rastrainer.report.markup import figure, paragraph, section, table
 from rastrainer.report.outcomes import mode_title
 from rastrainer.report.study_data import StudyData
-from rastrainer.scoring import PASS_MARK
+from rastrainer.scoring import passes
 
 HEADER = ["mode", "trials", "passed", "trainees competent", "median trial that showed it"]
 
 
 def passing(data: StudyData) -> str:
     """Return the section; "" where no trial has a score."""
-    mark = PASS_MARK if data.protocol is None else data.protocol.pass_mark
+    mark = pass_mark_of(data.protocol)
     found = {mode: _failures(data, mode, mark) for mode in data.modes}
     found = {mode: failures for mode, failures in found.items() if failures}
+    competence = {
+        mode: {trainee: competence_of(own) for trainee, own in failures.items()}
+        for mode, failures in found.items()
+    }
     if not found:
         return ""
     return section(
         "Pass mark",
-        table([HEADER], [_row(mode, failures) for mode, failures in found.items()]),
+        table([HEADER], [_row(mode, found[mode], competence[mode]) for mode in found]),
         figure(
-            [_chart(data, mode, failures) for mode, failures in found.items()],
+            [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
         ),
         paragraph(_words(data, mark), "small"),
@@ -45,14 +51,14 @@ def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
     failures: dict[str, list[bool]] = defaultdict(list)
     for trial in sorted(data.of_mode(mode), key=lambda trial: trial.number):
         if "score" in trial.values:
-            passed = trial.acceptable and trial.values["score"] >= mark
+            passed = passes(trial.values["score"], trial.acceptable, mark)
             failures[trial.trainee].append(not passed)
     return failures
 
 
-def _row(mode: str, failures: dict[str, list[bool]]) -> list[str]:
+def _row(mode: str, failures: dict[str, list[bool]], charts: dict[str, LcCusum]) -> list[str]:
     trials = [failed for own in failures.values() for failed in own]
-    shown_at = [competence_of(own).competent_at for own in failures.values()]
+    shown_at = [chart.competent_at for chart in charts.values()]
     competent = [number for number in shown_at if number is not None]
     passed = len(trials) - sum(trials)
     return [
@@ -64,14 +70,14 @@ def _row(mode: str, failures: dict[str, list[bool]]) -> list[str]:
     ]
 
 
-def _chart(data: StudyData, mode: str, failures: dict[str, list[bool]]) -> str:
-    charts = {trainee: competence_of(own) for trainee, own in failures.items()}
+def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
     points = {
         trainee: [(float(number), score) for number, score in enumerate(chart.scores, start=1)]
         for trainee, chart in charts.items()
     }
-    limit = max(chart.limit for chart in charts.values())
-    last = max(len(own) for own in failures.values())
+    # All have the same limit.
+    limit = next(iter(charts.values())).limit
+    last = max(len(chart.scores) for chart in charts.values())
     return learning_curves(
         f"{mode_title(mode).split(' ')[0]}: LC-CUSUM",
         mode_color(mode, data.modes.index(mode)),

@@ -69,11 +69,7 @@ def decimated(surface: vtk.vtkPolyData, triangle_count: int, above_mm: float) ->
 
 def _without_fins(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
     """Remove triangles that hang on an edge which two others share: decimation may leave some."""
-    sides = np.sort(mesh_of(surface).triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
-    _, places, uses = np.unique(
-        sides.reshape(-1, 2), axis=0, return_inverse=True, return_counts=True
-    )
-    open_sides = (uses[places.reshape(-1, 3)] == 1).sum(axis=1)
+    open_sides = (mesh_of(surface).side_uses == 1).sum(axis=1)
     surface.BuildCells()
     for fin in np.flatnonzero(open_sides == 2):
         surface.DeleteCell(fin)
