@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer.finite_json import DEEPEST, decode_finite_json
+from rastrainer.finite_json import DEEPEST, MESSAGE_VALUES, decode_finite_json, decode_message
 
 
 def nested(levels: int, opening: str, closing: str) -> str:
@@ -29,6 +29,13 @@ def test_json_beyond_what_the_interpreter_takes_is_refused_in_the_same_words(lev
 def test_what_is_wide_or_a_text_of_brackets_is_not_deep():
     assert len(decode_finite_json("[" + ",".join(["[{}]"] * 1000) + "]")) == 1000
     assert decode_finite_json('"' + "[" * 1000 + '"') == "[" * 1000
+
+
+def test_a_message_of_very_many_values_is_refused_before_it_is_decoded():
+    most = f"[{','.join('1' * MESSAGE_VALUES)}]"
+    assert len(decode_message(most)) == MESSAGE_VALUES
+    with pytest.raises(ValueError, match="too many values"):
+        decode_message(most.replace("1", "1,1", 1))
 
 
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import default_rng
 
 from rastrainer import transforms
 
@@ -41,7 +42,7 @@ def perturbed_pose(
         limits: how far the pose may be from it.
         seed: 0 or above.
     """
-    random = np.random.default_rng(seed)
+    random = default_rng(seed)
     shift = random.uniform(-limits.translation_mm, limits.translation_mm, 3)
     yaw = np.radians(random.uniform(-limits.yaw_deg, limits.yaw_deg))
     toward, tilt = random.uniform([0.0, 0.0], [2.0 * np.pi, np.radians(limits.tilt_deg)])

@@ -14,7 +14,7 @@ from enum import Enum
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.finite_json import MESSAGE_VALUES, decode_message
 
 PROTOCOL_VERSION = 1
 DEFAULT_HOST = "127.0.0.1"
@@ -306,12 +306,16 @@ def decode_json_object(body: str) -> dict[str, Any]:
     """Return the JSON object that a command's body holds; an empty body is an empty object.
 
     Raises:
-        InputError: not JSON, not an object, too deeply nested, or with a number that is not finite.
+        InputError: not JSON, not an object, too deeply nested, of too many values, or with a number
+            that is not finite.
     """
     try:
-        value = decode_finite_json(body or "{}")
+        value = decode_message(body or "{}")
     except ValueError:
         value = None
     if not isinstance(value, dict):
-        raise InputError("The command's body must be one JSON object with finite numbers.")
+        raise InputError(
+            "The command's body must be one JSON object with finite numbers, "
+            f"of at most {MESSAGE_VALUES} values."
+        )
     return value

@@ -25,6 +25,7 @@ from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.stamps import file_stamp, iso
 from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.setup import load_setup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import SimulationState, StartingPoint, StepResult
@@ -87,8 +88,10 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
         # The next trial needs a simulation that is not in the middle of one.
         _simulation.cache_clear()
         return PlayedTrial(job, None)
+    watch.record.measured()
     entries = _dated(watch.entries.taken(), job.started)
-    record = TrialRecord.from_json(watch.record_entry(entries)["record"])
+    registered = next(entry for entry in entries if entry["kind"] == "registered")
+    record = TrialRecord.from_json(registered["record"])
     if settings.records is not None:
         _write_journal(settings.records, entries, job.started)
     scenario = simulation.setup.scenario
@@ -105,6 +108,7 @@ class _Watch:
     def __init__(self, step_s: float) -> None:
         self._step_s = step_s
         self.entries: TrialEntries | None = None
+        self.record: UnmeasuredRecord | None = None
 
     def __call__(
         self,
@@ -115,11 +119,7 @@ class _Watch:
     ) -> None:
         if self.entries is None:
             self.entries = TrialEntries.begun(simulation, before, result, self._step_s)
-        self.entries.add(simulation, operator_input, result)
-
-    def record_entry(self, entries: list[dict[str, Any]]) -> dict[str, Any]:
-        """Return the entry that holds the finished trial's record."""
-        return next(entry for entry in reversed(entries) if entry["kind"] == "registered")
+        self.record = self.entries.add(simulation, operator_input, result) or self.record
 
 
 def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, Any]]:

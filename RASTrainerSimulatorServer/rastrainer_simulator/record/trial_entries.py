@@ -16,6 +16,7 @@ from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.operator_input import Command, OperatorInput
 from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
 from rastrainer_simulator.record.stamps import stamp
+from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.state import Event, EventKind, SimulationState, StartingPoint, StepResult
 
@@ -127,8 +128,11 @@ class TrialEntries:
 
     def add(
         self, simulation: Simulation, operator_input: OperatorInput, result: StepResult
-    ) -> TrialRecord | None:
-        """Take note of one tick; return the trial's record when it has just been registered."""
+    ) -> UnmeasuredRecord | None:
+        """Take note of one tick; return the trial's record when it has just been registered.
+
+        It has to be measured before the entries are written.
+        """
         state = result.state
         sticks = (operator_input.translation, operator_input.rotation, operator_input.fine)
         self._trajectory.update(_Q.pack(*state.q))
@@ -151,8 +155,8 @@ class TrialEntries:
                 entry["truth"] = simulation.truth.to_json()
             self._append(entry)
             if entry["kind"] == "registered":
-                record = self._record(state)
-                entry["record"] = record.to_json()
+                trajectory = self._recording.trajectory()
+                record = UnmeasuredRecord(self._record(state), trajectory, entry)
         if is_sampled:
             self._append(_sample_entry(times, state))
         return record
@@ -220,7 +224,6 @@ class TrialEntries:
             rejected_touches=training.rejected,
             undone_touches=training.undone,
             versions=self.versions,
-            motion=self.motion(),
             display=self._display.summary(),
         )
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.journal_reader import JournalReading
 from rastrainer.protocol import CommandName, Phase
-from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.journal import Journal
@@ -17,6 +16,8 @@ from rastrainer_simulator.record.stamps import file_stamp, stamp
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_order import newest_journal, number_of
+from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
+from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
 
@@ -60,6 +61,7 @@ class TrialRecorder:
         self._waiting: tuple[JournalReading, float] | None = None
         newest = newest_journal(folder)
         self._number = 0 if newest is None else number_of(newest)
+        versions()  # Looked up now, and not in the tick in which the first trial begins.
 
     def take_up(self, simulation: Simulation, reading: JournalReading) -> None:
         """Go on with the journal of the trial that the simulation has just taken up.
@@ -148,11 +150,12 @@ class TrialRecorder:
         future = self._writer.submit(self._journal.write, self._entries.taken(), sync=is_awaited)
         return Written(future, is_awaited)
 
-    def _register(self, simulation: Simulation, record: TrialRecord) -> Written:
-        trial = ArchivedTrial(record, simulation.truth, simulation.trial_seed)
+    def _register(self, simulation: Simulation, record: UnmeasuredRecord) -> Written:
+        truth, seed = simulation.truth, simulation.trial_seed
         journal, entries = self._journal, self._entries.taken()
 
         def write() -> None:
+            trial = ArchivedTrial(record.measured(), truth, seed)
             journal.write(entries, sync=True)
             journal.close()
             self._archive.add(trial, journal)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.finite_json import MESSAGE_VALUES, decode_message
 from rastrainer.protocol import number, numbers, one_of, text, whole_number
 
 PROTOCOL = 1
@@ -103,11 +103,12 @@ def check_message(content: str) -> Received:
 
 def _json_object(content: str) -> dict[str, Any]:
     try:
-        values = decode_finite_json(content)
+        values = decode_message(content)
     except ValueError:
         values = None
     if not isinstance(values, dict):
-        raise InputError("A message must be one JSON object with finite numbers.")
+        raise InputError("A message must be one JSON object with finite numbers, of at most "
+            f"{MESSAGE_VALUES} values.")
     return values
 
 

@@ -79,7 +79,12 @@ def test_wrong_command_is_answered_with_what_would_be_right(client, name, argume
 
 
 @pytest.mark.parametrize(
-    "body", ["[]", "{", "nonsense", '{"velocityMmS": NaN}', "[" * 60_000, '{"x": 1e999}']
+    "body",
+    [
+        *("[]", "{", "nonsense", '{"velocityMmS": NaN}', "[" * 60_000, '{"x": 1e999}'),
+        json.dumps({str(number): number for number in range(1001)}),
+    ],
+    ids=lambda body: body[:20],
 )
 def test_body_that_is_no_json_object_is_refused(link_server, body):
     command = pack(Message("command", Command(77, "Jog", body)))

@@ -42,7 +42,8 @@ class Meanwhile:
             self._take(simulation, given, simulation.step(DT, given))
 
     def _take(self, simulation, operator_input, result):
-        self.record = self._entries.add(simulation, operator_input, result) or self.record
+        record = self._entries.add(simulation, operator_input, result)
+        self.record = self.record if record is None else record.measured()
 
 
 @pytest.fixture(scope="module")

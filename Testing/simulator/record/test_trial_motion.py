@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -13,6 +14,7 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.scripted_trainee import Skill
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.cli import main
+from rastrainer_simulator.record import unmeasured_record
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.simulation import Simulation
@@ -22,16 +24,35 @@ DT = 0.02
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)
 
 
-@pytest.fixture(scope="module")
-def journal(setup, tmp_path_factory):
-    """Return the reading of a whole trial's journal."""
-    folder = tmp_path_factory.mktemp("records")
+def play(setup, folder):
+    """Play and record a whole trial; return the reading of its journal."""
     simulation = Simulation(setup, 5)
     with ThreadPoolExecutor(1) as writer:
         recorder = TrialRecorder(folder, TrialArchive(folder), writer, DT)
         play_virtual_trial(simulation, "task-1", 3, BRISK, DT, recorder.record)
     (path,) = folder.glob("*.journal")
     return read_journal(path)
+
+
+@pytest.fixture(scope="module")
+def journal(setup, tmp_path_factory):
+    """Return the reading of a whole trial's journal."""
+    return play(setup, tmp_path_factory.mktemp("records"))
+
+
+def test_the_tick_of_register_leaves_the_metrics_to_the_journals_writer(
+    setup, tmp_path, monkeypatch
+):
+    measured_in = []
+
+    def measure(trajectory):
+        measured_in.append(threading.current_thread())
+        return trial_motion(trajectory)
+
+    monkeypatch.setattr(unmeasured_record, "trial_motion", measure)
+    play(setup, tmp_path)
+    assert len(measured_in) == 1
+    assert measured_in[0] is not threading.current_thread()
 
 
 def test_the_record_holds_the_metrics_that_the_journal_gives_to_the_last_bit(journal):

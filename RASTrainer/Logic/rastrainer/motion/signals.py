@@ -7,6 +7,7 @@ from −5.3 to −15.
 from __future__ import annotations
 
 import numpy as np
+from numpy.fft import irfft, rfft, rfftfreq
 
 from rastrainer.errors import InputError
 
@@ -59,10 +60,10 @@ def low_pass(values: np.ndarray, rate_hz: float, cutoff_hz: float = CUTOFF_HZ) -
     padded = np.concatenate([before, values, after])
     # A straight line from end to end is taken off so that the spectrum sees no jump between them.
     line = np.linspace(padded[0], padded[-1], len(padded))
-    spectrum = np.fft.rfft(padded - line, axis=0)
-    frequencies = np.fft.rfftfreq(len(padded), 1 / rate_hz)
+    spectrum = rfft(padded - line, axis=0)
+    frequencies = rfftfreq(len(padded), 1 / rate_hz)
     gain = 1 / (1 + (frequencies / cutoff_hz) ** 4)
-    filtered = np.fft.irfft(spectrum * gain[:, None], len(padded), axis=0) + line
+    filtered = irfft(spectrum * gain[:, None], len(padded), axis=0) + line
     return filtered[pad : pad + len(values)]
 
 

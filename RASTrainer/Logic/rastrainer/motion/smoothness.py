@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.fft import rfft, rfftfreq
 
 from rastrainer.errors import InputError
 
@@ -27,9 +28,9 @@ def sparc(speed: np.ndarray, rate_hz: float) -> float:
     """
     speed = _checked(speed)
     length = 2 ** (int(np.ceil(np.log2(len(speed)))) + SPARC_PAD_LEVEL)
-    magnitude = np.abs(np.fft.rfft(speed, length))
+    magnitude = np.abs(rfft(speed, length))
     magnitude /= magnitude.max()
-    frequency = np.fft.rfftfreq(length, 1 / rate_hz)
+    frequency = rfftfreq(length, 1 / rate_hz)
     kept = np.flatnonzero((frequency <= SPARC_CUTOFF_HZ) & (magnitude >= SPARC_THRESHOLD))
     band = slice(kept[0], kept[-1] + 1)
     along = np.diff(frequency[band]) / (frequency[kept[-1]] - frequency[kept[0]])

@@ -1,0 +1,35 @@
+"""What the first trial needs is there before it begins: a tick has no time to load anything."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+PLAY_THE_FIRST_TRIAL = """
+import json, sys, tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from rastrainer.scripted_trainee import Skill
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.setup import load_setup
+from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.virtual_trial import play_virtual_trial
+
+BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=3)
+with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(1) as writer:
+    simulation = Simulation(load_setup(), 1)
+    recorder = TrialRecorder(Path(folder), TrialArchive(Path(folder)), writer, 0.05)
+    before = set(sys.modules)
+    play_virtual_trial(simulation, "task-1", 1, BRISK, 0.05, recorder.record)
+    writer.submit(int).result()
+    print(json.dumps(sorted(set(sys.modules) - before)))
+"""
+
+
+def test_no_module_is_loaded_while_the_first_trial_is_played_and_recorded():
+    played = subprocess.run(
+        [sys.executable, "-c", PLAY_THE_FIRST_TRIAL], capture_output=True, text=True, check=True
+    )
+    assert json.loads(played.stdout) == []
