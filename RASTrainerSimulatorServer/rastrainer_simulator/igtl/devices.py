@@ -84,8 +84,8 @@ def heartbeat(details: Mapping[str, Any]) -> Message:
 
 def _transform(pose: np.ndarray) -> Transform:
     """Return a (4, 4) float pose (m) as a transform (mm)."""
-    x, y, z = (MM_PER_M * pose[:3, 3]).tolist()
-    return Transform((*pose[:3, :3].T.ravel().tolist(), x, y, z))
+    *axes, x, y, z = pose[:3].T.ravel().tolist()
+    return Transform((*axes, MM_PER_M * x, MM_PER_M * y, MM_PER_M * z))
 
 
 def _rounded(value: float, digits: int) -> float | None:

@@ -107,8 +107,10 @@ def _json_object(content: str) -> dict[str, Any]:
     except ValueError:
         values = None
     if not isinstance(values, dict):
-        raise InputError("A message must be one JSON object with finite numbers, of at most "
-            f"{MESSAGE_VALUES} values.")
+        raise InputError(
+            "A message must be one JSON object with finite numbers, of at most "
+            f"{MESSAGE_VALUES} values."
+        )
     return values
 
 

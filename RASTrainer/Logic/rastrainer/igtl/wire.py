@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from rastrainer.errors import InputError
@@ -67,5 +66,6 @@ def check_float32(values: Sequence[float], what: str) -> None:
         InputError: NaN, infinite or beyond what 32 bits hold.
     """
     for value in values:
-        if not (math.isfinite(value) and -_FLOAT32_MAX <= value <= _FLOAT32_MAX):
+        # NaN compares as false, too.
+        if not -_FLOAT32_MAX <= value <= _FLOAT32_MAX:
             raise InputError(f"{what} must be finite 32-bit numbers.")

@@ -59,8 +59,8 @@ def closed_by_ball(mask: np.ndarray, radius: float) -> np.ndarray:
     margin = int(np.ceil(radius)) + 1
     padded = np.pad(mask, [(margin, margin), (margin, margin), (0, margin)])
     padded = np.pad(padded, [(0, 0), (0, 0), (margin, 0)], mode="edge")
-    grown = _squared_distances(padded, radius) <= radius**2
-    closed = _squared_distances(~grown, radius) > radius**2
+    grown = squared_distances(padded, radius) <= radius**2
+    closed = squared_distances(~grown, radius) > radius**2
     return closed[margin:-margin, margin:-margin, margin:-margin] | mask
 
 
@@ -71,10 +71,10 @@ def depth_inside(mask: np.ndarray, most: float) -> np.ndarray:
     """
     margin = int(np.ceil(most))
     padded = np.pad(mask, [(0, 0), (0, 0), (margin, 0)], mode="edge")
-    return np.sqrt(_squared_distances(~padded, most)[:, :, margin:].astype(np.float32))
+    return np.sqrt(squared_distances(~padded, most)[:, :, margin:].astype(np.float32))
 
 
-def _squared_distances(mask: np.ndarray, most: float) -> np.ndarray:
+def squared_distances(mask: np.ndarray, most: float) -> np.ndarray:
     """Return the squared distance of each voxel to the mask, uint16, exact up to `most` voxels.
 
     Farther voxels have more than `most` squared. Axis by axis, so many times faster than

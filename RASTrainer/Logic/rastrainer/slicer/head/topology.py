@@ -13,6 +13,8 @@ from functools import lru_cache
 import numpy as np
 from scipy import ndimage
 
+from rastrainer.slicer.head import mask
+
 _OFFSETS = [
     (x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) != (0, 0, 0)
 ]
@@ -35,6 +37,8 @@ def _touching(offset, reach: int) -> int:
 _FACES = _bits(lambda offset: sum(map(abs, offset)) == 1)
 _FACES_AND_EDGES = _bits(lambda offset: sum(map(abs, offset)) <= 2)
 _ALL = (1 << 26) - 1
+# Voxels. Tunnels are rarely wider than the first, and the time grows with it.
+_REACHES = (8, 16, 32, 64)
 _BY_FACE = [_touching(offset, 1) for offset in _OFFSETS]
 _BY_CORNER = [_touching(offset, 3) for offset in _OFFSETS]
 
@@ -80,12 +84,21 @@ def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     keep = np.pad(np.pad(wanted, sides), below, mode="edge")
     keep[:, :, 0] = True
     voxels = bytearray(padded.tobytes())
-    distance = ndimage.distance_transform_edt(~keep)
     candidates = padded & ~keep
+    distance = _squared_distances(keep, candidates)
     border = candidates & ndimage.binary_dilation(~padded)
     _remove_simple(voxels, candidates.ravel(), distance.ravel(), border, _steps(padded.shape))
     result = np.frombuffer(voxels, dtype=bool).reshape(padded.shape)
     return result[1:-1, 1:-1, 1:-1].copy()
+
+
+def _squared_distances(keep: np.ndarray, candidates: np.ndarray) -> np.ndarray:
+    """Return squared distances to what is kept, exact for all candidates but the very far."""
+    for reach in _REACHES:
+        squared = mask.squared_distances(keep, reach)
+        if squared[candidates].max(initial=0) <= reach**2:
+            break
+    return squared
 
 
 def _steps(shape: tuple[int, ...]) -> list[int]:
@@ -102,7 +115,7 @@ def _remove_simple(
     steps: list[int],
 ) -> None:
     waiting = set(np.flatnonzero(border).tolist())
-    queue = [(-float(distance[index]), index) for index in waiting]
+    queue = [(-int(distance[index]), index) for index in waiting]
     heapq.heapify(queue)
     while queue:
         _, index = heapq.heappop(queue)
@@ -114,4 +127,4 @@ def _remove_simple(
         for other in around:
             if voxels[other] and candidates[other] and other not in waiting:
                 waiting.add(other)
-                heapq.heappush(queue, (-float(distance[other]), other))
+                heapq.heappush(queue, (-int(distance[other]), other))
