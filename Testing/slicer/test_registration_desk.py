@@ -85,8 +85,9 @@ def test_touches_are_registered_while_the_trial_runs_from_the_third_on(table):
     assert AFFINE in table.desk.comparison.fits
 
 
-def test_nothing_is_computed_again_while_nothing_changes(table):
-    table.touch()
+@pytest.mark.parametrize("touches", [0, 2, 15])
+def test_nothing_is_computed_again_while_nothing_changes(table, touches):
+    table.touch(table.touched[:touches])
     count = len(table.changes)
     for _ in range(5):
         table.desk.process()

@@ -157,9 +157,9 @@ class RegistrationDesk:
         seen = snapshot(moving, localPoints), snapshot(fixed), snapshot(target)
         if seen == self._seen:
             return
-        self._seen = seen
         if moving is None or moving.GetNumberOfControlPoints() == 0:
             self._forgetChoices()
+        self._seen = seen
         self._compute()
 
     def _compute(self) -> None:
