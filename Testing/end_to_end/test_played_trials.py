@@ -75,7 +75,7 @@ def compared(report: ReplayReport) -> tuple[int, int]:
     return report.compared["touch"], report.ticks
 
 
-@pytest.fixture(scope="module", params=[24, pytest.param(100, marks=pytest.mark.soak)])
+@pytest.fixture(scope="module", params=[12, pytest.param(100, marks=pytest.mark.soak)])
 def played(request) -> list[Played]:
     seeds = list(range(request.param))
     with multiprocessing.get_context("spawn").Pool(2) as pool:

@@ -96,7 +96,8 @@ NO_FILE_OF_A_VOLUME = {
     "no file": (lambda folder: folder / "none.nii", "none.nii does not exist"),
 }
 BROKEN = NO_FILE_OF_A_VOLUME | {
-    name: (nrrd(volume), sentence) for name, (volume, sentence) in (UNUSABLE | HEADLESS).items()
+    name: (nrrd(volume), sentence)
+    for name, (volume, sentence) in (UNUSABLE | {"a block": HEADLESS["a block"]}).items()
 }
 
 

@@ -41,7 +41,11 @@ def nearest_on_mesh(mesh: HeadMesh, point: np.ndarray) -> NearestPoint:
 
 def outward_normal(mesh: HeadMesh, point: np.ndarray) -> np.ndarray:
     """Return the outward unit normal (3,) of the surface where it is nearest to `point`."""
-    nearest = nearest_on_mesh(mesh, point)
+    return normal_at(mesh, nearest_on_mesh(mesh, point))
+
+
+def normal_at(mesh: HeadMesh, nearest: NearestPoint) -> np.ndarray:
+    """Return the outward unit normal (3,) at a place of the surface."""
     normal = nearest.weights @ mesh.vertex_normals[mesh.triangles[nearest.triangle]]
     return normal / np.linalg.norm(normal)
 

@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration import Registration
-from rastrainer.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.surface_queries import nearest_on_mesh, normal_at
 
 SAME_HEAD_MM = 3.0
 """Fiducials farther from the surface do not lie on this head."""
@@ -59,7 +59,10 @@ class SkinNormals:
     def _normal(self, point: np.ndarray) -> np.ndarray | None:
         key = point.tobytes()
         if key not in self._known:
-            isOn = self._mesh is not None
-            isOn = isOn and nearest_on_mesh(self._mesh, point).distance <= SAME_HEAD_MM
-            self._known[key] = outward_normal(self._mesh, point) if isOn else None
+            self._known[key] = self._mesh and _normalOn(self._mesh, point)
         return self._known[key]
+
+
+def _normalOn(mesh: HeadMesh, point: np.ndarray) -> np.ndarray | None:
+    nearest = nearest_on_mesh(mesh, point)
+    return normal_at(mesh, nearest) if nearest.distance <= SAME_HEAD_MM else None
