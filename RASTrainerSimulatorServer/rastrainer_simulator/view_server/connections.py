@@ -37,7 +37,7 @@ class Connections:
         """Allow `most` connections at once, each of which asks for something within that time."""
         self._most = most
         self._first_request_s = first_request_s
-        self._silent: set[asyncio.BaseProtocol] = set()
+        self._silent: dict[asyncio.BaseProtocol, asyncio.TimerHandle] = {}
         self._paired: set[asyncio.BaseProtocol] = set()
         self._sent_away: set[asyncio.BaseProtocol] = set()
         self.server: web.Server | None = None
@@ -48,14 +48,17 @@ class Connections:
         if self.server is None or not self._has_room():
             return _Refused()
         protocol = self.server()
-        self._silent.add(protocol)
-        loop = asyncio.get_running_loop()
-        loop.call_later(self._first_request_s, self._end_if_silent, protocol)
+        self._silent[protocol] = asyncio.get_running_loop().call_later(
+            self._first_request_s, self._end_if_silent, protocol
+        )
         return protocol
 
     def note(self, request: web.BaseRequest) -> None:
         """Take note that a connection has asked for something."""
-        self._silent.discard(request.protocol)
+        timer = self._silent.pop(request.protocol, None)
+        if timer is not None:
+            # It would keep a connection that has long ended in memory.
+            timer.cancel()
 
     def note_key(self, request: web.BaseRequest) -> None:
         """Take note that a connection has shown the key of a session."""
@@ -77,8 +80,7 @@ class Connections:
         return True
 
     def _end_if_silent(self, protocol: web.RequestHandler) -> None:
-        if protocol in self._silent:
-            self._silent.discard(protocol)
+        if self._silent.pop(protocol, None) is not None:
             protocol.force_close()
 
 
