@@ -168,7 +168,8 @@ class Recording:
 
 
 def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray) -> Interval:
-    part = clearance[(times >= interval.start_s) & (times <= interval.end_s)]
+    first = np.searchsorted(times, interval.start_s)
+    part = clearance[first : np.searchsorted(times, interval.end_s, side="right")]
     least = float(part.min()) if len(part) else np.inf
     return Interval(interval.start_s, interval.end_s, least)
 
