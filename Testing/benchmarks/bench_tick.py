@@ -23,7 +23,12 @@ from rastrainer_simulator.setup import SimulationSetup, load_setup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Motion
 from Testing.benchmarks.bare_loop import BareLoop
-from Testing.benchmarks.loop_health import Punctuality, punctuality, read_health
+from Testing.benchmarks.loop_health import (
+    Punctuality,
+    punctuality,
+    read_health,
+    undisturbed,
+)
 from Testing.benchmarks.process_cost import resident_mb
 from Testing.benchmarks.row import row, row_of_figures
 from Testing.end_to_end.simulator_process import SimulatorProcess
@@ -128,8 +133,10 @@ def _on_time(duration_s: float) -> list[dict]:
     Three clients watch and one of them jogs; one never reads, one sends garbage. Of `loop.on_time`
     median and p99 are of each second's share of ticks within 1 ms of their time, `success` is that
     of all ticks; `loop.on_time.bare` is the same of a loop beside it that does nothing: no loop
-    can do better there and then. `loop.memory` is how much the resident memory grew from the second
-    tenth of the time to the last: median against median, and the most against the most.
+    can do better there and then. `loop.on_time.undisturbed` is of the seconds in which that one was
+    never late: the machine took nothing away in them. `loop.memory` is how much the resident memory
+    grew from the second tenth of the time to the last: median against median, and the most against
+    the most.
     """
     bare = BareLoop()
     with (
@@ -140,19 +147,22 @@ def _on_time(duration_s: float) -> list[dict]:
         bare,
     ):
         jogger.send_command(CommandName.START_TASK, {"task": "task-1", "trainee": "bench"})
-        health, memory = [read_health(jogger)], []
+        health, memory = [(time.monotonic(), read_health(jogger))], []
         until = time.monotonic() + duration_s
         while time.monotonic() < until:
             _jog_for_a_second(jogger)
-            health.append(read_health(jogger))
+            beat = read_health(jogger)
+            health.append((time.monotonic(), beat))
             memory.append(resident_mb(simulator.pid))
-    told = punctuality(health)
+    told = punctuality([beat for _, beat in health])
+    still = undisturbed(health, bare.was_never_late)
     tenth = max(len(memory) // 10, 1)
     early, late = memory[tenth : 2 * tenth], memory[-tenth:]
     growth = (np.median(late) - np.median(early), max(late) - max(early))
     return [
         _share_row("loop.on_time", told),
         _share_row("loop.on_time.bare", bare.punctuality),
+        *([] if still is None else [_share_row("loop.on_time.undisturbed", still)]),
         row_of_figures("loop.memory", growth, "MB", n=len(memory)),
     ]
 

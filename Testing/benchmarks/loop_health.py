@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -46,3 +46,27 @@ def punctuality(healths: list[LoopStatistics]) -> Punctuality:
     shares = [100.0 * later.since(earlier).on_time for earlier, later in pairwise(beats)]
     whole = beats[-1].since(beats[0])
     return Punctuality(np.array(shares), whole.on_time, whole.ticks + whole.skipped)
+
+
+def undisturbed(
+    healths: Sequence[tuple[float, LoopStatistics]], was_never_late: Callable[[float, float], bool]
+) -> Punctuality | None:
+    """Return the punctuality in those seconds in which the machine took nothing away.
+
+    That is where the loop beside it, which does nothing, `was_never_late`. None where there is no
+    such second.
+
+    Args:
+        healths: each with the moment at which it was told (`time.monotonic`, s).
+        was_never_late: tells it of the time between two such moments.
+    """
+    parts = [
+        later.since(earlier)
+        for (start, earlier), (end, later) in pairwise(healths)
+        if later.ticks > earlier.ticks and was_never_late(start, end)
+    ]
+    if not parts:
+        return None
+    shares = np.array([100.0 * part.on_time for part in parts])
+    due = sum(part.ticks + part.skipped for part in parts)
+    return Punctuality(shares, sum(part.ticks - part.late for part in parts) / due, due)
