@@ -42,10 +42,8 @@ def read_health(client: Client) -> LoopStatistics:
 
 def punctuality(healths: list[LoopStatistics]) -> Punctuality:
     """Return what several heartbeats in a row tell; one that was read twice counts once."""
-    beats = list(dict.fromkeys(healths))
-    shares = [100.0 * later.since(earlier).on_time for earlier, later in pairwise(beats)]
-    whole = beats[-1].since(beats[0])
-    return Punctuality(np.array(shares), whole.on_time, whole.ticks + whole.skipped)
+    beats = dict.fromkeys(healths)
+    return _of_parts([later.since(earlier) for earlier, later in pairwise(beats)])
 
 
 def undisturbed(
@@ -65,8 +63,15 @@ def undisturbed(
         for (start, earlier), (end, later) in pairwise(healths)
         if later.ticks > earlier.ticks and was_never_late(start, end)
     ]
-    if not parts:
-        return None
+    return _of_parts(parts) if parts else None
+
+
+def _of_parts(parts: Sequence[LoopStatistics]) -> Punctuality:
+    """Return the punctuality of stretches of about a second each."""
+    whole = LoopStatistics(
+        sum(part.ticks for part in parts),
+        sum(part.late for part in parts),
+        sum(part.skipped for part in parts),
+    )
     shares = np.array([100.0 * part.on_time for part in parts])
-    due = sum(part.ticks + part.skipped for part in parts)
-    return Punctuality(shares, sum(part.ticks - part.late for part in parts) / due, due)
+    return Punctuality(shares, whole.on_time, whole.ticks + whole.skipped)

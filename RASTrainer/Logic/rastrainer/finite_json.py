@@ -6,6 +6,8 @@ import json
 import math
 from typing import Any
 
+from rastrainer.errors import InputError
+
 DEEPEST = 64
 """Lists and objects in one another; how many the interpreter takes differs with its version."""
 MESSAGE_VALUES = 1000
@@ -41,6 +43,25 @@ def decode_message(text: str) -> Any:
     if text.count(",") >= MESSAGE_VALUES:
         raise ValueError("too many values")
     return decode_finite_json(text)
+
+
+def decode_message_object(text: str, what: str) -> dict[str, Any]:
+    """Return the JSON object that a message holds; `what` names it in the sentence of the error.
+
+    Raises:
+        InputError: not JSON, not an object, too deeply nested, of too many values, or with a number
+            that is not finite.
+    """
+    try:
+        value = decode_message(text)
+    except ValueError:
+        value = None
+    if not isinstance(value, dict):
+        raise InputError(
+            f"{what} must be one JSON object with finite numbers, of at most {MESSAGE_VALUES} "
+            "values."
+        )
+    return value
 
 
 def _is_deeper_than(deepest: int, value: Any) -> bool:

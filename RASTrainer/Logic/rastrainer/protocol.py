@@ -14,7 +14,7 @@ from enum import Enum
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import MESSAGE_VALUES, decode_message
+from rastrainer.finite_json import decode_message_object
 
 PROTOCOL_VERSION = 1
 DEFAULT_HOST = "127.0.0.1"
@@ -306,16 +306,6 @@ def decode_json_object(body: str) -> dict[str, Any]:
     """Return the JSON object that a command's body holds; an empty body is an empty object.
 
     Raises:
-        InputError: not JSON, not an object, too deeply nested, of too many values, or with a number
-            that is not finite.
+        InputError: it holds none, as of `rastrainer.finite_json.decode_message_object`.
     """
-    try:
-        value = decode_message(body or "{}")
-    except ValueError:
-        value = None
-    if not isinstance(value, dict):
-        raise InputError(
-            "The command's body must be one JSON object with finite numbers, "
-            f"of at most {MESSAGE_VALUES} values."
-        )
-    return value
+    return decode_message_object(body or "{}", "The command's body")

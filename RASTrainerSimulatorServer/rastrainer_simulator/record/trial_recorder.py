@@ -17,7 +17,6 @@ from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, Tri
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_order import newest_journal, number_of
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
 
@@ -61,7 +60,6 @@ class TrialRecorder:
         self._waiting: tuple[JournalReading, float] | None = None
         newest = newest_journal(folder)
         self._number = 0 if newest is None else number_of(newest)
-        versions()  # Looked up now, and not in the tick in which the first trial begins.
 
     def take_up(self, simulation: Simulation, reading: JournalReading) -> None:
         """Go on with the journal of the trial that the simulation has just taken up.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 import platform
 from collections.abc import Mapping
 from importlib import metadata
@@ -22,15 +21,17 @@ def versions() -> dict[str, str]:
         "protocol": str(PROTOCOL_VERSION),
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
-        **_of_packages(),
+        **_OF_PACKAGES,
     }
 
 
-@functools.cache
 def _of_packages() -> Mapping[str, str]:
-    """Ask once: it looks through folders, and a trial begins within a tick."""
     found = {}
     for package in PACKAGES:
         with contextlib.suppress(metadata.PackageNotFoundError):
             found[package] = metadata.version(package)
     return MappingProxyType(found)
+
+
+# Looked up at once: that goes through folders, and a trial begins within a tick.
+_OF_PACKAGES = _of_packages()

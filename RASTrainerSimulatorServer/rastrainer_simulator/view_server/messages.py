@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import MESSAGE_VALUES, decode_message
+from rastrainer.finite_json import decode_message_object
 from rastrainer.protocol import number, numbers, one_of, text, whole_number
 
 PROTOCOL = 1
@@ -90,7 +90,7 @@ def check_message(content: str) -> Received:
     Raises:
         InputError: it is none of ours; the sentence says what would be right.
     """
-    values = _json_object(content)
+    values = decode_message_object(content, "A message")
     kind = values.pop("type", None)
     if not isinstance(kind, str) or kind not in MEMBERS:
         raise InputError(f"The type of a message must be one of {', '.join(MEMBERS)}.")
@@ -99,19 +99,6 @@ def check_message(content: str) -> Received:
         names = ", ".join(members) or "no further member"
         raise InputError(f"The message {kind} must have {names}.")
     return Received(kind, tuple(_checked(kind, name, values[name]) for name in members))
-
-
-def _json_object(content: str) -> dict[str, Any]:
-    try:
-        values = decode_message(content)
-    except ValueError:
-        values = None
-    if not isinstance(values, dict):
-        raise InputError(
-            "A message must be one JSON object with finite numbers, of at most "
-            f"{MESSAGE_VALUES} values."
-        )
-    return values
 
 
 def _checked(kind: str, name: str, value: Any) -> Any:
