@@ -8,6 +8,7 @@ import socket
 from collections.abc import Sequence
 from pathlib import Path
 
+from rastrainer.slicer.connection import CONNECTOR_NAME
 from Testing.end_to_end.module.installed_simulator import PACKAGE, write_program, write_wheel
 from Testing.end_to_end.module.player import Player
 from Testing.slicer.host.host import Host
@@ -222,7 +223,9 @@ class Story:
         def is_connected() -> bool:
             said = host.find("simulatorLogEdit").plainText
             assert "ended by itself" not in host.text("programText"), said
-            return host.text("stateText").startswith("Connected")
+            # Of a scene just cleared, the panel says at its next look that the connector is gone.
+            isInScene = host.scene.GetFirstNodeByName(CONNECTOR_NAME) is not None
+            return isInScene and host.text("stateText").startswith("Connected")
 
         host.wait_until(is_connected, "it is connected")
 
