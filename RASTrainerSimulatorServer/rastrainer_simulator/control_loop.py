@@ -21,6 +21,7 @@ from rastrainer_simulator.loop_statistics import LoopStatistics, Punctuality
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.pending_answers import PendingAnswers
 from rastrainer_simulator.precise_clock import precise_timing, sleep_until, stand_second_in_line
+from rastrainer_simulator.rate_limit import RateLimit
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.held_back import HeldBack
 from rastrainer_simulator.record.stamps import stamp
@@ -36,6 +37,8 @@ from rastrainer_simulator.training.true_error import Truth
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
 COMMANDS_PER_TICK = 16
+STARTS_PER_S = 2.0
+TOO_MANY_STARTS = "Trials are begun too often: wait a second, then begin it again."
 TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
@@ -75,6 +78,7 @@ class ControlLoop:
         rate_hz: float = 250.0,
         speed: float | None = 1.0,
         interrupted: JournalReading | None = None,
+        starts_per_s: float = STARTS_PER_S,
     ) -> None:
         """Prepare the loop; `start` sets it going.
 
@@ -85,6 +89,8 @@ class ControlLoop:
             speed: simulated seconds in a second; None runs as fast as the machine can.
             interrupted: journal of a trial that the simulation has taken up, which waits to be
                 gone on with.
+            starts_per_s: trials that may be begun in a simulated second, at whoever's wish: each
+                makes a journal and is as much work as several ticks.
         """
         self._simulation = simulation
         self._dt = 1.0 / rate_hz
@@ -106,6 +112,7 @@ class ControlLoop:
         self._arrived: deque[Command] = deque()
         self._displayed: deque[DisplayReport] = deque()
         self._answers = PendingAnswers()
+        self._starts = RateLimit(starts_per_s)
         self._refused: str | None = None
         self._successor: tuple[Simulation, int] | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()
@@ -250,10 +257,23 @@ class ControlLoop:
             if self._is_for_the_archive(command):
                 self._ask_archive(command)
                 continue
+            if self._is_start_too_many(command):
+                self._answers.give(Answer(command.ticket, False, TOO_MANY_STARTS))
+                continue
             commands.append(command)
             if changes_trial:
                 break
         return tuple(commands)
+
+    def _is_start_too_many(self, command: Command) -> bool:
+        """Return whether a command would begin a trial too soon after others."""
+        if command.name != CommandName.START_TASK or self._is_trial_open:
+            return False
+        return not self._starts.allows(self._state.sim_time)
+
+    @property
+    def _is_trial_open(self) -> bool:
+        return self._state.training.phase in (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
 
     def _is_for_the_archive(self, command: Command) -> bool:
         """Return whether a command is about a trial whose record is written, and not its score."""
@@ -285,8 +305,7 @@ class ControlLoop:
 
     def _succeed(self, simulation: Simulation, ticket: int) -> None:
         self._successor = None
-        phase = self._state.training.phase
-        if self._held.is_waiting or phase in (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE):
+        if self._held.is_waiting or self._is_trial_open:
             self._answers.give(Answer(ticket, False, TRIAL_IS_OPEN))
             return
         simulation.continue_from(StartingPoint.after(self._state))

@@ -1,4 +1,4 @@
-"""What clients and views may cost at one site: the file `limits.json` of the user's settings."""
+"""What clients, views and trials may cost at one site: `limits.json` of the user's settings."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.files import read_json
+from rastrainer_simulator.control_loop import STARTS_PER_S
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.view_server.limits import ViewLimits
 
@@ -21,16 +22,29 @@ T = TypeVar("T")
 
 
 @dataclasses.dataclass(frozen=True)
+class TrialLimits:
+    """Limits of the trials, whoever begins them.
+
+    Attributes:
+        starts_per_s: trials that may be begun in a simulated second; further ones are refused.
+    """
+
+    starts_per_s: float = STARTS_PER_S
+
+
+@dataclasses.dataclass(frozen=True)
 class ServerLimits:
     """What everyone at the server's ports may cost.
 
     Attributes:
         clients: those over OpenIGTLink.
         views: the window, browsers and headsets.
+        trials: those that any of these begin.
     """
 
     clients: Limits = dataclasses.field(default_factory=Limits)
     views: ViewLimits = dataclasses.field(default_factory=ViewLimits)
+    trials: TrialLimits = dataclasses.field(default_factory=TrialLimits)
 
 
 def read_limits(folder: Path) -> ServerLimits:

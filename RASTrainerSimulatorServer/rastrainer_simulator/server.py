@@ -114,7 +114,11 @@ class SimulatorServer:
             simulation, reading = taken_up or (self._make_simulation(options.scenario), None)
             self._goes_on = reading is not None
             self._control_loop = ControlLoop(
-                simulation, options.records, speed=options.speed, interrupted=reading
+                simulation,
+                options.records,
+                speed=options.speed,
+                interrupted=reading,
+                starts_per_s=self._limits.trials.starts_per_s,
             )
             unless_ready.pop_all()
         self._scenarios = ScenarioLoader(

@@ -17,9 +17,8 @@ import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName
-from Testing.benchmarks.bare_loop import BareLoop
-from Testing.benchmarks.loop_health import Punctuality, punctuality, read_health
 from Testing.benchmarks.row import row
+from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.window_process import WindowProcess, wait_until
 
@@ -29,6 +28,8 @@ PUSH = 0.8
 REST_S = (0.4, 0.6)
 MIDDLE_M = 0.6
 """Above it the stick is pushed down, below it up."""
+LOOK_S = 0.2
+"""Between two looks at where the arm is."""
 PATIENCE_S = 20.0
 
 
@@ -40,10 +41,9 @@ class Delay(NamedTuple):
 
 
 class Swing(NamedTuple):
-    """How punctual the loop was while the arm moved up and down, and a bare loop beside it."""
+    """How punctual the loop was while the arm moved up and down, and for how long, s."""
 
-    loop: Punctuality
-    bare: Punctuality
+    watched: WatchedLoop
     seconds: float
 
 
@@ -111,15 +111,14 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
 
 
 def _swing(lab: Lab, slicer: Client, seconds: int) -> Swing:
-    with BareLoop() as bare:
+    with WatchedLoop(slicer) as watched:
         begin = time.monotonic()
-        health = [read_health(slicer)]
         while time.monotonic() < begin + seconds:
             _push(lab, _way(lab))
-            health.append(read_health(slicer))
+            time.sleep(LOOK_S)
         _push(lab, 0.0)
         took = time.monotonic() - begin
-    return Swing(punctuality(health), bare.punctuality, took)
+    return Swing(watched, took)
 
 
 def _push(lab: Lab, up: float) -> None:
@@ -139,6 +138,6 @@ def _pixel(lab: Lab, place: np.ndarray) -> float:
 
 def _on_time_row(name: str, swing: Swing) -> dict:
     """Return a row like `loop.on_time`: p99 is the share that 99 of 100 seconds exceed."""
-    others = {"success": swing.loop.on_time, "n": swing.loop.ticks, "worst": 1}
-    shares, bare = swing.loop.shares, swing.bare.shares
-    return row(f"loop.on_time.{name}", shares, "%", "bare loop", bare, **others)
+    told, bare = swing.watched.told, swing.watched.bare
+    others = {"success": told.on_time, "n": told.ticks, "worst": 1}
+    return row(f"loop.on_time.{name}", told.shares, "%", "bare loop", bare.shares, **others)

@@ -22,15 +22,10 @@ from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInpu
 from rastrainer_simulator.setup import SimulationSetup, load_setup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Motion
-from Testing.benchmarks.bare_loop import BareLoop
-from Testing.benchmarks.loop_health import (
-    Punctuality,
-    punctuality,
-    read_health,
-    undisturbed,
-)
+from Testing.benchmarks.loop_health import Punctuality
 from Testing.benchmarks.process_cost import resident_mb
 from Testing.benchmarks.row import row, row_of_figures
+from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 DT = 0.004
@@ -138,30 +133,26 @@ def _on_time(duration_s: float) -> list[dict]:
     grew from the second tenth of the time to the last: median against median, and the most against
     the most.
     """
-    bare = BareLoop()
     with (
         tempfile.TemporaryDirectory() as records,
         SimulatorProcess(Path(records)) as simulator,
         _annoyed(simulator.port),
-        _watched(simulator.port) as jogger,
-        bare,
+        _clients(simulator.port) as (jogger, watcher),
+        WatchedLoop(watcher) as watched,
     ):
         jogger.send_command(CommandName.START_TASK, {"task": "task-1", "trainee": "bench"})
-        health, memory = [(time.monotonic(), read_health(jogger))], []
+        memory = []
         until = time.monotonic() + duration_s
         while time.monotonic() < until:
             _jog_for_a_second(jogger)
-            beat = read_health(jogger)
-            health.append((time.monotonic(), beat))
             memory.append(resident_mb(simulator.pid))
-    told = punctuality([beat for _, beat in health])
-    still = undisturbed(health, bare.was_never_late)
     tenth = max(len(memory) // 10, 1)
     early, late = memory[tenth : 2 * tenth], memory[-tenth:]
     growth = (np.median(late) - np.median(early), max(late) - max(early))
+    still = watched.undisturbed
     return [
-        _share_row("loop.on_time", told),
-        _share_row("loop.on_time.bare", bare.punctuality),
+        _share_row("loop.on_time", watched.told),
+        _share_row("loop.on_time.bare", watched.bare),
         *([] if still is None else [_share_row("loop.on_time.undisturbed", still)]),
         row_of_figures("loop.memory", growth, "MB", n=len(memory)),
     ]
@@ -179,13 +170,14 @@ def _jog_for_a_second(client: Client) -> None:
 
 
 @contextmanager
-def _watched(port: int) -> Iterator[Client]:
+def _clients(port: int) -> Iterator[tuple[Client, Client]]:
+    """Connect the clients that behave well; return the one that jogs and one that does not."""
     clients = [Client(port=port) for _ in range(GOOD_CLIENTS)]
     try:
         for client in clients:
             hello = {"protocolVersion": PROTOCOL_VERSION, "client": "bench"}
             client.send_command(CommandName.HELLO, hello)
-        yield clients[0]
+        yield clients[0], clients[1]
     finally:
         for client in clients:
             client.close()

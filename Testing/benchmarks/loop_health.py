@@ -14,6 +14,8 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import Device
 from rastrainer_simulator.loop_statistics import LoopStatistics
 
+PATIENCE_S = 30.0
+
 
 @dataclass(frozen=True)
 class Punctuality:
@@ -35,15 +37,20 @@ def health_of(beat: Mapping[str, Any]) -> LoopStatistics:
     return LoopStatistics(beat["ticks"], beat["lateTicks"], beat["skippedTicks"])
 
 
-def read_health(client: Client) -> LoopStatistics:
-    """Wait for the next heartbeat, which comes once a second."""
-    return health_of(json.loads(client.wait_for(Device.SIM_SERVER).content.message))
+def next_health(client: Client) -> LoopStatistics:
+    """Wait for the next heartbeat, which comes once a second.
+
+    Raises:
+        LinkError: none came in half a minute, or the connection is lost.
+    """
+    known = client.latest.get(Device.SIM_SERVER)
+    beat = client.wait_for(Device.SIM_SERVER, lambda new: new is not known, PATIENCE_S)
+    return health_of(json.loads(beat.content.message))
 
 
-def punctuality(healths: list[LoopStatistics]) -> Punctuality:
-    """Return what several heartbeats in a row tell; one that was read twice counts once."""
-    beats = dict.fromkeys(healths)
-    return _of_parts([later.since(earlier) for earlier, later in pairwise(beats)])
+def punctuality(healths: Sequence[LoopStatistics]) -> Punctuality:
+    """Return what several heartbeats in a row tell."""
+    return _of_parts([later.since(earlier) for earlier, later in pairwise(healths)])
 
 
 def undisturbed(

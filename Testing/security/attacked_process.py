@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import time
 from collections import Counter
@@ -11,9 +10,9 @@ from pathlib import Path
 
 from rastrainer.igtl.client import Client
 from rastrainer_simulator.loop_statistics import LoopStatistics
-from Testing.benchmarks.bare_loop import BareLoop
-from Testing.benchmarks.loop_health import health_of
+from Testing.benchmarks.loop_health import next_health
 from Testing.benchmarks.process_cost import resident_mb
+from Testing.benchmarks.watched_loop import WatchedLoop
 
 MOST_GROWTH_MB = 8.0
 """What an attack leaves behind after another like it has warmed the process up."""
@@ -37,10 +36,9 @@ class Cost:
 
 def cost_of(pid: int, client: Client) -> Cost:
     """Return what a simulator costs now, as Linux and its own heartbeat tell it."""
-    old = client.latest.get("SimServer")
-    beat = json.loads(client.wait_for("SimServer", lambda now: now is not old).content.message)
+    health = next_health(client)
     descriptors = len(list(Path(f"/proc/{pid}/fd").iterdir()))
-    return Cost(resident_mb(pid), descriptors, health_of(beat))
+    return Cost(resident_mb(pid), descriptors, health)
 
 
 def settled(pid: int, client: Client, wanted: Cost) -> Cost:
@@ -52,26 +50,27 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
             return cost
 
 
-def told(before: Cost, after: Cost, bare: BareLoop) -> str:
-    """Return in words what has changed, the share of ticks on time among it.
-
-    `bare` is a loop that did nothing beside it: where that is late, the machine is to blame.
-    """
-    meanwhile = after.loop.since(before.loop)
+def told(before: Cost, after: Cost, watched: WatchedLoop) -> str:
+    """Return in words what has changed, and how punctual the loop was meanwhile."""
+    still = watched.undisturbed
     return (
-        f"{100.0 * meanwhile.on_time:.3f} % of {meanwhile.ticks} ticks on time "
-        f"({100.0 * bare.punctuality.on_time:.3f} % of a loop that does nothing), "
-        f"{after.resident_mb - before.resident_mb:+.1f} MB, "
+        f"{100.0 * watched.told.on_time:.3f} % of {watched.told.ticks} ticks on time "
+        f"({100.0 * watched.bare.on_time:.3f} % of a loop that does nothing; "
+        + (
+            "that was late in every second), "
+            if still is None
+            else f"where that was never late {100.0 * still.on_time:.3f} % of {still.ticks}), "
+        )
+        + f"{after.resident_mb - before.resident_mb:+.1f} MB, "
         f"{after.descriptors - before.descriptors:+d} descriptors"
     )
 
 
-def check_unharmed(before: Cost, after: Cost, bare: BareLoop) -> None:
+def check_unharmed(before: Cost, after: Cost, watched: WatchedLoop) -> None:
     """Check that an attack has left nothing behind and has not kept the loop from its ticks."""
     assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
     assert after.resident_mb - before.resident_mb <= MOST_GROWTH_MB
-    on_time = after.loop.since(before.loop).on_time
-    assert on_time >= bare.punctuality.on_time - MOST_MORE_MISSED
+    assert watched.told.on_time >= watched.bare.on_time - MOST_MORE_MISSED
 
 
 def counted_in_log(said: str) -> Counter[str]:

@@ -8,7 +8,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
 from rastrainer.protocol import COMMAND_ARGUMENTS, check_arguments
-from Testing.benchmarks.bare_loop import BareLoop
+from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.security.attacked_process import (
     check_unharmed,
@@ -38,7 +38,7 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> None:
         quiet = cost_of(simulator.pid, good)
         before = settled(simulator.pid, good, quiet)
         attacked = LinkAttack(simulator.port, count, seed=10**6, policed=policed)
-        with BareLoop() as bare:
+        with WatchedLoop(good) as watched:
             attacked.run()
         after = settled(simulator.pid, good, before)
         with capsys.disabled():
@@ -46,9 +46,9 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> None:
                 f"\n{attacked.mutated} mutated messages of {attacked.sent} on "
                 f"{attacked.connections} connections ({attacked.ended} ended early), "
                 f"{attacked.decoded} decoded, {attacked.refused.total()} refused: "
-                f"{told(before, after, bare)}"
+                f"{told(before, after, watched)}"
             )
-        check_unharmed(before, after, bare)
+        check_unharmed(before, after, watched)
         good.send(PROBE)
         assert good.wait_for("Probe").content == PROBE.content
         assert good.send_command("ListTasks").ok

@@ -7,7 +7,7 @@ import secrets
 import pytest
 
 from rastrainer.igtl.client import Client
-from Testing.benchmarks.bare_loop import BareLoop
+from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.security.attacked_process import check_unharmed, cost_of, settled, told
 from Testing.security.stream_attack import StreamAttack
@@ -29,14 +29,14 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
         attacked = StreamAttack(simulator.view_port, key, seed=7)
         attacked.run(warm_up)
         before = settled(simulator.pid, slicer, cost_of(simulator.pid, slicer))
-        with BareLoop() as bare:
+        with WatchedLoop(slicer) as watched:
             attacked.run(count)
         after = settled(simulator.pid, slicer, before)
         with capsys.disabled():
             messages = f"{attacked.mutated} damaged and {attacked.good} good messages"
-            print(f"\n{messages}: {told(before, after, bare)}")
+            print(f"\n{messages}: {told(before, after, watched)}")
         assert attacked.closed == attacked.mutated == warm_up + count
-        check_unharmed(before, after, bare)
+        check_unharmed(before, after, watched)
         assert view.next("state")["type"] == "state"
         status, errors = simulator.stop()
     assert status == 0

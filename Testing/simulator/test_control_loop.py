@@ -305,6 +305,29 @@ def test_another_simulation_takes_over_between_two_trials_only(running, anywhere
     running.start()
 
 
+def test_trials_that_are_begun_too_often_are_refused_and_make_no_journal(anywhere, tmp_path):
+    places = (Simulation(anywhere, 1), tmp_path / "records")
+    with ControlLoop(*places, speed=None, starts_per_s=1e-6) as loop:
+        client = Client(loop)
+        client.start()
+        client.do(CommandName.ABORT)
+        refused = client.do(CommandName.START_TASK, task="task-1", trainee="P01")
+        assert not refused.ok
+        assert "too often" in refused.message
+        assert loop.latest.training.phase is Phase.IDLE
+    assert len(journals(tmp_path)) == 1
+
+
+def test_a_trial_may_be_begun_again_after_a_while(anywhere, tmp_path):
+    with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None, starts_per_s=1.0) as loop:
+        client = Client(loop)
+        for _ in range(3):
+            client.start()
+            assert not client.do(CommandName.START_TASK, task="task-1", trainee="P01").ok
+            client.do(CommandName.ABORT)
+            client.ticks(251)
+
+
 def test_a_late_tick_is_counted_and_lost_ticks_are_not_hidden(anywhere, tmp_path):
     holds_up_s = [0.0]
     with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=1.0) as loop:

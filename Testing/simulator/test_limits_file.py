@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client, LinkError
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.igtl.limits import Limits
-from rastrainer_simulator.limits_file import FILE_NAME, ServerLimits, read_limits
+from rastrainer_simulator.limits_file import FILE_NAME, ServerLimits, TrialLimits, read_limits
 from rastrainer_simulator.view_server.limits import ViewLimits
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
 
@@ -24,7 +24,7 @@ def write(folder, content):
 
 
 def test_without_a_file_the_limits_are_the_defaults(tmp_path):
-    assert read_limits(tmp_path) == ServerLimits(Limits(), ViewLimits())
+    assert read_limits(tmp_path) == ServerLimits(Limits(), ViewLimits(), TrialLimits())
 
 
 def test_what_the_file_leaves_out_is_as_by_default(tmp_path):
@@ -38,8 +38,8 @@ def test_what_the_file_leaves_out_is_as_by_default(tmp_path):
     ("content", "sentence"),
     [
         ("{", "limits.json"),
-        ([], "must be a JSON object with any of clients, views"),
-        ({"robots": {}}, "must be a JSON object with any of clients, views"),
+        ([], "must be a JSON object with any of clients, views, trials"),
+        ({"robots": {}}, "must be a JSON object with any of clients, views, trials"),
         ({"views": 5}, "views must be a JSON object with any of views, connections"),
         ({"views": {"colour": 5}}, "views must be a JSON object with any of"),
         ({"clients": {"clients": 0}}, "clients.clients must be a whole number above 0"),
@@ -75,6 +75,18 @@ def test_the_simulator_turns_away_one_client_more_than_the_file_allows(tmp_path)
         with pytest.raises(LinkError), Client(port=simulator.port) as one_more:
             one_more.send_command("Hello", HELLO, timeout=20)
         assert client.send_command("Hello", HELLO, timeout=20).ok
+
+
+def test_the_simulator_begins_no_more_trials_than_the_file_allows(tmp_path):
+    write(tmp_path / "records-config", {"trials": {"starts_per_s": 1e-6}})
+    task = {"task": "task-1", "trainee": "P01"}
+    with (
+        SimulatorProcess(tmp_path / "records", "--no-views") as simulator,
+        Client(port=simulator.port) as client,
+    ):
+        assert client.send_command("StartTask", task, timeout=20).ok
+        assert client.send_command("Abort", timeout=20).ok
+        assert "too often" in client.send_command("StartTask", task, timeout=20).error
 
 
 def test_a_wrong_file_ends_the_start_with_one_sentence_and_status_2(tmp_path):

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 PERIOD_S = 0.005
 """Time between two looks at the gamepad."""
+QUIET_S = 0.01
+"""The same where none is plugged in; what views send is taken as it comes."""
 LONGEST_STEP_S = 0.1
 """A machine that was asleep does not make up for it."""
 
@@ -62,7 +64,7 @@ class RunningDesk:
         """Keep the desk going; never returns."""
         before = time.monotonic()
         while True:
-            await asyncio.sleep(PERIOD_S)
+            await asyncio.sleep(PERIOD_S if self._sources else QUIET_S)
             now = time.monotonic()
             self.advance(min(now - before, LONGEST_STEP_S))
             before = now

@@ -138,10 +138,8 @@ class Training:
         self.trial_seed = trial_seed(self._seed, number) if chosen is None else chosen
         self._task = task
         self.truth = self._truth(self._scenario.perturbed_head_to_world(self.trial_seed), task)
-        self._fiducials = {
-            label: tuple(float(v) / MM for v in self.truth.in_world(point))
-            for label, point in self.truth.fiducials.items()
-        }
+        places = self.truth.in_world(np.array(list(self.truth.fiducials.values()))) / MM
+        self._fiducials = dict(zip(self.truth.fiducials, map(tuple, places.tolist()), strict=True))
         self._clock = TrialClock(now.sim_time)
         idle = TrainingState(revision=self.state.revision)
         self._history = {idle.revision: idle}

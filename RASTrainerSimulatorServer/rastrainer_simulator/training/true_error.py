@@ -23,9 +23,9 @@ class Truth:
     target: np.ndarray
     fiducials: Mapping[str, np.ndarray]
 
-    def in_world(self, point: np.ndarray) -> np.ndarray:
-        """Return a point of the head (RAS mm) in World (mm)."""
-        return self.head_to_world[:3, :3] @ point + self.head_to_world[:3, 3]
+    def in_world(self, points: np.ndarray) -> np.ndarray:
+        """Return a point of the head, or n of them, (3,) or (n, 3) float, RAS mm, in World, mm."""
+        return points @ self.head_to_world[:3, :3].T + self.head_to_world[:3, 3]
 
     def in_head(self, point: np.ndarray) -> np.ndarray:
         """Return a point of World (mm) in the head (RAS mm)."""

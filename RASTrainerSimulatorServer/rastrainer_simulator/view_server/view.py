@@ -11,13 +11,13 @@ from typing import Any
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.rate_limit import RateLimit
 from rastrainer_simulator.view_server import messages
 from rastrainer_simulator.view_server.held_input import HeldInput
 from rastrainer_simulator.view_server.limits import ViewLimits
 from rastrainer_simulator.view_server.messages import Received, check_message
 from rastrainer_simulator.view_server.operator_desk import Frames, OperatorDesk
 from rastrainer_simulator.view_server.outbox import Outbox
-from rastrainer_simulator.view_server.rate_limit import RateLimit
 
 _log = logging.getLogger(__name__)
 

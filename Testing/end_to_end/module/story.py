@@ -224,8 +224,8 @@ class Story:
             said = host.find("simulatorLogEdit").plainText
             assert "ended by itself" not in host.text("programText"), said
             # Of a scene just cleared, the panel says at its next look that the connector is gone.
-            isInScene = host.scene.GetFirstNodeByName(CONNECTOR_NAME) is not None
-            return isInScene and host.text("stateText").startswith("Connected")
+            is_in_scene = host.scene.GetFirstNodeByName(CONNECTOR_NAME) is not None
+            return is_in_scene and host.text("stateText").startswith("Connected")
 
         host.wait_until(is_connected, "it is connected")
 
