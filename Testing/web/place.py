@@ -31,6 +31,8 @@ PATIENCE_S = 60
 MM = 1000.0
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
+SETTLED_STATES = 20
+"""In how many states in a row a focus stays that nobody moves any more: a third of a second."""
 LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}
 """Which item of a menu leads toward the start."""
 
@@ -115,8 +117,19 @@ class Place:
 class Trainee(StreamTrainee):
     """Goes through the menus, and touches the points in their order."""
 
-    # A headset's buttons are looked at once a picture.
-    again_s = 1.5
+    # A headset's buttons are looked at once a picture, and one that is drawn here may take seconds.
+    again_s = 6.0
+
+    def focus(self, item: str) -> None:
+        """Move the focus to an item, and see that it stays there.
+
+        What is tapped is held until the next picture: where that takes long, the focus moves on.
+        """
+        settled = 0
+        while settled < SETTLED_STATES:
+            super().focus(item)
+            self.view.next_state()
+            settled = settled + 1 if self.menu.focus == item else 0
 
     def go_home(self) -> None:
         """Go to the start menu from wherever the last one has stopped."""
