@@ -11,6 +11,7 @@ from rastrainer.head_mesh import read_head_mesh
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
 from rastrainer.scenario import load_scenario
+from rastrainer.slicer.head.__main__ import main as make_head
 from rastrainer.tasks import LABELS
 from rastrainer_simulator.cli import main
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE
@@ -101,7 +102,10 @@ BROKEN = NO_FILE_OF_A_VOLUME | {
 }
 
 
-@pytest.mark.parametrize("name", BROKEN)
+ONE_OF_EACH_KIND = ("no file", "a NIfTI file cut short", "DICOM, one slice missing", "a block")
+
+
+@pytest.mark.parametrize("name", ONE_OF_EACH_KIND)
 def test_a_broken_volume_gets_one_sentence_and_changes_nothing(place, capfd, name):
     write, sentence = BROKEN[name]
     volume = write(place)
@@ -110,6 +114,16 @@ def test_a_broken_volume_gets_one_sentence_and_changes_nothing(place, capfd, nam
     said = capfd.readouterr().err.splitlines()
     assert len(said) == 1
     assert sentence in said[0]
+    assert everything_in(place) == before
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_the_process_that_makes_the_head_ends_with_that_sentence(place, capfd, name):
+    write, sentence = BROKEN[name]
+    volume = write(place)
+    before = everything_in(place)
+    assert make_head([str(volume), "-o", str(place / "made")]) == 2
+    assert sentence in capfd.readouterr().err.splitlines()[-1]
     assert everything_in(place) == before
 
 
