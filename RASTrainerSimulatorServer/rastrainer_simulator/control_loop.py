@@ -233,7 +233,8 @@ class ControlLoop:
     def _tick(self) -> None:
         if self._successor is not None:
             self._succeed(*self._successor)
-        operator_input = replace(self._sticks, commands=self._commands())
+        commands = self._commands()
+        operator_input = replace(self._sticks, commands=commands) if commands else self._sticks
         while self._displayed:
             self._recorder.note_display(self._displayed.popleft(), self._state)
         result = self._simulation.step(self._dt, operator_input)
