@@ -33,12 +33,12 @@ from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, S
 from rastrainer_simulator.subscribers import Subscribers
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.trial_limits import TrialLimits
 
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
 COMMANDS_PER_TICK = 16
-STARTS_PER_S = 2.0
-TOO_MANY_STARTS = "Trials are begun too often: wait a second, then begin it again."
+TOO_MANY_STARTS = "Trials are begun too often: wait some seconds, then begin it again."
 TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
@@ -78,7 +78,7 @@ class ControlLoop:
         rate_hz: float = 250.0,
         speed: float | None = 1.0,
         interrupted: JournalReading | None = None,
-        starts_per_s: float = STARTS_PER_S,
+        trial_limits: TrialLimits | None = None,
     ) -> None:
         """Prepare the loop; `start` sets it going.
 
@@ -89,8 +89,7 @@ class ControlLoop:
             speed: simulated seconds in a second; None runs as fast as the machine can.
             interrupted: journal of a trial that the simulation has taken up, which waits to be
                 gone on with.
-            starts_per_s: trials that may be begun in a simulated second, at whoever's wish: each
-                makes a journal and is as much work as several ticks.
+            trial_limits: how often a trial may be begun, at whoever's wish; as by default if None.
         """
         self._simulation = simulation
         self._dt = 1.0 / rate_hz
@@ -112,7 +111,8 @@ class ControlLoop:
         self._arrived: deque[Command] = deque()
         self._displayed: deque[DisplayReport] = deque()
         self._answers = PendingAnswers()
-        self._starts = RateLimit(starts_per_s)
+        limits = trial_limits or TrialLimits()
+        self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
         self._refused: str | None = None
         self._successor: tuple[Simulation, int] | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.files import read_json
-from rastrainer_simulator.control_loop import STARTS_PER_S
 from rastrainer_simulator.igtl.limits import Limits
+from rastrainer_simulator.trial_limits import TrialLimits
 from rastrainer_simulator.view_server.limits import ViewLimits
 
 FILE_NAME = "limits.json"
@@ -19,17 +19,6 @@ LARGEST = {"_share": 1, "_bytes": 2**30, "_per_s": 2**20, "_s": 86_400}
 LARGEST_COUNT = 2**16
 
 T = TypeVar("T")
-
-
-@dataclasses.dataclass(frozen=True)
-class TrialLimits:
-    """Limits of the trials, whoever begins them.
-
-    Attributes:
-        starts_per_s: trials that may be begun in a simulated second; further ones are refused.
-    """
-
-    starts_per_s: float = STARTS_PER_S
 
 
 @dataclasses.dataclass(frozen=True)

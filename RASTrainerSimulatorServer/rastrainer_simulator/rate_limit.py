@@ -4,17 +4,17 @@ from __future__ import annotations
 
 
 class RateLimit:
-    """Allows `per_s` times a second on average (a token bucket), and as many or one at once."""
+    """Allows `per_s` times a second on average, and `at_once` after a pause (a token bucket)."""
 
-    def __init__(self, per_s: float) -> None:
+    def __init__(self, per_s: float, at_once: float) -> None:
         self._per_s = per_s
-        self._most = max(per_s, 1.0)
-        self._left = self._most
+        self._at_once = at_once
+        self._left = at_once
         self._since = 0.0
 
     def allows(self, now: float) -> bool:
         """Count one more at the time `now` (s); return whether it is within the limit."""
-        self._left = min(self._most, self._left + (now - self._since) * self._per_s)
+        self._left = min(self._at_once, self._left + (now - self._since) * self._per_s)
         self._since = now
         if self._left < 1.0:
             return False

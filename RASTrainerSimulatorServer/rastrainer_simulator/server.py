@@ -118,7 +118,7 @@ class SimulatorServer:
                 options.records,
                 speed=options.speed,
                 interrupted=reading,
-                starts_per_s=self._limits.trials.starts_per_s,
+                trial_limits=self._limits.trials,
             )
             unless_ready.pop_all()
         self._scenarios = ScenarioLoader(

@@ -69,15 +69,15 @@ class BareLoop:
         return not self._late[:, first : last + 1].any()
 
 
-def _processors() -> list[int]:
-    """Return the processors that may be used here; none where the system does not tell."""
+def _processors() -> list[int | None]:
+    """Return the processors that may be used here; [None] where the system does not tell."""
     if not hasattr(os, "sched_getaffinity"):
-        return [-1]
+        return [None]
     return sorted(os.sched_getaffinity(0))[:MOST_PROCESSORS]
 
 
-def _loop(told: Connection, processor: int) -> None:
-    if processor >= 0:
+def _loop(told: Connection, processor: int | None) -> None:
+    if processor is not None:
         os.sched_setaffinity(0, {processor})
     is_late = bytearray()
     with precise_timing(is_first_in_line=True):

@@ -23,6 +23,7 @@ from rastrainer_simulator.record.replay import replay
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import StepResult
+from rastrainer_simulator.trial_limits import TrialLimits
 
 PATIENCE_S = 30.0
 
@@ -307,19 +308,21 @@ def test_another_simulation_takes_over_between_two_trials_only(running, anywhere
 
 def test_trials_that_are_begun_too_often_are_refused_and_make_no_journal(anywhere, tmp_path):
     places = (Simulation(anywhere, 1), tmp_path / "records")
-    with ControlLoop(*places, speed=None, starts_per_s=1e-6) as loop:
+    with ControlLoop(*places, speed=None, trial_limits=TrialLimits(1e-6, 2)) as loop:
         client = Client(loop)
-        client.start()
-        client.do(CommandName.ABORT)
+        for _ in range(2):
+            client.start()
+            client.do(CommandName.ABORT)
         refused = client.do(CommandName.START_TASK, task="task-1", trainee="P01")
         assert not refused.ok
         assert "too often" in refused.message
         assert loop.latest.training.phase is Phase.IDLE
-    assert len(journals(tmp_path)) == 1
+    assert len(journals(tmp_path)) == 2
 
 
 def test_a_trial_may_be_begun_again_after_a_while(anywhere, tmp_path):
-    with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None, starts_per_s=1.0) as loop:
+    limits = TrialLimits(1.0, 1)
+    with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None, trial_limits=limits) as loop:
         client = Client(loop)
         for _ in range(3):
             client.start()

@@ -11,7 +11,8 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client, LinkError
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.igtl.limits import Limits
-from rastrainer_simulator.limits_file import FILE_NAME, ServerLimits, TrialLimits, read_limits
+from rastrainer_simulator.limits_file import FILE_NAME, ServerLimits, read_limits
+from rastrainer_simulator.trial_limits import TrialLimits
 from rastrainer_simulator.view_server.limits import ViewLimits
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
 
@@ -78,7 +79,7 @@ def test_the_simulator_turns_away_one_client_more_than_the_file_allows(tmp_path)
 
 
 def test_the_simulator_begins_no_more_trials_than_the_file_allows(tmp_path):
-    write(tmp_path / "records-config", {"trials": {"starts_per_s": 1e-6}})
+    write(tmp_path / "records-config", {"trials": {"starts_per_s": 1e-6, "starts_at_once": 1}})
     task = {"task": "task-1", "trainee": "P01"}
     with (
         SimulatorProcess(tmp_path / "records", "--no-views") as simulator,

@@ -50,7 +50,7 @@ class View:
         self.held = HeldInput(number, desk)
         self._socket = socket
         self._desk = desk
-        self._rate = RateLimit(limits.messages_per_s)
+        self._rate = RateLimit(limits.messages_per_s, at_once=limits.messages_per_s)
         self._clock = asyncio.get_running_loop().time
         self._last_message = self._clock()
         self._has_told_frames = False
