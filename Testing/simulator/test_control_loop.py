@@ -17,6 +17,7 @@ import pytest
 from rastrainer.journal.journal_reader import Integrity, read_journal
 from rastrainer.protocol import CommandName, Phase, check_arguments
 from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator import control_loop
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import Command, OperatorInput
 from rastrainer_simulator.record.replay import replay
@@ -345,18 +346,36 @@ def test_a_late_tick_is_counted_and_lost_ticks_are_not_hidden(anywhere, tmp_path
     assert statistics.on_time < 1.0
 
 
-def test_after_a_delay_the_loop_makes_up_for_it_tick_by_tick(anywhere, tmp_path):
+class ClockOfItsOwn:
+    """Time that goes on only where the loop sleeps or is held up: no machine stands still in it."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def monotonic(self):
+        return self.now
+
+    def sleep_until(self, moment):
+        self.now = max(self.now, moment)
+
+
+def test_after_a_delay_the_loop_makes_up_for_it_tick_by_tick(anywhere, tmp_path, monkeypatch):
+    clock = ClockOfItsOwn()
+    monkeypatch.setattr(control_loop, "time", clock)
+    monkeypatch.setattr(control_loop, "sleep_until", clock.sleep_until)
     with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=1.0) as loop:
         held_up = threading.Event()
 
         def hold_up_once(_result):
             if not held_up.is_set():
                 held_up.set()
-                time.sleep(0.06)
+                clock.now += 0.06
 
         loop.subscribe(hold_up_once)
-        wait_for(lambda: loop.statistics.ticks > 100)
-        assert loop.statistics.late >= 5
+        wait_for(held_up.is_set)
+        Client(loop).ticks(100)
+        # 56 ms behind, then 52, …, 4.
+        assert loop.statistics.late == 14
         assert loop.statistics.skipped == 0
 
 
