@@ -58,7 +58,7 @@ def undisturbed(
 ) -> Punctuality | None:
     """Return the punctuality in those seconds in which the machine took nothing away.
 
-    That is where the loop beside it, which does nothing, `was_never_late`. None where there is no
+    That is where of the loops beside it, which do nothing, none was late. None where there is no
     such second.
 
     Args:

@@ -19,8 +19,9 @@ class WatchedLoop:
 
     Attributes:
         told: how punctual the simulator's loop was.
-        bare: the same of a loop beside it that does nothing: no loop can do better there and then.
-        undisturbed: of the simulator's, in those seconds in which that one was never late; None
+        bare: the same of a loop on each processor that does nothing: none can do better there and
+            then.
+        undisturbed: of the simulator's, in those seconds in which none of these was late; None
             where there was no such second.
     """
 
