@@ -129,9 +129,9 @@ def _on_time(duration_s: float) -> list[dict]:
     median and p99 are of each second's share of ticks within 1 ms of their time, `success` is that
     of all ticks; `loop.on_time.bare` is the same of a loop on each processor that does nothing: no
     loop can do better there and then. `loop.on_time.undisturbed` is of the seconds in which none of
-    these was late: the machine took nothing away in them. `loop.memory` is how much the resident memory
-    grew from the second tenth of the time to the last: median against median, and the most against
-    the most.
+    these was late: the machine took nothing away in them. `loop.memory` is how much the resident
+    memory grew from the second tenth of the time to the last: median against median, and the most
+    against the most.
     """
     with (
         tempfile.TemporaryDirectory() as records,
