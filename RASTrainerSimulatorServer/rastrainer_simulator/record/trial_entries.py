@@ -146,20 +146,21 @@ class TrialEntries:
             self._append(_input_entry(times, operator_input))
         for command in operator_input.commands:
             self._append(self._command_entry(times, command))
-        record = None
+        registered = None
         for event in result.events:
             if event.kind is EventKind.TOUCH:
                 self._utc[event.sim_time] = times["utc"]
             entry = self._event_entry(times, event)
             if entry["kind"] == "registered":
                 entry["truth"] = simulation.truth.to_json()
+                registered = entry
             self._append(entry)
-            if entry["kind"] == "registered":
-                trajectory = self._recording.trajectory()
-                record = UnmeasuredRecord(self._record(state), trajectory, entry)
         if is_sampled:
             self._append(_sample_entry(times, state))
-        return record
+        if registered is None:
+            return None
+        # Of the whole tick: the tip may have touched the head after the command in it.
+        return UnmeasuredRecord(self._record(state), self._recording.trajectory(), registered)
 
     def add_display(self, report: DisplayReport, state: SimulationState) -> None:
         """Take note of how a view draws: it is recorded, but nothing follows from it."""
