@@ -143,6 +143,7 @@ class _Player:
         self._entries: TrialEntries | None = None
         self.versions: Mapping[str, str] = {}
         self.motion: Mapping[str, float] = {}
+        self._is_registered = False
 
     def go_on(
         self, earlier: Sequence[Mapping[str, Any]], part: Sequence[Mapping[str, Any]]
@@ -154,7 +155,8 @@ class _Player:
         if self._entries is None:
             return []
         self.versions = self._entries.versions
-        self.motion = self._entries.motion()
+        if not self._is_registered:
+            self.motion = self._entries.motion()
         return self._entries.taken()[0 if earlier else 1 :]
 
     def _take_up(self, earlier: Sequence[Mapping[str, Any]], go_on: Mapping[str, Any]) -> None:
@@ -179,7 +181,10 @@ class _Player:
             self._watch(result)
             if self._entries is None:
                 self._entries = TrialEntries.begun(simulation, before, result, dt)
-            self._entries.add(simulation, operator_input, result)
+            if self._entries.add(simulation, operator_input, result) is not None:
+                # What the arm does until the score comes is no part of the trial.
+                self._is_registered = True
+                self.motion = self._entries.motion()
 
 
 def _inputs(
