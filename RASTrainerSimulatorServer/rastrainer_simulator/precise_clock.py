@@ -56,14 +56,14 @@ def stand_second_in_line() -> None:
     if sys.platform == "win32":
         _set_windows_priority(_WINDOWS_PRIORITY[SECOND])
     elif hasattr(os, "SCHED_FIFO"):
-        _set_real_time(SECOND)
+        set_real_time(SECOND)
 
 
 def is_real_time_permitted() -> bool:
     """Tell whether a system with `SCHED_FIFO` lets the control loop run before ordinary threads."""
     # Tried in a thread that ends with it: nothing has to be taken back.
     with ThreadPoolExecutor(max_workers=1) as pool:
-        return pool.submit(_set_real_time, FIRST).result()
+        return pool.submit(set_real_time, FIRST).result()
 
 
 @contextlib.contextmanager
@@ -80,7 +80,7 @@ def _in_line(priority: int) -> Iterator[None]:
         yield
         return
     policy, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    if not _set_real_time(priority):
+    if not set_real_time(priority):
         yield
         return
     try:
@@ -90,7 +90,7 @@ def _in_line(priority: int) -> Iterator[None]:
         os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameters)
 
 
-def _set_real_time(priority: int) -> bool:
+def set_real_time(priority: int) -> bool:
     """Set the priority of this thread, and tell whether the system permits it."""
     # What the thread starts, such as the window, stays ordinary.
     policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK

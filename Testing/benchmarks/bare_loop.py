@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 
-from rastrainer_simulator.precise_clock import FIRST, precise_timing, sleep_until
+from rastrainer_simulator.precise_clock import FIRST, precise_timing, set_real_time, sleep_until
 from Testing.benchmarks.loop_health import Punctuality
 
 TICK_S = 0.004
@@ -81,7 +81,8 @@ def _loop(told: Connection, processor: int | None) -> None:
         os.sched_setaffinity(0, {processor})
     is_late = bytearray()
     with precise_timing(is_first_in_line=True):
-        _come_before_our_loop()
+        if hasattr(os, "SCHED_FIFO"):
+            set_real_time(FIRST + 1)  # To wait for the machine alone, not for the loop beside it.
         told.send("ready")
         due = told.recv()
         while not told.poll():
@@ -89,9 +90,3 @@ def _loop(told: Connection, processor: int | None) -> None:
             sleep_until(due)
             is_late.append(time.monotonic() - due > ON_TIME_S)
     told.send(bytes(is_late))
-
-
-def _come_before_our_loop() -> None:
-    """Wait for the machine alone, not for the loop that is compared with this one."""
-    if hasattr(os, "SCHED_FIFO") and os.sched_getscheduler(0) & os.SCHED_FIFO:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIRST + 1))
