@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.igtl.client import Client
-from rastrainer_simulator.loop_statistics import LoopStatistics
 from Testing.benchmarks.loop_health import next_health
 from Testing.benchmarks.process_cost import resident_mb
 from Testing.benchmarks.watched_loop import WatchedLoop
@@ -27,18 +26,17 @@ COUNTED = re.compile(r"(\d+) × 127\.0\.0\.1: ([^;\n]+)")
 
 @dataclass(frozen=True)
 class Cost:
-    """Of a process at one moment: MB in use, open descriptors, the control loop's ticks so far."""
+    """Of a process at one moment: MB in use and open descriptors."""
 
     resident_mb: float
     descriptors: int
-    loop: LoopStatistics
 
 
 def cost_of(pid: int, client: Client) -> Cost:
-    """Return what a simulator costs now, as Linux and its own heartbeat tell it."""
-    health = next_health(client)
+    """Return what a simulator costs, as Linux tells it, once its next heartbeat has come."""
+    next_health(client)
     descriptors = len(list(Path(f"/proc/{pid}/fd").iterdir()))
-    return Cost(resident_mb(pid), descriptors, health)
+    return Cost(resident_mb(pid), descriptors)
 
 
 def settled(pid: int, client: Client, wanted: Cost) -> Cost:
