@@ -15,7 +15,7 @@ from typing import Any
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.journal.journal_reader import JournalReading
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES, CommandName
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.loop_statistics import LoopStatistics, Punctuality
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
@@ -274,7 +274,7 @@ class ControlLoop:
 
     @property
     def _is_trial_open(self) -> bool:
-        return self._state.training.phase in (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
+        return self._state.training.phase in OPEN_PHASES
 
     def _is_for_the_archive(self, command: Command) -> bool:
         """Return whether a command is about a trial whose record is written, and not its score."""
@@ -286,7 +286,7 @@ class ControlLoop:
         is_present = command.arguments["trialId"] == training.trial_id
         if command.name == CommandName.TRIAL_SCORED:
             return not is_present
-        return not is_present or training.phase in (Phase.REGISTERED, Phase.SCORED)
+        return not is_present or training.phase in FINISHED_PHASES
 
     def _ask_archive(self, command: Command) -> None:
         times = stamp(self._state.tick, self._state.sim_time)

@@ -7,11 +7,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario_library import ListedScenario, list_scenarios, user_library
 from rastrainer.tasks import is_task_name
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.control_loop import TRIAL_IS_OPEN, ControlLoop
-from rastrainer_simulator.flow.session import OPEN
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer
 
@@ -52,7 +52,7 @@ class ScenarioLoader:
         Names are those of the scenarios that come with us and of those in the user's library.
         While one is being loaded, which is costly, no other is; in a trial none is.
         """
-        if self._control_loop.latest.training.phase in OPEN:
+        if self._control_loop.latest.training.phase in OPEN_PHASES:
             return _refused(TRIAL_IS_OPEN)
         if self._loading is not None and not self._loading.done():
             return _refused(BUSY)

@@ -55,6 +55,11 @@ class Phase(str, Enum):
     SCORED = "scored"
 
 
+OPEN_PHASES = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
+"""A trial is being played, paused, or waits to be registered."""
+FINISHED_PHASES = (Phase.REGISTERED, Phase.SCORED)
+
+
 class Mode(str, Enum):
     """How the trainee sees the scene; the study compares them."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import TRIAL_RUN, Phase
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.controls.control_name import ControlName, Situation
 from rastrainer_simulator.flow.feedback import happening
@@ -14,7 +14,7 @@ from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, Wai
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.screen import Hint, Message, Screen, Tone
-from rastrainer_simulator.flow.session import OPEN, Session
+from rastrainer_simulator.flow.session import Session
 from rastrainer_simulator.flow.working import Working, points_in_world
 from rastrainer_simulator.replaying.replay_loop import ReplayLoop
 from rastrainer_simulator.state import EventKind, SimulationState, StepResult
@@ -150,7 +150,7 @@ class Flow:
             session.pages.show(WaitingPage(session))
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session))
-        elif before[1] in OPEN or isinstance(session.pages.top, FinishedPage | ReplayPage):
+        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, FinishedPage | ReplayPage):
             # Another simulation may follow a trial while other pages are open: they stay.
             session.pages.show_start()
             session.pages.open(ExperimentPage(session))

@@ -11,7 +11,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_step import StudyStep
 from rastrainer.journal.folder import journals_of
-from rastrainer.protocol import CommandName, Mode, Phase
+from rastrainer.protocol import OPEN_PHASES, CommandName, Mode
 from rastrainer.scenario import Scenario
 from rastrainer.scenario_library import ListedScenario
 from rastrainer_simulator.control_loop import ControlLoop
@@ -41,7 +41,6 @@ from rastrainer_simulator.vectors import Vector
 NOTICE_S = 5.0
 SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""
-OPEN = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
 """The phases of a trial that can still be changed."""
 
 
@@ -129,7 +128,7 @@ class Session:
     @property
     def has_open_trial(self) -> bool:
         """Whether a trial can still be changed."""
-        return self.training.phase in OPEN
+        return self.training.phase in OPEN_PHASES
 
     @property
     def tip(self) -> Vector:

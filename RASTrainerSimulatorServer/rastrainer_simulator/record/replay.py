@@ -10,6 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_reader import Integrity, JournalReading
+from rastrainer.protocol import FINISHED_PHASES
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.record.interrupted_trial import InterruptedTrial, recorded_command
 from rastrainer_simulator.record.trial_entries import TrialEntries
@@ -143,7 +144,6 @@ class _Player:
         self._entries: TrialEntries | None = None
         self.versions: Mapping[str, str] = {}
         self.motion: Mapping[str, float] = {}
-        self._is_registered = False
 
     def go_on(
         self, earlier: Sequence[Mapping[str, Any]], part: Sequence[Mapping[str, Any]]
@@ -155,7 +155,8 @@ class _Player:
         if self._entries is None:
             return []
         self.versions = self._entries.versions
-        if not self._is_registered:
+        # Of a registered trial it is known: what the arm did until the score came is no part of it.
+        if self._simulation.state.training.phase not in FINISHED_PHASES:
             self.motion = self._entries.motion()
         return self._entries.taken()[0 if earlier else 1 :]
 
@@ -182,8 +183,6 @@ class _Player:
             if self._entries is None:
                 self._entries = TrialEntries.begun(simulation, before, result, dt)
             if self._entries.add(simulation, operator_input, result) is not None:
-                # What the arm does until the score comes is no part of the trial.
-                self._is_registered = True
                 self.motion = self._entries.motion()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rastrainer.protocol import FIDUCIAL_COUNT, CommandName, Phase
+from rastrainer.protocol import FIDUCIAL_COUNT, FINISHED_PHASES, OPEN_PHASES, CommandName, Phase
 from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.texts.texts import Texts
@@ -15,18 +15,16 @@ RECORDING_FAILED = "RecordingFailed"
 INTERRUPTED = "Interrupted"
 """By it a trial that a server's end has cut short is taken up; clients cannot send it."""
 
-_OPEN = {Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE}
-_FINISHED = {Phase.REGISTERED, Phase.SCORED}
 _AFTER_REGISTRATION = {
     Phase.IDLE: "no trial",
-    **dict.fromkeys(_OPEN, "not registered"),
+    **dict.fromkeys(OPEN_PHASES, "not registered"),
 }
-_IN_A_TRIAL = {Phase.IDLE: "no trial", **dict.fromkeys(_FINISHED, "is registered")}
+_IN_A_TRIAL = {Phase.IDLE: "no trial", **dict.fromkeys(FINISHED_PHASES, "is registered")}
 _NOT_PAUSED = {Phase.PAUSED: "is paused"}
 
 REFUSALS: Mapping[str, Mapping[Phase, str]] = {
     CommandName.LIST_TASKS: {},
-    CommandName.START_TASK: dict.fromkeys(_OPEN, "trial is open"),
+    CommandName.START_TASK: dict.fromkeys(OPEN_PHASES, "trial is open"),
     CommandName.JOG: _NOT_PAUSED,
     CommandName.MOVE_TIP_TO: _NOT_PAUSED,
     CommandName.CAPTURE: {**_IN_A_TRIAL, **_NOT_PAUSED, Phase.COMPLETE: "all touched"},
@@ -48,7 +46,7 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
     CommandName.PLAN_TARGET: _AFTER_REGISTRATION,
     CommandName.GET_TRIAL: {Phase.IDLE: "no trial"},
     RECORDING_FAILED: {},
-    INTERRUPTED: dict.fromkeys((Phase.IDLE, *_FINISHED), "no trial"),
+    INTERRUPTED: dict.fromkeys((Phase.IDLE, *FINISHED_PHASES), "no trial"),
 }
 """For each command of the simulation the phases that it is wrong in, and the sentence's key."""
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import FIDUCIAL_COUNT, CommandName, Phase
+from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, CommandName, Phase
 from rastrainer.scenario import Scenario
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.link_nodes import capturedPointsNode
@@ -17,8 +17,6 @@ from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.world_placement import showPlannedPlace
-
-OPEN = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
 
 
 @dataclass(frozen=True)
@@ -52,7 +50,7 @@ class TrialStatus:
     @property
     def isOpen(self) -> bool:
         """Whether a trial is being played, paused, or waits to be registered."""
-        return self.phase in OPEN
+        return self.phase in OPEN_PHASES
 
     @property
     def total(self) -> int:
@@ -147,14 +145,14 @@ class TrainingDesk:
     def _follow(self, state: Mapping[str, Any]) -> None:
         self._state, self._stateTime = state, self._clock()
         trial = str(state.get("trialId", ""))
-        if state.get("phase") in OPEN and trial != self._shownTrial:
+        if state.get("phase") in OPEN_PHASES and trial != self._shownTrial:
             self._shownTrial = trial
             self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
         self.changed.emit()
 
     def _showTrialScene(self, reply: Reply) -> None:
         """Show head and fiducials of the trial that runs, so that touches appear on them."""
-        if self._state.get("phase") not in OPEN:
+        if self._state.get("phase") not in OPEN_PHASES:
             return
         if not reply.ok:
             self._shownTrial = ""

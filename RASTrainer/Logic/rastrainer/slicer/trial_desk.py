@@ -17,7 +17,7 @@ from typing import Any
 from rastrainer.ctps import Trial
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import OPEN_PHASES, CommandName
 from rastrainer.scenario import Scenario
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.signal import Signal
@@ -32,7 +32,6 @@ from rastrainer.trial_review import review, with_progress
 SCORED_TIMEOUT_S = 60.0
 """Nobody waits for this answer, and one that is given up would be asked for again only over the
 next connection: a busy simulator gets the time it needs."""
-_UNDER_WAY = {Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value}
 
 
 @dataclass(frozen=True)
@@ -168,7 +167,7 @@ class TrialDesk:
     def _show(self, analysis: TrialAnalysis) -> None:
         """Show a trial in the scene, unless another one is being played there."""
         isOther = self._state.get("trialId") != analysis.record.trial_id
-        if isOther and self._state.get("phase") in _UNDER_WAY:
+        if isOther and self._state.get("phase") in OPEN_PHASES:
             return
         showTrial(self._scene, self._findScenario(analysis.record.scenario), analysis)
 
