@@ -5,7 +5,7 @@ KINEMATICS ?=
 BIN := .venv/bin
 UNAME := $(shell uname 2>/dev/null)
 
-.PHONY: demo test soak bench simulator lint format lock audit page clean
+.PHONY: demo test soak bench simulator extension lint format lock audit page clean
 
 demo: .venv/installed
 	$(BIN)/python tools/system_packages.py demo
@@ -34,6 +34,10 @@ bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test
 	$(BIN)/python -m Testing.benchmarks
 
+# What Slicer's extension needs beyond the sources: the simulator's wheel, put beside its module.
+extension: .venv/installed
+	$(BIN)/python tools/simulator_wheel.py
+
 page: .venv/installed
 	$(BIN)/python tools/build_page.py
 
@@ -54,6 +58,8 @@ lock: .venv/installed
 	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock
 	$(COMPILE) --extra soak --constraints requirements-test.lock -o requirements-soak.lock
 	$(COMPILE) --extra supply --constraints requirements.lock -o requirements-supply.lock
+	$(COMPILE) --constraints requirements.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
+	$(BIN)/python tools/measure_simulator.py
 
 # Notices and bills of materials go to build; the audit asks a service in the internet.
 audit: .venv/supply-installed
@@ -61,6 +67,7 @@ audit: .venv/supply-installed
 	$(BIN)/python tools/bill_of_materials.py
 	$(BIN)/python tools/audit_packages.py
 
+SIMULATOR := RASTrainer/Resources/RASTrainerSimulator
 COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.10 \
 	--generate-hashes --no-emit-index-url --no-annotate --no-header --upgrade
 

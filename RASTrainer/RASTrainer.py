@@ -1,20 +1,17 @@
-# ruff: noqa: ARG002, I001, PT009 (the order of imports, observers and assertions is Slicer's)
+# ruff: noqa: ARG002, I001, PT009, UP007, UP045 (the order of imports, observers and assertions is Slicer's)
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Optional, Union
 
 import qt
 
 import slicer
-from slicer import vtkMRMLMarkupsFiducialNode, vtkMRMLMarkupsNode
+from slicer import vtkMRMLMarkupsFiducialNode, vtkMRMLMarkupsLineNode
 from slicer.i18n import tr as _
 from slicer.i18n import translate
 from slicer.ScriptedLoadableModule import *
 from slicer.util import VTKObservationMixin
-from slicer.parameterNodeWrapper import (
-    parameterNodeWrapper,
-    WithinRange,
-)
+from slicer.parameterNodeWrapper import parameterNodeWrapper
 
 #
 # RASTrainer
@@ -30,22 +27,47 @@ class RASTrainer(ScriptedLoadableModule):
 
     def __init__(self, parent):
         ScriptedLoadableModule.__init__(self, parent)
-        parent.title = _("RASTrainer: Robot-Assisted Surgery trainer")
+        parent.title = _("Robot-Assisted Surgery Trainer")
         parent.categories = [translate("qSlicerAbstractCoreModule", "Training")]
         parent.dependencies = []
-        parent.contributors = ["The RASTrainer maintainers"]
+        parent.contributors = [
+            "RASTrainer organization (https://github.com/RASTrainer/SlicerRASTrainer/issues)"
+        ]
         parent.helpText = _(
             "A trainee drives a simulated robot to fifteen numbered points on a head and touches "
             "them. The touched points arrive here over OpenIGTLink, are registered to the same "
-            "points in the patient's MRI, and the trial is scored and kept. Not for clinical use."
+            "points in the patient's MRI, and the trial is scored and kept. Patients' images in "
+            "DICOM are loaded with Slicer's module DICOM; nothing is sent anywhere. Not for "
+            "clinical use. See more information in "
+            '<a href="https://github.com/RASTrainer/SlicerRASTrainer">the documentation</a>.'
         )
         parent.acknowledgementText = _(
-            "The method follows “Virtual reality-based training simulator for robot-assisted "
-            "surgery using Unity and 3D slicer”."
+            "Method, tasks and the score CTPS follow the paper <i>Virtual reality-based training "
+            "simulator for robot-assisted surgery using Unity and 3D slicer</i> (its video: "
+            '<a href="https://www.youtube.com/watch?v=73omjcOy2lU">73omjcOy2lU</a>). The head is '
+            "made of the MRI Colin27: C. J. Holmes, R. Hoge, L. Collins, R. Woods, A. W. Toga, "
+            "A. C. Evans, <i>Enhancement of MR images using registration for signal averaging</i>, "
+            "Journal of Computer Assisted Tomography 22(2), 1998, "
+            '<a href="https://doi.org/10.1097/00004728-199803000-00032">'
+            "doi:10.1097/00004728-199803000-00032</a>. Please cite both."
         )
         logicFolder = str(Path(__file__).parent / "Logic")
         if logicFolder not in sys.path:
             sys.path.insert(0, logicFolder)
+        # Sample Data may be loaded later than this module.
+        slicer.app.connect("startupCompleted()", registerSampleData)
+
+
+#
+# Register sample data sets in Sample Data module
+#
+
+
+def registerSampleData():
+    """Add the MRI that comes with this module to the module Sample Data."""
+    from rastrainer.panels import places, sample_data
+
+    sample_data.registerSampleData(places.assetsFolder(Path(__file__)))
 
 
 #
@@ -55,22 +77,20 @@ class RASTrainer(ScriptedLoadableModule):
 
 @parameterNodeWrapper
 class RASTrainerParameterNode:
-    """What the user has chosen, as it is saved with the scene.
+    """What the user has chosen of the scene, as it is saved with it.
 
-    host - computer on which the simulator runs
-    port - its OpenIGTLink port
+    What else is chosen stays with the user: see `rastrainer.slicer.settings`.
+
     movingPoints - points in the robot's World that are registered; the touches where none
     fixedPoints - the same points on the MRI; the task's fiducials where none
     target - its first point is where the target error is told; the scenario's where none
     plan - a planned target or trajectory
     """
 
-    host: str = "127.0.0.1"
-    port: Annotated[int, WithinRange(1, 65535)] = 18944
     movingPoints: vtkMRMLMarkupsFiducialNode
     fixedPoints: vtkMRMLMarkupsFiducialNode
     target: vtkMRMLMarkupsFiducialNode
-    plan: vtkMRMLMarkupsNode
+    plan: Optional[Union[vtkMRMLMarkupsFiducialNode, vtkMRMLMarkupsLineNode]]
 
 
 #
@@ -87,16 +107,24 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self.logic = None
         self._parameterNode = None
         self._parameterNodeGuiTag = None
+        self._uiWidget = None
         self._panels = None
         self._timer = None
+        self._workTimer = None
 
     def setup(self) -> None:
         from rastrainer.panels.panel_stack import PanelStack
+        from rastrainer.panels.seen import isSomethingSeen
+        from rastrainer.slicer.background_work import PERIOD_MS
 
         ScriptedLoadableModuleWidget.setup(self)
         uiWidget = slicer.util.loadUI(self.resourcePath("UI/RASTrainer.ui"))
         self.layout.addWidget(uiWidget)
+        self._uiWidget = uiWidget
         self.logic = RASTrainerLogic()
+        self.logic.session.isSeen = lambda inSlices: isSomethingSeen(
+            self.parent.isEntered, inSlices
+        )
         self._panels = PanelStack(uiWidget, self.resourcePath, self.logic.session)
         self.ui = self._panels.ui
         uiWidget.setMRMLScene(slicer.mrmlScene)
@@ -108,26 +136,45 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self._timer.setInterval(100)
         self._timer.connect("timeout()", self.onTimeout)
         self._timer.start()
+        self._workTimer = qt.QTimer()
+        self._workTimer.setInterval(PERIOD_MS)
+        self._workTimer.connect("timeout()", self.onWorkTimeout)
+        self.logic.session.work.began.connect(self._workTimer.start)
 
     def cleanup(self) -> None:
-        if self._timer is not None:
-            self._timer.stop()
+        for timer, slot in (
+            (self._timer, self.onTimeout),
+            (self._workTimer, self.onWorkTimeout),
+        ):
+            if timer is not None:
+                timer.stop()
+                timer.disconnect("timeout()", slot)
         if self._panels is not None:
             self._panels.close()
         if self.logic is not None:
             self.logic.close()
         self.setParameterNode(None)
         self.removeObservers()
+        if self._uiWidget is not None:
+            # Reload would only hide it, and its connections would keep all of this alive.
+            self._uiWidget.setParent(None)
+            self._uiWidget.deleteLater()
+            self._uiWidget = None
 
     def enter(self) -> None:
         self.initializeParameterNode()
 
     def exit(self) -> None:
+        self.logic.session.layout.giveBack()
         self.setParameterNode(None)
 
     def onTimeout(self) -> None:
         self.logic.process()
         self._panels.showState()
+
+    def onWorkTimeout(self) -> None:
+        if not self.logic.session.giveTimeToWork():
+            self._workTimer.stop()
 
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
@@ -157,12 +204,16 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
     """What the module can do without its widgets; the parts stand in `rastrainer.slicer`."""
 
     def __init__(self) -> None:
+        from rastrainer.panels.call_soon import callSoon
         from rastrainer.panels.places import findPlaces
         from rastrainer.slicer.connector_kit import desktopKit
         from rastrainer.slicer.session import Session
+        from rastrainer.slicer.settings import Settings
 
         ScriptedLoadableModuleLogic.__init__(self)
-        self.session = Session(slicer.mrmlScene, findPlaces(Path(__file__)), desktopKit)
+        settings = Settings(slicer.app.settings())
+        places = findPlaces(Path(__file__), settings)
+        self.session = Session(slicer.mrmlScene, places, desktopKit, settings, callSoon)
 
     def getParameterNode(self):
         return RASTrainerParameterNode(super().getParameterNode())
@@ -186,6 +237,18 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
 
     def setUp(self):
         slicer.mrmlScene.Clear()
+
+    def test_theModuleStartsAndItsWidgetIsWired(self):
+        widget = slicer.util.getModuleWidget("RASTrainer")
+        if slicer.util.mainWindow() is None:
+            widget.enter()
+        else:
+            slicer.util.selectModule("RASTrainer")
+        self.assertTrue(widget._timer.isActive())
+        self.assertIsNotNone(widget._parameterNodeGuiTag)
+        target = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Target")
+        widget._parameterNode.target = target
+        self.assertEqual(widget.ui.targetComboBox.currentNodeID, target.GetID())
 
     def test_theFitOfPointsInTheSceneIsExact(self):
         import numpy as np
@@ -211,7 +274,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         link.connectTo("127.0.0.1", 1)
         slicer.mrmlScene.Clear()
         logic.process()
-        allowed = (LinkState.ABSENT, LinkState.NOT_INSTALLED)
+        allowed = (LinkState.LOOKING, LinkState.ABSENT, LinkState.NOT_INSTALLED)
         self.assertIn(link.status.state, allowed)
         logic.close()
         self.assertEqual(link.status.state, LinkState.OFF)

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import gc
+import logging
+import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -22,6 +25,43 @@ def pytest_configure():
     # Collected wherever Python happens to be, Qt's and VTK's objects would also die in a thread
     # that answers a socket, which ends the process.
     gc.disable()
+
+
+class ContainedFailures(logging.Handler):
+    """Keeps what failed where the rest goes on; see `rastrainer.slicer.contained`."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.texts: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.texts.append(self.format(record))
+
+
+@pytest.fixture(autouse=True)
+def contained_failures():
+    """What has failed and was contained; a test that wants it so clears the list."""
+    handler, logger = ContainedFailures(), logging.getLogger("rastrainer.contained")
+    logger.addHandler(handler)
+    yield handler.texts
+    logger.removeHandler(handler)
+    assert not handler.texts, handler.texts[0]
+
+
+@pytest.fixture(autouse=True)
+def _slicer_survives():
+    """Fail a test in which a part of Slicer would have ended the program."""
+    yield
+    crash = sys.modules.get("rastrainer.slicer.headless_crash")
+    crashes = crash.takeCrashes() if crash else []
+    assert not crashes, f"Slicer would not have survived: {crashes}"
+
+
+@pytest.fixture(scope="session")
+def built_wheel(tmp_path_factory):
+    """The wheel of this checkout, built once."""
+    sys.path.insert(0, str(HERE.parent / "tools"))
+    return import_module("simulator_wheel").build_wheel(tmp_path_factory.mktemp("wheel"))
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,9 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LOCKS = sorted(ROOT.glob("requirements*.lock"))
+RESOURCES = ROOT / "RASTrainer" / "Resources" / "RASTrainerSimulator"
+SIMULATORS_LOCK = RESOURCES / "requirements.lock"
+LEFT_OUT = ROOT / "tools" / "simulator-leaves-out.txt"
 PACKAGE_LOCK = ROOT / "RASTrainerSimulatorServer" / "web" / "package-lock.json"
 sys.path.insert(0, str(ROOT / "tools"))
 audit_packages, bill_of_materials, third_party_notices, wheel_page = map(
@@ -41,7 +44,7 @@ def _kind(line: str) -> str:
     return "hash" if HASH.match(line) else line
 
 
-@pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.name)
+@pytest.mark.parametrize("lock", [*LOCKS, SIMULATORS_LOCK], ids=lambda lock: lock.parent.name)
 def test_every_locked_package_is_fixed_by_hashes_and_by_no_address(lock):
     lines = lock.read_text(encoding="utf-8").splitlines()
     kinds = [_kind(line) for line in lines]
@@ -74,6 +77,42 @@ def test_each_lock_holds_every_package_that_the_project_asks_for():
     for lock in LOCKS:
         locked = set(re.findall(r"^([a-z0-9._-]+)==", lock.read_text(encoding="utf-8"), re.M))
         assert asked_for(project, EXTRAS[lock.name]) - locked == set(), lock.name
+
+
+def pinned(lock: Path) -> dict[str, set[str]]:
+    """Return the hashes of each `name==version` of a lock, for whatever platform."""
+    pins: dict[str, set[str]] = {}
+    for line in lock.read_text(encoding="utf-8").splitlines():
+        if not line.startswith(" "):
+            hashes = pins.setdefault(line.split()[0], set())
+        else:
+            hashes.add(line.strip(" \\"))
+    return pins
+
+
+def test_slicer_sets_the_simulator_up_of_what_is_tested_less_what_it_never_imports():
+    ours, whole = pinned(SIMULATORS_LOCK), pinned(ROOT / "requirements.lock")
+    assert {name: whole.get(name) for name in ours} == ours
+    lines = LEFT_OUT.read_text(encoding="utf-8").splitlines()
+    left_out = {line for line in lines if not line.startswith("#")}
+    names = {pin.split("==")[0] for pin in ours}
+    assert names & left_out == set()
+    assert left_out <= {pin.split("==")[0] for pin in whole}
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="the standard library reads no TOML")
+def test_the_lock_of_the_simulator_holds_all_that_the_project_cannot_do_without():
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    names = {pin.split("==")[0] for pin in pinned(SIMULATORS_LOCK)}
+    assert asked_for(project, ()) - names == set()
+
+
+def test_what_a_set_up_takes_was_measured_for_every_platform_that_slicer_runs_on():
+    sizes = json.loads((RESOURCES / "sizes.json").read_text(encoding="utf-8"))
+    assert set(sizes) == {"linux-x86_64", "darwin-arm64", "darwin-x86_64", "win32-AMD64"}
+    assert sizes["linux-x86_64"]["keptMB"] <= 700
 
 
 def test_a_wheel_brings_the_notices_of_what_its_page_is_made_of(tmp_path):

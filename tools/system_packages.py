@@ -53,10 +53,12 @@ def missing_packages(target: str) -> list[str]:
 
 
 def _for_tests() -> list[str]:
-    """Return what the tests miss: a compiler, a display in memory, a browser, Qt's libraries."""
+    """Return what the tests miss: compiler, CMake, a display in memory, browser, Qt's libraries."""
     wanted = []
     if shutil.which("g++") is None:
         wanted += ["g++", "libc6-dev"]
+    if shutil.which("cmake") is None:
+        wanted += ["cmake"]
     if not OPENIGTLINK_HEADER.exists():
         wanted += ["libopenigtlink-dev"]
     if shutil.which("Xvfb") is None:

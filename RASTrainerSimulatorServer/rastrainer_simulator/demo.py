@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import json
-import os
 import subprocess
 import sys
 import time
@@ -14,9 +14,10 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from rastrainer.errors import RASTrainerError
+from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.igtl.client import Client
+from rastrainer.private_folder import python_words
 from rastrainer.protocol import DEFAULT_HOST, FIDUCIAL_COUNT, TRIAL_RUN, Proximity
 from rastrainer.scenario import Scenario, load_scenario
 from rastrainer.scripted_trial import play_trial, say_hello
@@ -38,8 +39,10 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     An `output` that holds something already is moved aside, never overwritten.
 
     Raises:
+        InputError: the package that plays Slicer's part is not installed; nothing was done then.
         RASTrainerError: a part could not be started or failed; the sentence names its log.
     """
+    check_slicers_side()
     started = time.monotonic()
     output = output.absolute()
     move_aside(output)
@@ -57,6 +60,19 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
 
 
+def check_slicers_side() -> None:
+    """Look whether the package is there that plays Slicer's part.
+
+    Raises:
+        InputError: it is not.
+    """
+    if importlib.util.find_spec("slicer") is None:
+        raise InputError(
+            "The demo needs slicer-core, which plays the part of 3D Slicer: install it by "
+            f'{sys.executable} -m pip install "rastrainer[slicer]"'
+        )
+
+
 def move_aside(folder: Path) -> None:
     """Rename a folder that holds something to the first free `name-1`, `name-2` …"""
     if not folder.exists() or not any(folder.iterdir()):
@@ -71,7 +87,7 @@ def move_aside(folder: Path) -> None:
 @contextlib.contextmanager
 def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
     """Run the simulator on a free port, which is yielded."""
-    words = ["-m", "rastrainer_simulator.cli", "simulator", "--port", "0", "--seed", str(seed)]
+    words = ["rastrainer_simulator.cli", "simulator", "--port", "0", "--seed", str(seed)]
     words += ["--speed", str(speed), "--records", str(output / "records")]
     with (
         (output / "simulator.log").open("w") as log,
@@ -86,7 +102,7 @@ def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
 @contextlib.contextmanager
 def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
     """Run Slicer's side without Slicer, which ends when it has stored all trials."""
-    words = ["-m", "rastrainer.slicer.headless", "--port", str(port), "--output", str(output)]
+    words = ["rastrainer.slicer.headless", "--port", str(port), "--output", str(output)]
     words += ["--scenario", str(asset_path(*DEFAULT_SCENARIO)), "--trials", str(len(TASKS))]
     words += ["--cohort", str(asset_path("studies", "published.csv"))]
     with (
@@ -98,10 +114,8 @@ def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
 
 @contextlib.contextmanager
 def _process(words: list[str], log: TextIO, stdout: Any) -> Iterator[subprocess.Popen]:
-    """Run this Python with `words`; ask it to stop at the end, whatever happened."""
-    process = subprocess.Popen(
-        [sys.executable, *words], stdout=stdout, stderr=log, text=True, env=os.environ.copy()
-    )
+    """Run a module with its arguments, `words`; ask it to stop at the end, whatever happened."""
+    process = subprocess.Popen(python_words(*words), stdout=stdout, stderr=log, text=True)
     try:
         yield process
     finally:

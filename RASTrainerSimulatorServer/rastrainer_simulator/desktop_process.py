@@ -5,10 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from rastrainer.private_folder import python_words
 from rastrainer_simulator.child_process import VIEW_KEY_VARIABLE
 
 ENDING_S = 3.0
@@ -35,11 +35,9 @@ class DesktopProcess:
         simulator stays, with the trial that is running; `tell` says how to come back.
         """
         options = ("--connect", self._url, "--log-folder", str(self._logs))
-        command = ("-m", "rastrainer_simulator.cli", "window", *options)
+        command = python_words("rastrainer_simulator.cli", "window", *options)
         environment = {**os.environ, VIEW_KEY_VARIABLE: self._key}
-        self._process = await asyncio.create_subprocess_exec(
-            sys.executable, *command, env=environment
-        )
+        self._process = await asyncio.create_subprocess_exec(*command, env=environment)
         status = await self._process.wait()
         if status == 0:
             on_closed()

@@ -28,6 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     build.add_argument("volume", type=Path, metavar="VOLUME", help="NRRD, NIfTI or DICOM folder")
     _add_head_options(build)
     build.add_argument("--no-skull", action="store_true", help="leave the skull out")
+    build.add_argument("--no-volume", action="store_true", help="leave the images out")
     _add_wishes(build)
     build.set_defaults(run=_build)
     tasks = parts.add_parser("tasks", help="propose tasks on a head that was made elsewhere")
@@ -132,8 +133,9 @@ def _build(arguments: argparse.Namespace) -> int:
     wishes = wishes_of(arguments, arguments.volume.name)
     if arguments.output.exists() and any(arguments.output.iterdir()):
         raise InputError(f"{arguments.output} is there already; name a folder that is new.")
-    has_no_skull = arguments.no_skull or arguments.check
-    options = [*_head_options(arguments), *(["--no-skull"] if has_no_skull else [])]
+    options = _head_options(arguments)
+    options += ["--no-skull"] if arguments.no_skull or arguments.check else []
+    options += ["--no-volume"] if arguments.no_volume or arguments.check else []
     with head_process(arguments.volume, options) as process:
         head = process.head(lambda step, share: print_progress(step, 0.5 * share), print_warning)
         if arguments.check:
@@ -175,7 +177,7 @@ def _preview(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.scenarios.make import Wishes, without_tasks
     from rastrainer_simulator.scenarios.picture import draw_preview
 
-    options = [*_head_options(arguments), "--no-skull"]
+    options = [*_head_options(arguments), "--no-skull", "--no-volume"]
     with head_process(arguments.volume, options) as process:
         draft = process.head(print_progress, print_warning)
     scenario = without_tasks(draft, Wishes("Preview", "none", "none"))

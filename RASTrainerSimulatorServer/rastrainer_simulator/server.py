@@ -35,6 +35,7 @@ from rastrainer_simulator.record.interrupted_trial import find_interrupted
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.record.records_folder import RecordsFolder
 from rastrainer_simulator.record.versions import versions
+from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.scenario_loader import ScenarioLoader
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.setup import load_setup
@@ -159,15 +160,19 @@ class SimulatorServer:
             self._control_loop.start()
             _log.info("The simulator has started.", extra={"data": versions()})
             try:
-                on_ready(await self._open(link, tasks))
+                port = await self._open(link, tasks, on_ready)
+                self._records.tell(self._options.host, port, "")
                 if serve_views is not None:
                     views = await serve_views(on_ready)
+                    page = f"http://{DEFAULT_HOST}:{views.port}"
+                    self._records.tell(self._options.host, port, page)
                     tasks.append(loop.create_task(desk.run()))
                 if self._goes_on:
                     on_ready(self._interruption())
+                on_ready(f"computes the robot's kinematics by {kinematics_name()}")
                 if self._options.has_desktop and views is not None:
                     window = DesktopProcess(
-                        f"http://{DEFAULT_HOST}:{views.port}",
+                        page,
                         views.sessions.open(),
                         self._options.logs or log_folder(),
                     )
@@ -273,14 +278,21 @@ class SimulatorServer:
         setup = load_setup(scenario, self._settings, robot_meshes=self._options.robot_meshes)
         return Simulation(setup, next(self._seeds))
 
-    async def _open(self, link: SimulatorLink, tasks: list[asyncio.Task[None]]) -> str:
-        """Listen, or connect to a listening Slicer; return where."""
+    async def _open(
+        self,
+        link: SimulatorLink,
+        tasks: list[asyncio.Task[None]],
+        on_ready: Callable[[str], None],
+    ) -> int:
+        """Listen and return the port; or connect to a listening Slicer and return 0."""
         if self._options.connect_to is None:
             port = await link.server.listen(self._options.host, self._options.port)
-            return f"ready on {self._options.host}:{port}"
+            on_ready(f"ready on {self._options.host}:{port}")
+            return port
         host, port = self._options.connect_to
         tasks.append(asyncio.create_task(link.server.keep_connected_to(host, port)))
-        return f"ready; it connects to {host}:{port}"
+        on_ready(f"ready; it connects to {host}:{port}")
+        return 0
 
     async def _until(self, stop: asyncio.Event) -> None:
         while not stop.is_set():

@@ -12,7 +12,7 @@ from rastrainer_simulator.collision.proximity import ProximitySettings
 from rastrainer_simulator.robot.solution import FabrikSettings
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
-from rastrainer_simulator.training.training import TrainingSettings
+from rastrainer_simulator.training.touch_rule import TrainingSettings
 
 T = TypeVar("T")
 

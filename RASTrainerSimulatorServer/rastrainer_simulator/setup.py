@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -81,10 +82,23 @@ def _robot_and_shape(
 
 
 def scenario_sha256(scenario: Scenario) -> str:
-    """Return one hash of what a trial depends on: `scenario.json`, the head and the fiducials."""
+    """Return one hash of what a trial depends on: `scenario.json`, the head and the fiducials.
+
+    The volume, which the simulator never reads, is none of it: journals that were recorded before
+    a scenario had one stay its own.
+    """
     whole = hashlib.sha256()
-    for path in (scenario.folder / FILE_NAME, scenario.head_mesh):
-        whole.update(hashlib.sha256(path.read_bytes()).digest())
+    for content in (_without_volume(scenario.folder / FILE_NAME), scenario.head_mesh.read_bytes()):
+        whole.update(hashlib.sha256(content).digest())
     for task in scenario.tasks:
         whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
     return whole.hexdigest()
+
+
+def _without_volume(path: Path) -> bytes:
+    """Return a `scenario.json` as it would be written without its volume."""
+    content = path.read_bytes()
+    values = json.loads(content)
+    if values.pop("volume", None) is None:
+        return content
+    return (json.dumps(values, indent=2, ensure_ascii=False) + "\n").encode()

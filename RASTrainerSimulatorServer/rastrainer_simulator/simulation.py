@@ -37,7 +37,8 @@ from rastrainer_simulator.teleoperation.commanded_motion import Outcome
 from rastrainer_simulator.teleoperation.teleoperation import Teleoperation, Wish
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import refusal
-from rastrainer_simulator.training.training import Moment, Reply, Training
+from rastrainer_simulator.training.touch_rule import Moment
+from rastrainer_simulator.training.training import Reply, Training
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector
 
@@ -135,7 +136,9 @@ class Simulation:
 
     def _carry_out(self, command: Command, sim_time: float) -> Reply:
         if self._training.handles(command.name):
-            return self._training.handle(command, Moment(sim_time, self._posture.tip.position))
+            posture = self._posture
+            now = Moment(sim_time, posture.tip.position, posture.clearance.tip_m)
+            return self._training.handle(command, now)
         sentence = refusal(command, self._training.state, self._texts)
         if sentence is not None:
             return Reply(False, sentence)

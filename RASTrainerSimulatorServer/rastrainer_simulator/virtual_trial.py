@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.protocol import CommandName, Mode, Phase, check_arguments
+from rastrainer.protocol import CommandName, Mode, Phase, Proximity, check_arguments
 from rastrainer.scripted_trainee import Action, Observation, ScriptedTrainee, Skill
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.simulation import Simulation
@@ -125,6 +125,7 @@ def _observation(state: SimulationState) -> Observation:
     return Observation(
         sim_time_s=state.sim_time,
         tip_mm=MM * state.tool_tip_to_world[:3, 3],
+        is_in_contact=state.proximity is Proximity.CONTACT,
         phase=state.training.phase,
         next_point=None if point is None else int(point),
     )

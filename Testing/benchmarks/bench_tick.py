@@ -175,7 +175,7 @@ def _clients(port: int) -> Iterator[tuple[Client, Client]]:
     clients = [Client(port=port) for _ in range(GOOD_CLIENTS)]
     try:
         for client in clients:
-            hello = {"protocolVersion": PROTOCOL_VERSION, "client": "bench"}
+            hello = {"protocolVersion": PROTOCOL_VERSION, "client": "bench", "steady": True}
             client.send_command(CommandName.HELLO, hello)
         yield clients[0], clients[1]
     finally:

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 
 import aiohttp
 
+from rastrainer.igtl.command import Command
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName
 from Testing.benchmarks.loop_health import health_of
 
 CLIENTS, VIEWS = 100, 20
@@ -108,6 +110,8 @@ class _Client(asyncio.Protocol):
     def connection_made(self, transport) -> None:
         self._transport = transport
         transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        hello = {"protocolVersion": PROTOCOL_VERSION, "client": "crowd", "steady": True}
+        transport.write(pack(Message("command", Command(1, CommandName.HELLO, json.dumps(hello)))))
 
     def connection_lost(self, _error) -> None:
         self.is_dropped = True

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.head_mesh import HeadMesh
+from rastrainer.head_volume import HeadVolume
 from rastrainer.scenario import Provenance, Scenario
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario_setup import SetUp
@@ -31,6 +32,16 @@ def png(width=4, height=3):
 def ball_head(radius=90.0):
     sphere = sphere_mesh(3)
     return HeadMesh(sphere.vertices * radius / RADIUS_MM, sphere.triangles)
+
+
+def ball_volume(radius=90.0, spacing=4.0):
+    """The images of a ball of a head: 100 in it, 0 around it."""
+    count = int(2 * (radius + 20.0) / spacing)
+    matrix = np.diag([spacing, spacing, spacing, 1.0])
+    matrix[:3, 3] = -spacing * (count - 1) / 2.0
+    places = np.moveaxis(np.indices((count,) * 3), 0, -1) * spacing + matrix[:3, 3]
+    values = np.where(np.linalg.norm(places, axis=-1) < radius, 100, 0).astype(np.uint8)
+    return HeadVolume(values, matrix, 100.0, 50.0)
 
 
 def made_up_scenario():

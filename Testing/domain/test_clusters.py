@@ -7,6 +7,7 @@ import pytest
 import scipy.cluster.vq
 import scipy.spatial.distance
 
+from rastrainer.clusters.dip import dip, dip_p
 from rastrainer.clusters.k_means import k_means, silhouettes
 from rastrainer.clusters.trainee_clusters import NoClustersError, cluster_trainees
 
@@ -27,7 +28,7 @@ def test_three_groups_are_found_with_their_members_and_means():
     assert groups == {frozenset({0}), frozenset({1}), frozenset({2})}
     for members, center in zip(found.members, found.centers, strict=True):
         assert center[0] == pytest.approx(centers[int(members[0][1:]) // 10][0], abs=5)
-    assert found.silhouette > found.chance_silhouette
+    assert found.dip_p < 0.05
     assert min(found.stability) > 0.9
 
 
@@ -53,6 +54,26 @@ def test_few_trainees_and_constant_metrics_are_refused_in_words():
 def test_the_same_seed_gives_the_same_groups():
     trainees = cohort([(90, 1.0, -2.0), (150, 2.0, -4.0)], 12, (8, 0.1, 0.2))
     assert cluster_trainees(trainees, METRICS, 7) == cluster_trainees(trainees, METRICS, 7)
+
+
+def test_the_dip_is_hartigans():
+    """The first value is that of the package diptest 0.12, which is Hartigans' own program."""
+    peaks = [1, 2, 2.5, 3, 10, 11, 11.2, 12.5, 13]
+    assert dip(np.array(peaks)) == pytest.approx(0.1728395061728395, abs=1e-12)
+    assert dip(np.arange(10.0)) == pytest.approx(1 / 20)
+    assert dip(np.repeat([0.0, 1.0], 5)) == pytest.approx(0.25)
+    # Many equal values may be the peak.
+    assert dip(np.array([-1.5, -0.5, 0.1, 0.1, 0.1, 0.3])) == pytest.approx(1 / 12)
+
+
+def test_the_dip_of_a_uniform_distribution_is_as_tabulated():
+    """The table of the package diptest 0.12, made of a million samples of each size."""
+    rng = np.random.default_rng(0)
+    for n, expected in ((20, 0.10513), (50, 0.07027)):
+        dips = [dip(row) for row in rng.random((3000, n))]
+        assert np.quantile(dips, 0.95) == pytest.approx(expected, abs=0.002)
+    assert dip_p(np.arange(20.0)) > 0.99
+    assert dip_p(np.r_[np.arange(10.0), 50 + np.arange(10.0)]) < 0.001
 
 
 def test_k_means_is_as_good_as_scipys():

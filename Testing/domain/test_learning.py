@@ -1,14 +1,23 @@
 """Learning curves, control charts and pass marks, against published values and simulation."""
 
+import itertools
+
 import numpy as np
 import pytest
 import scipy.optimize
+import scipy.stats
 
 from rastrainer.errors import InputError
 from rastrainer.learning.contrasting_groups import pass_mark
 from rastrainer.learning.cusum import failure_cusum, tabular_cusum
-from rastrainer.learning.lc_cusum import lc_cusum, lc_cusum_limit, signal_probability
+from rastrainer.learning.lc_cusum import (
+    fewest_trials,
+    lc_cusum,
+    lc_cusum_limit,
+    signal_probability,
+)
 from rastrainer.learning.learning_curve import fit_learning_curve
+from rastrainer.learning.trend import Verdict, cohort_trend_p, falling_trend
 
 # fmt: off
 MONTGOMERY = [
@@ -78,7 +87,6 @@ def test_a_learning_curve_recovers_its_parameters():
         pytest.approx(0.6, rel=0.02),
         pytest.approx(40, rel=0.03),
     )
-    assert curve.has_learned
     assert curve.at(10) == pytest.approx(120 * 10**-0.6 + 40, rel=1e-3)
 
 
@@ -91,15 +99,55 @@ def test_a_learning_curve_is_scipys_least_squares():
     np.testing.assert_allclose(curve.at(n), expected[0] * n ** -expected[1] + expected[2], atol=0.2)
 
 
-def test_noise_and_getting_worse_are_not_called_learning():
-    rng = np.random.default_rng(2)
-    found = [fit_learning_curve(100 + rng.normal(0, 10, 12)).has_learned for _ in range(100)]
-    assert np.mean(found) < 0.15
-    assert not fit_learning_curve(np.arange(1.0, 12.0)).has_learned
+def test_too_few_trials_and_values_that_are_no_times_have_no_curve():
     with pytest.raises(InputError, match="at least 5 trials"):
         fit_learning_curve([1.0, 2.0])
     with pytest.raises(InputError, match="not below 0"):
         fit_learning_curve([1.0, 2.0, -1.0, 2.0, 3.0])
+
+
+def test_five_noiseless_trials_that_fall_from_140_to_107_s_are_learning():
+    times = 140 * np.arange(1, 6) ** (np.log(107 / 140) / np.log(5))
+    trend = falling_trend(times)
+    assert (trend.verdict, trend.p) == (Verdict.FALLS, pytest.approx(1 / 120))
+    assert trend.change == pytest.approx(107 - 140, abs=1.0)
+
+
+def test_the_trend_is_tested_by_all_orders_of_the_values():
+    values = np.array([131.0, 119.0, 125.0, 118.0, 112.0, 115.0])
+    x = np.log(np.arange(1, 7))
+    slopes = np.array([x @ np.array(order) for order in itertools.permutations(values)])
+    trend = falling_trend(values)
+    assert trend.p == pytest.approx(np.mean(slopes <= x @ values + 1e-9), rel=1e-9)
+    line = scipy.stats.linregress(x, values)
+    assert trend.change == pytest.approx(line.slope * x[-1], rel=1e-9)
+    reach = scipy.stats.t.ppf(0.95, 4) * line.stderr * x[-1]
+    np.testing.assert_allclose(trend.interval, (trend.change - reach, trend.change + reach))
+
+
+def test_what_five_trials_allow_both_ways_is_undecided_and_what_stays_alike_is_steady():
+    assert falling_trend([120.0, 119.0, 121.0, 120.5, 119.5]).verdict is Verdict.STEADY
+    assert falling_trend([120.0] * 5).verdict is Verdict.STEADY
+    assert falling_trend([140.0, 100.0, 150.0, 95.0, 125.0]).verdict is Verdict.UNDECIDED
+    assert falling_trend([100.0, 110.0, 120.0, 130.0, 140.0]).verdict is Verdict.UNDECIDED
+    with pytest.raises(InputError, match="from 4 finite values on"):
+        falling_trend([3.0, 2.0, 1.0])
+
+
+def test_the_trend_of_all_trainees_is_pages():
+    """Page 1963: L of his ordered hypothesis; here against scipy on the reversed columns."""
+    rows = np.random.default_rng(4).normal(0, 1, (6, 5)) - 0.4 * np.arange(5)
+    expected = scipy.stats.page_trend_test(rows[:, ::-1]).pvalue
+    assert cohort_trend_p(rows) == pytest.approx(expected, rel=1e-9)
+    with pytest.raises(InputError, match="at least two trainees"):
+        cohort_trend_p(rows[:1])
+
+
+def test_competence_takes_eleven_passed_trials_at_least():
+    limit = lc_cusum_limit(0.05, 0.4, 30)
+    assert fewest_trials(0.05, 0.4, limit) == 11
+    assert lc_cusum([False] * 10, 0.05, 0.4, limit).competent_at is None
+    assert lc_cusum([False] * 11, 0.05, 0.4, limit).competent_at == 11
 
 
 def test_the_pass_mark_of_equal_spreads_is_in_the_middle():

@@ -108,11 +108,11 @@ def test_idle_time_counts_rests_longer_than_the_threshold_only():
     assert idle_time(speed, RATE_HZ) == pytest.approx(1.2)
 
 
-def test_throughput_follows_iso_9241_411_along_the_task_axis():
+def test_throughput_follows_iso_9241_411_along_the_task_axis_about_the_targets():
     targets = np.array([[0, 0, 0], [100, 0, 0], [100, 60, 0], [100, 60, 80]], dtype=float)
     touches = targets + np.array([[0, 0, 0], [1, 5, 5], [5, -1, 5], [5, 5, 3]])
     result = effective_throughput(targets, touches, np.array([0.0, 2.0, 3.0, 5.0]))
-    width = 4.133 * np.std([1, -1, 3], ddof=1)
+    width = 4.133 * np.sqrt(np.mean(np.square([1, -1, 3])))
     distances = np.array([101.0, 54.0, 78.0])
     difficulties = np.log2(distances / width + 1)
     assert result.effective_width_mm == pytest.approx(width)
@@ -123,20 +123,36 @@ def test_throughput_follows_iso_9241_411_along_the_task_axis():
 def test_throughput_of_mackenzies_own_example():
     """MacKenzie, class Throughput: We 106.06, Ae 327.06, IDe 2.030 bits, MT 252.3 ms, 8.044 bits/s.
 
-    He divides the mean difficulty by the mean time; we take the mean of each movement's ratio.
+    He takes the deviation from the mean end point, with n − 1, and divides the mean difficulty by
+    the mean time; we take the distance from the target and the mean of each movement's ratio.
     """
     taps = np.array(TAPS.split(), dtype=float).reshape(20, 2)
     at_x = np.tile([540.2, 227.8], 11)[:21]
     targets = np.column_stack([at_x, np.zeros((21, 2))])
     touches = np.column_stack([[540.2, *taps[:, 0]], np.zeros((21, 2))])
     result = effective_throughput(targets, touches, np.cumsum([0.0, *taps[:, 1] / 1000.0]))
-    assert result.effective_width_mm == pytest.approx(106.062885, rel=1e-3)
+    beside = (touches - targets)[1:, 0] * np.sign(np.diff(targets[:, 0]))
+    his = result.effective_width_mm**2 - (4.133 * beside.mean()) ** 2
+    width = np.sqrt(his * 20 / 19)
+    assert width == pytest.approx(106.062885, rel=1e-3)
     mean_distance = np.mean(result.effective_distances_mm)
     assert mean_distance == pytest.approx(327.058351, rel=1e-3)
-    difficulty = np.log2(mean_distance / result.effective_width_mm + 1)
+    difficulty = np.log2(mean_distance / width + 1)
     assert difficulty == pytest.approx(2.029851, rel=1e-3)
     assert difficulty / np.mean(taps[:, 1]) * 1000.0 == pytest.approx(8.044111, rel=1e-3)
-    assert result.bits_per_s == pytest.approx(8.044111, rel=0.01)
+    ours = np.log2(mean_distance / result.effective_width_mm + 1) / difficulty * 8.044111
+    assert result.bits_per_s == pytest.approx(ours, rel=0.01)
+
+
+def test_a_constant_offset_lowers_throughput_and_never_makes_it_infinite():
+    targets = np.array([[0, 0, 0], [100, 0, 0], [100, 60, 0], [100, 60, 80]], dtype=float)
+    ahead = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    times = np.array([0.0, 1.0, 2.0, 3.0])
+    missed = [effective_throughput(targets, targets + mm * ahead, times) for mm in (0.5, 2.0, 8.0)]
+    rates = [result.bits_per_s for result in missed]
+    assert rates == sorted(rates, reverse=True)
+    assert missed[0].effective_width_mm == pytest.approx(4.133 * 0.5)
+    assert rates[0] < 6.0
 
 
 @pytest.mark.parametrize(
@@ -144,7 +160,7 @@ def test_throughput_of_mackenzies_own_example():
     [
         (np.zeros((3, 3)), [0, 1, 2, 3], "at least four touches"),
         (np.eye(4, 3), [0, 1, 1, 2], "times rise"),
-        (np.arange(12.0).reshape(4, 3), [0, 1, 2, 3], "scatter"),
+        (np.arange(12.0).reshape(4, 3), [0, 1, 2, 3], "not exactly on their targets"),
     ],
 )
 def test_throughput_without_movements_is_refused(touches, times, words):

@@ -1,6 +1,8 @@
 """A study's report: the paper's tables to the digit, self-contained, honest, safe."""
 
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -8,12 +10,13 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from rastrainer.cohort.outcome_model import OutcomeModel, draw_study
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_protocol import read_study_protocol
 from rastrainer.feedback.progress_words import competence_of
-from rastrainer.report.comparisons import compare_modes, paired_means
+from rastrainer.report.comparisons import compare_modes, mode_delays, paired_means
 from rastrainer.report.outcomes import MAIN_OUTCOMES
-from rastrainer.report.published_scores import with_ctps
+from rastrainer.report.published_scores import cohort_scores, complexity_correlation, with_ctps
 from rastrainer.report.report import report_html, write_report
 from rastrainer.report.sections.published_tables import performance_color
 from rastrainer.report.study_data import StudyData, TrialRow, read_study_data
@@ -114,7 +117,7 @@ def test_the_paired_tests_on_subject_means_are_those_of_the_shared_analysis(publ
     assert rmse.result.mean_difference == pytest.approx(0.147, abs=6e-4)
     assert rmse.result.p == pytest.approx(0.005, abs=5e-4)
     assert rmse.adjusted_p == pytest.approx(2 * rmse.result.p)
-    assert rmse.result.signed_ranks.p == 0.125
+    assert rmse.result.ranks.p == 0.125
     assert results["completion_time_s"].result.p > 0.5
     assert results["ctps"].result is None
 
@@ -122,7 +125,7 @@ def test_the_paired_tests_on_subject_means_are_those_of_the_shared_analysis(publ
 def test_the_report_says_what_four_subjects_cannot_show(page):
     words = words_of(page)
     assert "0.147 mm higher with the headset than with the desktop screen" in words
-    assert "its smallest possible p is 0.125" in words
+    assert "its smallest possible p is .125" in words
     assert "not evidence that there is none" in words
     assert "None are told. Groups of trainees are not told for fewer than 12" in words
 
@@ -135,8 +138,8 @@ def test_the_papers_inconsistencies_stand_beside_its_numbers(page):
         "speaks of five participants",
     ):
         assert sentence in words
-    assert "Overall CTPS, HMD 64.81 64.818" in words
-    assert "± of the overall CTPS, desktop 25.96 25.963" in words
+    assert "Overall CTPS, HMD 20 64.81 64.818" in words
+    assert "± of the overall CTPS, desktop 20 25.96 25.963" in words
 
 
 def test_the_page_needs_no_other_file_and_runs_nothing(page):
@@ -145,6 +148,100 @@ def test_the_page_needs_no_other_file_and_runs_nothing(page):
     links = set(re.findall(r"https?://[^\s\"'<]+", page))
     assert links == {"http://www.w3.org/2000/svg"}
     assert "@page { size: A4;" in page
+
+
+def test_every_head_of_a_table_says_what_it_heads(page):
+    heads = re.findall(r"<th[ >][^>]*>?", page)
+    assert len(heads) > 40
+    assert all('scope="col' in head for head in heads)
+    assert "<th></th>" not in page
+    assert 'colspan="2" class="group" scope="colgroup"' in page
+
+
+def test_negative_numbers_have_a_minus_and_no_hyphen(page):
+    words = words_of(re.sub("<style>.*</style>", "", page, flags=re.DOTALL))
+    assert "−3.26 [−20.46, 13.94]" in words
+    assert not re.search(r"(?<![\w.–-])-\d", words)
+    assert "−0.00" not in words
+
+
+def test_the_claim_that_ctps_falls_with_complexity_is_examined_as_the_others(published, page):
+    words = words_of(page)
+    found = []
+    for mode in ("hmd", "desktop"):
+        scores = cohort_scores(published, mode)
+        one = complexity_correlation(scores.tasks.items())
+        found.append((round(one.r, 2), round(one.p, 2)))
+        assert one.interval[0] < 0 < one.interval[1]
+    assert found == [(-0.75, 0.15), (-0.61, 0.27)]
+    assert "r = −.75 (HMD, p = .15) and −.61 (desktop, p = .27)" in words
+    assert "CTPS r = −0.75 [−0.982, 0.396], p = .146" in words
+    assert "time r = 0.96 [0.540, 0.998], p = .008" in words
+    assert "time r = 0.92 [0.196, 0.995], p = .027" in words
+    assert "over the 20 trials: time r = 0.69" in words
+    assert "over the 20 trials: time r = 0.47" in words
+
+
+def test_the_published_order_of_modes_is_unknown_and_said_to_be_so(published, page):
+    words = words_of(page)
+    assert "Which mode came first is not in the data" in words.split("Performance as")[0]
+    assert "the signed-rank test gives p = .125, the smallest that four subjects allow" in words
+    (rmse,) = (
+        c
+        for c in compare_modes(published, MAIN_OUTCOMES, "desktop", "hmd")
+        if c.outcome.name == "rmse_mm"
+    )
+    assert (rmse.order, rmse.result.sequences) == (None, None)
+    assert rmse.result.ranks.p == rmse.result.ranks.smallest_p == 0.125
+
+
+def test_a_balanced_order_of_modes_separates_the_period_and_is_tabulated():
+    model = OutcomeModel([120.0] * 5, [1.5] * 5, learning=0.3, carries_practice=True)
+    modes = ("desktop", "hmd")
+    orders = [modes[:: -1 if place % 2 else 1] for place in range(14)]
+    study = draw_study(model, 14, modes, np.random.default_rng(1), orders)
+    assert mode_delays(study, *modes) == {
+        f"V{place + 1:04d}": -1.0 if place % 2 else 1.0 for place in range(14)
+    }
+    words = words_of(report_html(study, "today"))
+    assert "What the order of the modes did" in words
+    assert "Completion time, s 7 7 −" in words
+    assert "carry-over would be in the difference of the modes, too" in words
+    fixed_order = draw_study(model, 14, modes, np.random.default_rng(1))
+    words = words_of(report_html(fixed_order, "today"))
+    assert "What the order of the modes did" not in words
+    assert "does not allow to separate the effect of the period" in words.split("Performance")[0]
+
+
+def test_modes_that_take_turns_are_counted_by_their_runs():
+    modes = ("desktop", "hmd", "desktop", "hmd")
+    rows = [TrialRow("a", mode, "1", 1, {"completion_time_s": 10.0}) for mode in modes]
+    assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 1.0}
+    rows = [*rows[:2], rows[1], rows[0]]
+    assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 0.0}
+
+
+def test_without_scipy_the_report_says_what_to_install(tmp_path):
+    script = (
+        "import sys; sys.modules['scipy'] = None; from rastrainer_simulator.cli import main; "
+        f"sys.exit(main(['report', {str(PUBLISHED)!r}, '-o', {str(tmp_path / 'new')!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "pip install scipy" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "new").exists()
+
+
+def test_registering_and_scoring_need_no_scipy():
+    modules = "rastrainer.trial_analysis, rastrainer.feedback.trial_feedback, rastrainer.ctps"
+    script = (
+        f"import sys; sys.modules['scipy'] = None; import {modules}; "
+        "from rastrainer_simulator.cli import main; "
+        f"sys.exit(main(['score', {str(PUBLISHED)!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_every_chart_is_well_formed_and_described(page):
@@ -194,7 +291,9 @@ def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
     page = report_html(cohort(30, tasks=12, learning=0.7), "today")
     words = words_of(page)
     assert "30 users:" in words
-    assert "to a plateau of" in words
+    assert "the means follow a·n^−b + c" in words
+    assert "Completion time, s Desktop 30 12 140.2 90.4 −46.2 [" in words
+    assert "< .001 30 / 0 / 0" in words
     assert "Motion metrics" in words
     assert "Smoothness, SPARC" in words
     assert "30 trainees did 720 trials" in words
@@ -239,6 +338,7 @@ def test_who_reached_the_pass_mark_and_whom_lc_cusum_calls_competent_is_counted(
     protocol = replace(read_study_protocol(STUDIES / "published-protocol.json"), pass_mark=70.0)
     words = words_of(report_html(StudyData("One mode", tuple(rows), protocol=protocol)))
     assert "passes with 70 of 100 points (of the protocol)" in words
+    assert "Fewer than 11 trials in a mode cannot show it" in words
     shown_at = competence_of([False] * 30).competent_at
     assert 1 < shown_at < 30
     assert f"90 30 (33 %) 1 of 3 {shown_at} " in words

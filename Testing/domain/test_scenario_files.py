@@ -9,17 +9,18 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import read_head_mesh
 from rastrainer.head_pose import Perturbation
+from rastrainer.head_volume import read_head_volume
 from rastrainer.scenario import load_scenario
 from rastrainer.scenario_draft import HeadDraft, read_draft, write_draft
 from rastrainer.scenario_library import list_scenarios
 from rastrainer.scenario_setup import SetUp, read_setup, write_setup
 from rastrainer.scenario_writer import new_folder, scenario_name, write_scenario
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
+from Testing.domain.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
 
 
-def written(folder, skull=None):
+def written(folder, skull=None, volume=None):
     with new_folder(folder) as made:
-        write_scenario(made, made_up_scenario(), ball_head(), skull)
+        write_scenario(made, made_up_scenario(), ball_head(), skull, volume)
     return load_scenario(folder)
 
 
@@ -38,6 +39,15 @@ def test_what_is_written_is_read_back_with_targets_and_trajectory(tmp_path):
     assert read_head_mesh(scenario.skull_mesh).vertices.max() == pytest.approx(80, abs=1e-3)
     assert not scenario.is_skull_approximate
     assert scenario.preview is None
+
+
+def test_a_scenario_with_a_volume_is_read_back_with_it_and_one_without_has_none(tmp_path):
+    images = ball_volume()
+    read = read_head_volume(written(tmp_path / "with", volume=images).volume)
+    assert np.array_equal(read.values, images.values)
+    assert np.array_equal(read.ijk_to_ras, images.ijk_to_ras)
+    assert (read.window, read.level) == (images.window, images.level)
+    assert written(tmp_path / "without").volume is None
 
 
 def test_a_folder_that_holds_something_is_not_written_into(tmp_path):
@@ -72,6 +82,14 @@ def test_a_failure_leaves_no_folder_behind(tmp_path):
         ),
         ("skull", {"file": "../x.ply", "kind": "bone"}, "skull.file must be the path"),
         ("skull", {"file": "skull.ply", "kind": "gum"}, "skull.kind must be one of bone"),
+        ("volume", "volume.nrrd", "volume must be an object"),
+        (
+            "volume",
+            {"file": "../volume.nrrd", "window": 100, "level": 50},
+            "volume.file must be the path of a file inside the scenario's folder",
+        ),
+        ("volume", {"file": "v.nrrd", "window": 0, "level": 5}, "volume.window must be a number"),
+        ("volume", {"file": "v.nrrd", "window": 9, "level": "x"}, "volume.level must be a number"),
     ],
 )
 def test_a_plan_or_skull_that_is_wrong_is_named(tmp_path, field, value, sentence):

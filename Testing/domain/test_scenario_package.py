@@ -8,20 +8,21 @@ import zipfile
 import numpy as np
 import pytest
 
-from rastrainer import scenario_package
+from rastrainer import scenario_package, transforms
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh, write_head_mesh
+from rastrainer.nrrd import write_nrrd
 from rastrainer.scenario import load_scenario
 from rastrainer.scenario_package import pack, unpack
 from rastrainer.scenario_writer import write_scenario
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario
+from Testing.domain.made_up_scenario import ball_head, ball_volume, made_up_scenario
 
 
 @pytest.fixture
 def folder(tmp_path):
     folder = tmp_path / "source"
     folder.mkdir()
-    write_scenario(folder, made_up_scenario(), ball_head(), ball_head(80.0))
+    write_scenario(folder, made_up_scenario(), ball_head(), ball_head(80.0), ball_volume())
     (folder / "preview.png").write_bytes(b"picture")
     (folder / "patient-name.txt").write_text("not to be given away")
     return folder
@@ -62,6 +63,7 @@ def test_a_scenario_travels_as_one_file(folder, library):
     scenario, original = load_scenario(goal), load_scenario(folder)
     assert np.array_equal(scenario.tasks[0].fiducials, original.tasks[0].fiducials)
     assert scenario.head_mesh.read_bytes() == original.head_mesh.read_bytes()
+    assert scenario.volume.path.read_bytes() == original.volume.path.read_bytes()
     assert scenario.preview.read_bytes() == b"picture"
     assert not (goal / "patient-name.txt").exists()
     again = pack(goal, folder.parent / "again.zip")
@@ -144,6 +146,11 @@ def test_a_mesh_that_is_huge_or_open_is_refused(folder, library, monkeypatch):
         ("scenario.json", b'{"formatVersion": 1}', "must be"),
         ("tasks/task-1.mrk.json", b"{}", "task-1.mrk.json"),
         ("head.ply", b"ply", "head.ply"),
+        (
+            "volume.nrrd",
+            b"NRRD0004\ntype: float\n\n",
+            r"volume volume\.nrrd must have the type",
+        ),
     ],
 )
 def test_a_file_that_cannot_be_used_is_named(folder, library, name, content, sentence):
@@ -155,6 +162,23 @@ def test_a_file_that_the_scenario_names_and_lacks_is_missed(folder, library):
     files = members(folder)
     del files["head.ply"]
     refused(zip_of(folder.parent / "bad.zip", files), library, "head.ply does not exist")
+
+
+def test_a_volume_that_lies_elsewhere_than_the_head_is_refused(folder, library):
+    files = members(folder)
+    images = ball_volume()
+    elsewhere = transforms.rigid(np.eye(3), [150.0, 0.0, 0.0]) @ images.ijk_to_ras
+    write_nrrd(folder / "elsewhere.nrrd", images.values, elsewhere)
+    files["volume.nrrd"] = (folder / "elsewhere.nrrd").read_bytes()
+    bad = zip_of(folder.parent / "bad.zip", files)
+    refused(bad, library, r"volume\.nrrd must lie where the head is")
+
+
+def test_what_a_volume_says_beside_its_voxels_stays_out(folder):
+    path = folder / "volume.nrrd"
+    magic, rest = path.read_bytes().split(b"\n", 1)
+    path.write_bytes(magic + b"\ncontent: Mustermann\nPatientName:=Mustermann\n" + rest)
+    assert b"Mustermann" not in members(folder)["volume.nrrd"]
 
 
 def test_a_name_that_leads_elsewhere_is_refused(folder, library):

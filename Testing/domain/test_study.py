@@ -4,6 +4,7 @@ import csv
 import json
 import sqlite3
 import uuid
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from rastrainer.export.trainee_json import export_trainee
 from rastrainer.registration import KINDS, register
 from rastrainer.scoring import score_trial, task_reference
 from rastrainer.study import DeletedTrialError, StoredRegistration, Study
+from rastrainer.study_trials import find
 from rastrainer.target_error import target_error
 from rastrainer.trial_record import TrialRecord
 from Testing.domain.trial_records import make_record
@@ -63,6 +65,58 @@ def test_a_pseudonym_is_unique_and_printable(study):
         study.create_trainee("a")
     with pytest.raises(InputError, match="pseudonym must be printable text"):
         study.create_trainee("a\n")
+
+
+@pytest.mark.parametrize("name", ["", " ", " T-001", "T-001 ", "T\n1", "T\u202e1", "x" * 65])
+def test_a_trial_brings_no_pseudonym_that_could_not_be_typed_in(study, name):
+    with pytest.raises(InputError):
+        study.create_trainee(name)
+    with pytest.raises(InputError):
+        study.add_trial(record(trainee=name))
+    assert study.trainees() == ()
+
+
+def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
+    trial = TrialRecord.from_json(record())
+    assert study.check_trial(trial)
+    assert study.trainees() == ()
+    study.add_trial(trial)
+    assert not study.check_trial(trial)
+    with pytest.raises(InputError, match="Another trial is stored under the UUID"):
+        study.check_trial(replace(trial, task="task-2"))
+    with pytest.raises(InputError, match="A pseudonym must be"):
+        study.check_trial(TrialRecord.from_json(record(8, trainee="T-001 ")))
+    study.delete_trainee("T-001")
+    with pytest.raises(DeletedTrialError):
+        study.check_trial(trial)
+
+
+def test_the_history_reads_again_only_what_has_changed_whoever_changed_it(study, path, monkeypatch):
+    read = []
+
+    def watched(connection, trial_id):
+        read.append(trial_id)
+        return find(connection, trial_id)
+
+    monkeypatch.setattr("rastrainer.study_trials.find", watched)
+    trials = [str(uuid.UUID(int=number)) for number in (1, 2)]
+    for number in (1, 2):
+        study.add_trial(record(number))
+    study.history("T-001")
+    assert sorted(read) == trials
+    read.clear()
+    study.history("T-001")
+    assert read == []
+    with Study.open(path) as other:
+        other.set_truth(trials[1], 1.5, [float(n) for n in range(16)])
+        other.set_motion(trials[0], {"sparc": -1.9})
+    stored = {trial.record.trial_id: trial for trial in study.history("T-001")}
+    assert sorted(read) == trials
+    assert stored[trials[1]].true_tre_mm == 1.5
+    assert stored[trials[0]].motion == {"sparc": -1.9}
+    study.delete_trainee("T-001")
+    study.create_trainee("T-001")
+    assert study.history("T-001") == ()
 
 
 def test_an_archived_trainee_leaves_the_list_and_comes_back(study):

@@ -16,7 +16,8 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study import Study
+from rastrainer.study import Study, StudyBusyError
+from rastrainer.study_patience import Patience
 from rastrainer.study_schema import APPLICATION_ID, MIGRATIONS
 from Testing.domain.trial_records import make_record
 from Testing.forked_child import in_child
@@ -89,12 +90,13 @@ class KilledWriter:
             return {int(line) for line in lines}
 
 
-def test_two_hundred_kills_of_two_writers_lose_and_double_nothing(tmp_path):
+@pytest.mark.parametrize("wanted", [40, pytest.param(400, marks=pytest.mark.soak)])
+def test_kills_of_two_writers_lose_and_double_nothing(tmp_path, wanted):
     path = tmp_path / "study.db"
     rng = random.Random(5)
     acknowledged, kills = set(), 0
     writers = [KilledWriter(path, 0), KilledWriter(path, 0)]
-    while kills < 200:
+    while kills < wanted:
         time.sleep(rng.uniform(0.0, 0.08))
         victim = rng.randrange(2)
         acknowledged |= writers[victim].kill()
@@ -105,7 +107,7 @@ def test_two_hundred_kills_of_two_writers_lose_and_double_nothing(tmp_path):
     for process in writers:
         acknowledged |= process.kill()
     stored = stored_numbers(path)
-    assert len(acknowledged) > 200
+    assert len(acknowledged) > wanted
     assert acknowledged <= set(stored)
     assert len(stored) == len(set(stored))
     assert check(path) == "ok"
@@ -265,16 +267,61 @@ def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path):
         assert sum(len(study.history(t.pseudonym)) for t in trainees) == stored
 
 
-def test_a_study_kept_busy_by_another_program_is_told(tmp_path, monkeypatch):
+@pytest.fixture
+def locked(tmp_path):
+    """The path of a study that another program has locked."""
     path = tmp_path / "study.db"
     Study.open(path).close()
-    monkeypatch.setattr("rastrainer.study_database.BUSY_TIMEOUT_S", 0.05)
     other = sqlite3.connect(path, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
-    with pytest.raises(InputError, match="kept busy by another program; try again"):
-        Study.open(path)
-    other.execute("ROLLBACK")
+    yield path
     other.close()
+
+
+def test_a_study_locked_by_another_program_is_told(locked):
+    with pytest.raises(StudyBusyError, match=r"Another program has the study .* locked; try again"):
+        Study.open(locked, Patience(0.01))
+
+
+class CountedPatience(Patience):
+    """Notes how long SQLite is allowed to wait each time."""
+
+    def __init__(self):
+        super().__init__(0.05, rest_s=1.0, clock=lambda: self.now)
+        self.now = 0.0
+        self.allowed = []
+
+    @property
+    def timeout_s(self):
+        self.allowed.append(super().timeout_s)
+        return self.allowed[-1]
+
+
+def test_a_window_waits_once_for_a_lock_and_not_for_every_question_again(locked):
+    patience = CountedPatience()
+    for _ in range(5):
+        with pytest.raises(StudyBusyError):
+            Study.open(locked, patience)
+    assert sum(patience.allowed) == 0.05
+    patience.now = 1.5
+    with pytest.raises(StudyBusyError):
+        Study.open(locked, patience)
+    assert sum(patience.allowed) == 0.1
+
+
+def test_a_study_that_was_open_when_it_was_locked_is_told_and_usable_afterwards(tmp_path):
+    path, patience = tmp_path / "study.db", CountedPatience()
+    with Study.open(path, patience) as study:
+        other = sqlite3.connect(path, isolation_level=None)
+        other.execute("BEGIN EXCLUSIVE")
+        patience.allowed.clear()
+        for _ in range(5):
+            with pytest.raises(StudyBusyError):
+                study.trainees()
+        assert sum(patience.allowed) == 0.05
+        other.execute("ROLLBACK")
+        other.close()
+        assert study.create_trainee("a").pseudonym == "a"
 
 
 def test_an_exception_in_the_middle_stores_nothing(tmp_path):

@@ -28,6 +28,12 @@ def test_touches_are_offered_as_arrays_in_their_order():
     np.testing.assert_allclose(record.touch_times_s[[0, 14]], [5.0, 110.0])
 
 
+def test_a_record_older_than_the_rule_for_touches_has_that_of_the_paper():
+    record = make_record()
+    assert "touchRule" not in record
+    assert TrialRecord.from_json(record).touch_rule == "within radius"
+
+
 def test_the_seed_may_be_kept_secret():
     record = make_record()
     del record["seed"]

@@ -26,6 +26,8 @@ COARSE_M, FINE_M = 0.03, 0.01
 LEAST_PUSH, LEAST_FINE_PUSH = 0.35, 0.7
 """Beyond the sticks' dead zone."""
 LONGEST_WAY_S = 4.0
+SINK_M = 0.003
+"""How far below the skin the sticks push for, so that the tip comes to rest on it."""
 ON_POINT_M, NEAR_M = 0.002, 0.008
 """Where the tip is stopped, and how far from there it may come to stand."""
 MOST_ATTEMPTS = 15
@@ -239,6 +241,7 @@ class StreamTrainee:
         for _attempt in range(MOST_ATTEMPTS):
             self.steer_to(point + 0.012 * outward, 0.008)
             self.steer_to(point, ON_POINT_M, fine=True)
+            self.sink_onto_skin(point - SINK_M * outward)
             self.hands.push(0.0, 0.0, 0.0, False)
             self.until_still()
             if np.linalg.norm(point - self.tip) < NEAR_M:
@@ -247,6 +250,15 @@ class StreamTrainee:
                 return
             self.approach(label, 0.02)
         raise AssertionError(f"touch {label} never came; the screen: {self.view.screen}")
+
+    def sink_onto_skin(self, below: np.ndarray) -> None:
+        """Push the tip slowly toward a place below the skin (3,) World, m, until it is on it."""
+        axes, give_up = self._stick_axes(), self.view.state["time"] + LONGEST_WAY_S
+        while self.view.state["proximity"] != "contact" and self.view.state["time"] < give_up:
+            away = below - self.tip
+            wanted = LEAST_FINE_PUSH * (axes @ away) / np.linalg.norm(away)
+            self.hands.push(*wanted.tolist(), True)
+            self.view.next_state()
 
     def _tap_touch(self, label: str) -> None:
         """Press "touch" and wait until it counts or is refused."""

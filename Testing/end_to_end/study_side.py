@@ -11,8 +11,10 @@ from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.headless_scene import HeadlessScene
 from rastrainer.slicer.session import Places, Session
+from rastrainer.slicer.simulator_package import SimulatorPackage
 from rastrainer_simulator.assets import asset_path
 
+ROOT = Path(__file__).parents[2]
 STUDY, RECORDS = "study.db", "records"
 PERIOD_S = 0.05
 
@@ -26,7 +28,7 @@ def run(folder: Path, port: int) -> None:
         study=folder / STUDY,
         records=folder / RECORDS,
         library=folder / "scenarios",
-        package="",
+        package=SimulatorPackage.of(ROOT / "RASTrainer"),
     )
     session = Session(HeadlessScene().scene, places, headlessKit)
     session.link.connectTo(DEFAULT_HOST, port)

@@ -15,6 +15,7 @@ from rastrainer.igtl.command import Command
 from rastrainer.igtl.message import Message
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device
 from rastrainer.scenario import Scenario
+from Testing.end_to_end.onto_skin import lower_onto_skin
 
 TASK = "task-1"
 TRAINEE = "T-042"
@@ -173,7 +174,7 @@ class SurvivingPlayer:
         place = places[number]
         tip = client.wait_for(Device.TOOL_TIP_TO_WORLD, timeout=PATIENCE_S)
         lifted = _above(np.array(tip.content.matrix)[:3, 3], center)
-        for goal in (lifted, _above(place, center), place):
+        for goal in (lifted, _above(place, center)):
             self._send(
                 client, CommandName.MOVE_TIP_TO, None, positionMm=goal.tolist(), speedMmS=500
             )
@@ -182,6 +183,9 @@ class SurvivingPlayer:
                 return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - goal) < 3.0
 
             client.wait_for(Device.TOOL_TIP_TO_WORLD, is_there, PATIENCE_S)
+        self._in_flight = CommandName.MOVE_TIP_TO
+        lower_onto_skin(client, place, center)
+        self._in_flight = ""
 
     def _send(self, client: Client, name: str, killing: Killing | None, **arguments) -> dict:
         """Carry out a command; what is on its way when the server dies may count or not."""

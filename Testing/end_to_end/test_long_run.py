@@ -8,6 +8,7 @@ import random
 import re
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -67,8 +68,11 @@ class Run:
     trials: int
 
 
-def train(folder: Path, seconds: float, speed: float) -> Run:
-    """Play trial after trial, each in a connection of its own, a view and Slicer's side beside."""
+def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
+    """Play trial after trial, each in a connection of its own, a view and Slicer's side beside.
+
+    `is_enough` is asked with the number of trials played, before each trial.
+    """
     records = folder / "records"
     simulators, slicers, problems = [], [], []
     player = SurvivingPlayer(load_scenario(COLIN), random.Random(1))
@@ -84,8 +88,7 @@ def train(folder: Path, seconds: float, speed: float) -> Run:
             errors=slicer_says,
         )
         stack.callback(slicer.kill)
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
+        while not is_enough(len(simulators)):
             with ViewClient(thread, simulator.url, KEY) as view:
                 WatchingView(view)
                 assert player.play(simulator.port, None, 1)
@@ -144,8 +147,8 @@ def told(run: Run) -> str:
     return f"\n{run.trials} trials: {'; '.join(parts)}"
 
 
-def test_two_minutes_of_training_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
-    run = train(tmp_path, 120.0, speed=2)
+def test_ten_trials_in_a_row_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
+    run = train(tmp_path, lambda played: played >= 10, speed=8)
     with capsys.disabled():
         print(told(run))
     check_flat(run)
@@ -153,7 +156,8 @@ def test_two_minutes_of_training_leave_memory_and_descriptors_as_they_were(tmp_p
 
 @pytest.mark.soak
 def test_two_hours_of_training_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
-    run = train(tmp_path, 7200.0, speed=1)
+    end = time.monotonic() + 7200.0
+    run = train(tmp_path, lambda _played: time.monotonic() > end, speed=1)
     with capsys.disabled():
         print(told(run))
     check_flat(run)

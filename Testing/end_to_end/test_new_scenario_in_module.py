@@ -81,7 +81,9 @@ def sample(host, tmp_path, monkeypatch):
     scan = phantom(spacing=SAMPLE_SPACING, shape=SAMPLE_SHAPE, turn_deg=7.0, noise=3.0)
     path = write_volume(tmp_path / "sample.nrrd", scan)
     monkeypatch.setattr(
-        SampleDataLogic, "downloadSample", lambda _logic, name: load_volume(host.scene, path, name)
+        SampleDataLogic,
+        "downloadSamples",
+        lambda _logic, name: [load_volume(host.scene, path, name)],
     )
 
 
@@ -98,6 +100,7 @@ def test_a_loaded_volume_with_fiducials_placed_by_hand_is_trained_on_by_five_cli
     clicks.press("makeScenarioButton")
     assert host.messages == []
     assert "is made" in host.text("newScenarioText")
+    unfold(host, "scenarioCollapsibleButton")
     assert host.find("scenarioPicture").visible
     clicks.start_trial_on("Ms X")
     assert clicks.count <= 5
@@ -105,6 +108,11 @@ def test_a_loaded_volume_with_fiducials_placed_by_hand_is_trained_on_by_five_cli
     assert [path.name for path in library.iterdir()] == ["ms-x"]
     scenario = load_scenario(library / "ms-x")
     assert [task.title for task in scenario.tasks] == ["Trial run"]
+    images = findNode(host.scene, "vtkMRMLScalarVolumeNode", Role.HEAD_VOLUME)
+    host.wait_until(lambda: images.GetImageData(), "its images are shown")
+    assert images.GetName() == "Ms X"
+    assert images.GetSpacing() == (1.0, 1.0, 1.0)
+    assert images.GetDisplayNode().GetWindow() == scenario.volume.window
     a_check_says_what_is_wrong(host, placed)
     assert [path.name for path in library.iterdir()] == ["ms-x"]
 
@@ -132,10 +140,9 @@ def test_the_sample_is_in_the_scene_and_chosen_by_one_click(host):
 def test_a_sample_that_cannot_be_downloaded_is_told_and_nothing_is_chosen(host, monkeypatch):
     host.open()
     unfold(host, "newScenarioCollapsibleButton")
-    monkeypatch.setattr(SampleDataLogic, "downloadSample", lambda _logic, _name: None)
+    monkeypatch.setattr(SampleDataLogic, "downloadSamples", lambda _logic, _name: [None])
     host.press("sampleDataButton")
-    assert "Sample Data has brought no volume" in host.messages[-1].text
-    assert "check the network" in host.messages[-1].text
+    assert "did not come over the network" in host.messages[-1].text
     assert host.find("scanComboBox").currentNode() is None
     assert not host.find("makeScenarioButton").enabled
 

@@ -141,6 +141,7 @@ def test_a_window_that_fails_is_told_of_and_its_log_beside_the_simulator_s_says_
     options = ["--view-port", "0", "--no-gamepad", "--desktop"]
     with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
         simulator.next_line()
+        assert "computes the robot's kinematics by" in simulator.next_line()
         assert "goes on without its window" in simulator.next_line()
         assert simulator.stop()[0] == 0
     (line,) = log_lines(tmp_path, "window.log")

@@ -19,6 +19,7 @@ from Testing.domain.made_up_scenario import ball_head, made_up_scenario
 from Testing.domain.spheres import sphere_mesh
 from Testing.slicer.head.phantoms import CT, phantom
 from Testing.slicer.head.volume_file import write_volume
+from Testing.slicer.simulator_double import wait_until
 
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli"]
 
@@ -144,4 +145,5 @@ def test_a_build_that_is_cancelled_leaves_nothing(tmp_path):
         build_scenario(
             lambda _tell: (draft, []), tmp_path / "made", (), RASTRAINER, progress=progress
         )
-    assert not list(tmp_path.iterdir())
+    # The process that plans clears away what it has half made, and ends.
+    wait_until(lambda: not list(tmp_path.iterdir()), lambda: None, 60.0)

@@ -17,6 +17,7 @@ from rastrainer.scenario import Scenario, load_scenario
 from rastrainer.surface_queries import outward_normal
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.onto_skin import lower_onto_skin
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 TASK = "task-1"
@@ -77,7 +78,7 @@ def play(player: Player, scenario: Scenario) -> dict:
     answers = {"StartTask": player.do("StartTask", task=TASK, trainee="anna", seed=SEED)}
     for fiducial, place_above in zip(fiducials, above, strict=True):
         player.move_to(place_above)
-        player.move_to(fiducial)
+        lower_onto_skin(player, fiducial, 2 * fiducial - place_above)
         player.do("Capture")
         player.move_to(place_above)
     points = player.wait_for("CapturedPoints", lambda m: len(m.content.points) == 15, 20)

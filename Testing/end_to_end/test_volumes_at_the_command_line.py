@@ -7,7 +7,9 @@ import tempfile
 import numpy as np
 import pytest
 
+from rastrainer import transforms
 from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_volume import check_place, read_head_volume
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
 from rastrainer.scenario import load_scenario
@@ -163,6 +165,21 @@ def test_an_odd_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name
     scanned = mesh.vertices[mesh.vertices[:, 2] > NOTHING_SCANNED_BELOW]
     away = scanned[np.linalg.norm(scanned - NOSE, axis=1) > 20.0]
     assert np.abs(depth_mm(away)).mean() < most_mm
+    images = read_head_volume(scenario.volume)
+    check_place(images, mesh, scenario.volume.path)
+    brain = transforms.apply(transforms.inverse(images.ijk_to_ras), [0.0, 10.0, 30.0])
+    shown = images.values[tuple(np.rint(brain).astype(int))] - images.level
+    assert abs(shown) < 0.5 * images.window
+    assert "Images: " in scenario.provenance.method
+
+
+def test_a_scenario_is_made_without_its_images_where_that_is_wished(place):
+    volume = write_volume(place / "head.nrrd", phantom(spacing=(2.0, 2.0, 2.0)))
+    write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials()))
+    words = ["scenario", "build", str(volume), "-o", str(place / "made"), "--no-skull"]
+    assert main([*words, "--no-volume", "--tasks", str(place / "mine.mrk.json")]) == 0
+    assert load_scenario(place / "made").volume is None
+    assert not (place / "made" / "volume.nrrd").exists()
 
 
 def everything_in(folder):

@@ -18,6 +18,7 @@ import trimesh
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_protocol import read_study_protocol
 from rastrainer.markups import read_markups
+from rastrainer.nrrd import read_nrrd, write_nrrd
 from rastrainer.plain_xml import DEEPEST, MOST_ELEMENTS
 from rastrainer.point_files import read_points
 from rastrainer.report.study_notes import read_notes
@@ -43,6 +44,7 @@ SCENARIO = asset_path("scenarios", "colin27")
 STUDIES = asset_path("studies")
 ROBOT = asset_path("robots", "iiwa7")
 MESH = next((ROBOT / "meshes" / "visual").glob("*.stl"))
+VOLUME = SCENARIO / "volume.nrrd"
 TASK = SCENARIO / "tasks" / "task-1.mrk.json"
 
 
@@ -86,6 +88,7 @@ JSON_FAMILIES = {
 }
 OTHER_FAMILIES = {
     "points": Family(read_points, lambda _: b"label,x,y,z\n1,1,2,3\n2,4,5,6\n3,7,8,9\n", "p.csv"),
+    "volume": Family(read_nrrd, lambda _: VOLUME.read_bytes(), "volume.nrrd"),
     "URDF": Family(load_robot, lambda _: (ROBOT / "iiwa7.urdf").read_bytes(), "robot.urdf"),
 }
 FAMILIES = {**JSON_FAMILIES, **OTHER_FAMILIES}
@@ -288,6 +291,23 @@ def test_a_damaged_head_is_read_or_refused_and_breaks_nothing(tmp_path):
             checked_scenario(folder)
         except InputError:
             continue
+
+
+def test_a_damaged_volume_is_read_or_refused_and_breaks_nothing(tmp_path):
+    path = tmp_path / "volume.nrrd"
+    write_nrrd(path, np.arange(6000, dtype=np.int16).reshape(10, 20, 30), np.eye(4))
+    good, outcomes = path.read_bytes(), set()
+    for content in mutations(good[:300], 200, seed=12):
+        path.write_bytes(content + good[300:])
+        try:
+            values, matrix = read_nrrd(path)
+        except InputError:
+            outcomes.add("refused")
+            continue
+        outcomes.add("read")
+        assert values.size == 6000
+        assert np.isfinite(matrix).all()
+    assert outcomes == {"read", "refused"}
 
 
 def test_a_package_of_a_scenario_leads_nowhere_else_and_is_no_bomb(tmp_path):

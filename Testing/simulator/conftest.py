@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.protocol import TouchRule
 from rastrainer_simulator.setup import SimulationSetup, load_setup
 
 
@@ -24,5 +25,7 @@ def scenario(setup):
 @pytest.fixture(scope="session")
 def anywhere(setup):
     """Return a setup in which every touch counts, wherever the tip is."""
-    training = replace(setup.settings.training, acceptance_radius=10.0)
+    training = replace(
+        setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
+    )
     return replace(setup, settings=replace(setup.settings, training=training))

@@ -393,13 +393,15 @@ KILLED = """
 import sys
 from dataclasses import replace
 from pathlib import Path
-from rastrainer.protocol import CommandName, check_arguments
+from rastrainer.protocol import CommandName, TouchRule, check_arguments
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.setup import load_setup
 from rastrainer_simulator.simulation import Simulation
 
 setup = load_setup()
-training = replace(setup.settings.training, acceptance_radius=10.0)
+training = replace(
+    setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
+)
 setup = replace(setup, settings=replace(setup.settings, training=training))
 with ControlLoop(Simulation(setup, 1), Path(sys.argv[1]), speed=None) as loop:
     def do(name, **arguments):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from rastrainer.fiducial_normals import fiducial_normals
 from rastrainer.head_mesh import read_head_mesh
-from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
+from rastrainer.protocol import CommandName, Phase, Proximity, TouchRule, check_arguments
 from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
 from rastrainer_simulator.robot.solution import FabrikSettings
 from rastrainer_simulator.settings import SimulationSettings
@@ -265,8 +267,29 @@ def test_the_camera_is_switched_and_told(trial):
     trial.do(CommandName.SET_CAMERA, camera="close-up")
 
 
+@pytest.mark.parametrize("task", ["trial-run", "task-5"])
+def test_hovering_nine_millimeters_above_the_skin_touches_nothing(setup, task):
+    simulation = Simulation(setup, SEED)
+    driver = Driver(simulation)
+    driver.start(task=task)
+    scenario, truth = setup.scenario, simulation.truth
+    point = scenario.task(task).fiducials[0]
+    normal = fiducial_normals(scenario, task)[0]
+    driver.move_to(truth.in_world(point + 60.0 * normal))
+    driver.move_to(truth.in_world(point + 9.0 * normal))
+    answer = driver.do(CommandName.CAPTURE)
+    assert not answer.ok
+    assert re.fullmatch(
+        r"(8\.\d|9\.0) mm above the skin: lower the tip onto point 1\.", answer.message
+    )
+    driver.move_to(truth.in_world(point - 1.0 * normal))
+    assert driver.do(CommandName.CAPTURE).ok
+
+
 def test_a_planned_target_is_shown_once_the_trial_is_registered(setup):
-    anywhere = replace(setup.settings.training, acceptance_radius=10.0)
+    anywhere = replace(
+        setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
+    )
     driver = Driver(
         Simulation(replace(setup, settings=replace(setup.settings, training=anywhere)), 1)
     )

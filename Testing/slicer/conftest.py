@@ -1,3 +1,5 @@
+import time
+
 import numpy as np
 import pytest
 import vtk
@@ -6,7 +8,9 @@ from vtk.util.numpy_support import vtk_to_numpy
 from rastrainer import transforms
 from rastrainer.head_mesh import HeadMesh, write_head_mesh
 from rastrainer.scenario import Perturbation, Scenario
+from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.link import Link
 from rastrainer.tasks import LABELS, Task
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 from Testing.slicer.simulator_double import SimulatorDouble
@@ -20,6 +24,28 @@ def headless_scene():
 @pytest.fixture
 def scene(headless_scene):
     return headless_scene.scene
+
+
+class Clock:
+    """Runs, and jumps where a test adds to `ahead`."""
+
+    def __init__(self):
+        self.ahead = 0.0
+
+    def __call__(self):
+        return self.ahead + time.monotonic()
+
+
+@pytest.fixture
+def clock():
+    return Clock()
+
+
+@pytest.fixture
+def link(scene, clock):
+    link = Link(scene, headlessKit, clock=clock)
+    yield link
+    link.disconnect()
 
 
 @pytest.fixture

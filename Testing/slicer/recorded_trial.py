@@ -14,9 +14,17 @@ URDF = asset_path("robots", "iiwa7") / "iiwa7.urdf"
 
 
 def write_recorded_trial(
-    folder: Path, trial_id: str, seconds: float = 3.0, trainee: str = "T-001"
+    folder: Path,
+    trial_id: str,
+    seconds: float = 3.0,
+    trainee: str = "T-001",
+    touch_every_s: int = 1,
 ) -> np.ndarray:
-    """Write the journal of a trial with a touch each second; return its tips (n, 3) float, mm."""
+    """Write the journal of a trial with a touch each second, or more seldom.
+
+    Returns:
+        Its tips (n, 3) float, mm.
+    """
     times = np.arange(5, round(seconds / TICK_S) + 1, 5) * TICK_S
     q = np.array([0.1, 0.5, -0.2, -1.4, 0.3, 0.9, 0.0]) + 0.05 * np.sin(times)[:, None]
     tips = read_arm_chain(URDF).tool_to_world(q)[:, :3, 3]
@@ -36,8 +44,9 @@ def write_recorded_trial(
         stamp = {"tick": 5 * number, "simTime": START_S + time}
         sample = {"q": posture.tolist(), "tipMm": tip.tolist(), "clearanceMm": 30.0 - 5.0 * time}
         entries.append({"kind": "sample", **stamp, **sample})
-        if round(time / TICK_S) % 250 == 0:
-            touch = {"label": str(round(time)), "positionMm": tip.tolist(), "kept": round(time)}
+        if round(time / TICK_S) % (250 * touch_every_s) == 0:
+            count = round(time) // touch_every_s
+            touch = {"label": str(count), "positionMm": tip.tolist(), "kept": count}
             stamp = {"tick": 5 * number, "simTime": START_S + time + TICK_S}
             entries.append({"kind": "touch", **stamp, **touch})
     lines, previous = [], NO_LINE

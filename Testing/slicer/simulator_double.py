@@ -12,9 +12,11 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rastrainer.igtl.command import ERROR_KEY, FAIL, STATUS_KEY, SUCCESS, Command, CommandReply
+from rastrainer.igtl.content import Status
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
-from rastrainer.protocol import Device
+from rastrainer.protocol import PROTOCOL_VERSION, Device
+from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link import Link
 
 Refusal = str
@@ -25,10 +27,18 @@ class SimulatorDouble:
     """Listens on a free port of the loopback; `port` may be given to come back on the same one.
 
     `responder(name, arguments)` gives each command's answer: data, a sentence of refusal, or None
-    for no answer at all. Everything received stands in `commands`.
+    for no answer at all. Everything received stands in `commands`. As the simulator does, it sends
+    its heartbeat to whoever sends a first message; where `beats` is False, only to who asks.
     """
 
-    def __init__(self, responder: Responder | None = None, port: int = 0) -> None:
+    def __init__(
+        self,
+        responder: Responder | None = None,
+        port: int = 0,
+        version: int = PROTOCOL_VERSION,
+    ) -> None:
+        self.beats = True
+        self.heartbeat = Message(Device.SIM_SERVER, Status(Status.OK, subcode=version))
         self.responder = responder or (lambda _name, _arguments: {})
         self._listener = socket.create_server(("127.0.0.1", port))
         self.port = self._listener.getsockname()[1]
@@ -50,12 +60,13 @@ class SimulatorDouble:
         with self._lock:
             return len(self._peers)
 
+    def stop_listening(self) -> None:
+        """Free the port, and stay with those who are connected."""
+        _close(self._listener)
+
     def close(self) -> None:
-        # Shutting down wakes the thread in accept; closing alone leaves it there.
         for open_socket in (self._listener, *self._peers):
-            with contextlib.suppress(OSError):
-                open_socket.shutdown(socket.SHUT_RDWR)
-            open_socket.close()
+            _close(open_socket)
 
     def send(self, device: str, content: Any, metadata: Mapping[str, str] | None = None) -> None:
         self.send_bytes(pack(Message(device, content, metadata or {})))
@@ -84,14 +95,23 @@ class SimulatorDouble:
     def _receive(self, peer: socket.socket) -> None:
         # The odd greeting of Slicer has no device name; our reader accepts it.
         reader = MessageReader()
+        is_greeted = False
         try:
             while data := peer.recv(65536):
                 for message in reader.feed(data):
+                    if not is_greeted:
+                        is_greeted = True
+                        self._greet(peer, message)
                     self.received.put(message)
                     if type(message.content) is Command:
                         self._answer(message.content)
         except OSError:
             pass
+
+    def _greet(self, peer: socket.socket, message: Message) -> None:
+        if self.beats or message.device == "RASTrainer":
+            with self._lock:
+                peer.sendall(pack(self.heartbeat))
 
     def _answer(self, command: Command) -> None:
         arguments = json.loads(command.body or "{}")
@@ -103,6 +123,13 @@ class SimulatorDouble:
         metadata = {STATUS_KEY: FAIL, ERROR_KEY: answer} if is_refusal else {STATUS_KEY: SUCCESS}
         body = "{}" if is_refusal else json.dumps(answer)
         self.send(Device.COMMAND, CommandReply(command.command_id, command.name, body), metadata)
+
+
+def _close(open_socket: socket.socket) -> None:
+    # Shutting down wakes the thread in accept; closing alone leaves it there.
+    with contextlib.suppress(OSError):
+        open_socket.shutdown(socket.SHUT_RDWR)
+    open_socket.close()
 
 
 def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 30.0):
@@ -124,3 +151,15 @@ def process_link(link: Link) -> None:
 def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 30.0) -> None:
     """Let the link work until `condition()`."""
     wait_until(condition, lambda: process_link(link), timeout)
+
+
+def run_desk_until(
+    link: Link, work: BackgroundWork, condition: Callable[[], Any], timeout: float = 90.0
+) -> None:
+    """Let the link and what is done in the background work until `condition()`."""
+
+    def process() -> None:
+        process_link(link)
+        work.process()
+
+    wait_until(condition, process, timeout)

@@ -12,10 +12,13 @@ import pytest
 ROOT = Path(__file__).parents[2]
 MODULE = ROOT / "RASTrainer"
 SOURCES = sorted(MODULE.rglob("*.py"))
-RESOURCES = sorted(path for path in (MODULE / "Resources").rglob("*") if path.is_file())
+RESOURCES = sorted(
+    path for path in (MODULE / "Resources").rglob("*") if path.is_file() and ".whl" not in path.name
+)
+"""Without the simulator's wheel, which a release builds."""
 
 # Free to import in Slicer: its own modules and what its Python brings along.
-BUNDLED = {"slicer", "vtk", "qt", "ctk", "numpy", "scipy", "requests", "PIL"}
+BUNDLED = {"slicer", "vtk", "qt", "ctk", "numpy", "scipy", "requests", "PIL", "SampleData"}
 
 
 def relative(paths):
@@ -105,6 +108,13 @@ def test_the_catalog_entry_keeps_the_rules_of_slicers_extensions_index():
     assert f'set(EXTENSION_CATEGORY "{entry["category"]}")' in text
     assert f'set(EXTENSION_DEPENDS "{" ".join(entry["build_dependencies"])}")' in text
     assert entry["scm_url"].removesuffix(".git") in text
+
+
+def test_the_title_does_not_say_ras_which_is_right_anterior_superior_to_slicers_users():
+    source = (MODULE / "RASTrainer.py").read_text(encoding="utf-8")
+    (title,) = re.findall(r'parent\.title = _\("(.*)"\)', source)
+    assert "Robot-Assisted Surgery" in title
+    assert not re.search(r"\bRAS", title)
 
 
 def test_the_panels_use_only_widgets_that_the_ui_file_has():

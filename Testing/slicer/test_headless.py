@@ -115,6 +115,10 @@ def check_saved_scene(path, results):
     np.testing.assert_allclose(residuals, results["fits"]["rigid"]["residuals_mm"], atol=2e-3)
     head = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     assert head.GetPolyData().GetNumberOfPolys() > 40_000
+    images = findNode(scene, "vtkMRMLScalarVolumeNode", Role.HEAD_VOLUME)
+    assert images.GetImageData().GetDimensions() == (204, 228, 178)
+    red = scene.GetNodeByID("vtkMRMLSliceCompositeNodeRed")
+    assert red.GetBackgroundVolumeID() == images.GetID()
     assert findNode(scene, "vtkMRMLTableNode", Role.RESIDUALS).GetNumberOfRows() == 15
     assert findNode(scene, "vtkMRMLTableNode", Role.FITS).GetNumberOfRows() == 3
     assert findNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS).GetPolyData() is not None

@@ -13,6 +13,7 @@ from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.points import Point, Points
 from rastrainer.slicer.headless_command import HeadlessCommand
 from rastrainer.slicer.headless_connector import HeadlessConnector
+from rastrainer.slicer.headless_crash import CrashError, takeCrashes
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 
 SHIFT = ((1, 0, 0, 10), (0, 1, 0, 20), (0, 0, 1, 30), (0, 0, 0, 1))
@@ -181,9 +182,9 @@ def test_a_wrong_checksum_creates_the_node_but_does_not_fill_it(connector, simul
 
 
 def test_a_status_arrives_with_code_and_message(connector, simulator):
-    simulator.send("SimServer", Status(1, 2, "fine", "all is well"))
-    wait_for(connector, lambda: incoming(connector, "SimServer"))
-    node = incoming(connector, "SimServer")
+    simulator.send("Robot", Status(1, 2, "fine", "all is well"))
+    wait_for(connector, lambda: incoming(connector, "Robot"))
+    node = incoming(connector, "Robot")
     assert (node.GetCode(), node.GetSubCode()) == (1, 2)
     assert (node.GetErrorName(), node.GetStatusString()) == ("fine", "all is well")
 
@@ -271,8 +272,36 @@ def test_what_would_crash_slicer_is_an_error_here(connector, simulator):
     data = bytearray(pack(Message("SimServer", Status(1))))
     data[2:14] = b"GET_STATUS\0\0"
     simulator.send_bytes(bytes(data))
-    with pytest.raises(RuntimeError, match="would not have survived"):
+    with pytest.raises(CrashError, match="GET_STATUS"):
         wait_for(connector, lambda: False)
+    assert len(takeCrashes()) == 1
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nContent-Length: 0\r\n\r\n",
+        b"SSH-2.0-OpenSSH_9.2p1\r\n",
+        pack(Message("SimServer", Status(1)))[:42] + struct.pack(">QQ", 2**31, 0),
+    ],
+    ids=["a web page", "SSH", "a body of 2 GiB"],
+)
+def test_what_is_not_openigtlink_would_have_ended_slicer(connector, simulator, said):
+    simulator.send_bytes(said)
+    crashes = []
+    wait_for(connector, lambda: crashes.extend(takeCrashes()) or crashes)
+    assert len(crashes) == 1
+
+
+def test_a_running_client_connects_to_its_new_port_after_a_loss(scene):
+    with SimulatorDouble() as first, SimulatorDouble() as second:
+        connector = started_connector(scene, first)
+        connector.SetServerPort(second.port)
+        wait_for(connector, lambda: not first.received.empty())
+        assert second.peer_count == 0
+        first.close()
+        wait_for(connector, lambda: second.peer_count == 1)
+        connector.Stop()
 
 
 def test_a_type_that_slicer_does_not_know_is_logged_and_ignored(connector, simulator, caplog):

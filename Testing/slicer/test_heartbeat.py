@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.slicer.finding import Finding, Peer
 from rastrainer.slicer.heartbeat import LinkObservation, LinkState, judge, notInstalled
 
 WELL = LinkObservation(
@@ -17,17 +18,45 @@ WELL = LinkObservation(
 )
 
 
+def found(peer):
+    return replace(WELL, isOpen=False, finding=Finding(peer))
+
+
 @pytest.mark.parametrize(
     ("link", "state", "sentence", "remedy"),
     [
         (WELL, LinkState.CONNECTED, "Connected to the simulator at 127.0.0.1:18944", ""),
-        (replace(WELL, isWanted=False), LinkState.OFF, "Not connected", "Connect"),
-        (replace(WELL, isOpen=False), LinkState.ABSENT, "No simulator answers", "Start it"),
+        (replace(WELL, isWanted=False), LinkState.OFF, "Not connected", "Start and connect"),
+        (replace(WELL, isOpen=False), LinkState.LOOKING, "Looking for a simulator at 127", ""),
+        (
+            replace(WELL, isOpen=False, finding=Finding(Peer.SIMULATOR, "", PROTOCOL_VERSION)),
+            LinkState.LOOKING,
+            "Looking for a simulator",
+            "",
+        ),
+        (found(Peer.NOBODY), LinkState.ABSENT, "No simulator answers", "Start the simulator"),
+        (found(Peer.UNKNOWN_HOST), LinkState.ABSENT, "no computer of that name", "IPv4"),
+        (found(Peer.WEB_PAGE), LinkState.OTHER_PROGRAM, "is a web page (HTTP), not", "18944"),
+        (found(Peer.ENCRYPTED), LinkState.OTHER_PROGRAM, "encrypted port (TLS)", "18944"),
+        (found(Peer.SILENT), LinkState.OTHER_PROGRAM, "says nothing", "18944"),
+        (
+            found(Peer.OTHER_OPENIGTLINK),
+            LinkState.OTHER_PROGRAM,
+            "is another OpenIGTLink program, not",
+            "18944",
+        ),
+        (found(Peer.OTHER_PROGRAM), LinkState.OTHER_PROGRAM, "is another program, not", "18944"),
+        (
+            replace(WELL, isOpen=False, finding=Finding(Peer.SIMULATOR, "", PROTOCOL_VERSION + 1)),
+            LinkState.WRONG_VERSION,
+            f"version {PROTOCOL_VERSION + 1} of the protocol",
+            "Update the module",
+        ),
         (
             replace(WELL, isOpen=False, isListening=True),
             LinkState.ABSENT,
             "No simulator has connected",
-            "--connect",
+            "connects to this computer",
         ),
         (replace(WELL, isHeard=False), LinkState.GREETING, "waiting for its first", ""),
         (replace(WELL, silenceS=5.2), LinkState.STALE, "silent for 5 s", "restart"),

@@ -6,31 +6,10 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import Status, String
 from rastrainer.igtl.points import Point, Points
 from rastrainer.protocol import PROTOCOL_VERSION, Device
-from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.heartbeat import RECONNECT_AFTER_S, LinkState
-from rastrainer.slicer.link import Link
+from rastrainer.slicer.link import POSES_HZ, Link
 from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
-
-
-class Clock:
-    def __init__(self):
-        self.now = 100.0
-
-    def __call__(self):
-        return self.now
-
-
-@pytest.fixture
-def clock():
-    return Clock()
-
-
-@pytest.fixture
-def link(scene, clock):
-    link = Link(scene, headlessKit, clock=clock)
-    yield link
-    link.disconnect()
 
 
 def beat(simulator, version=PROTOCOL_VERSION):
@@ -40,16 +19,39 @@ def beat(simulator, version=PROTOCOL_VERSION):
 def connect(link, simulator):
     link.connectTo(port=simulator.port)
     run_link_until(link, lambda: simulator.commands)
-    beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
 
 
-def test_the_first_thing_said_is_hello_with_the_protocol_version(link, simulator):
+def hello(hz):
+    wishes = {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"}
+    return "Hello", {**wishes, "toolTipHz": hz, "linksHz": hz}
+
+
+def test_the_first_thing_said_is_hello_with_the_protocol_version_and_no_wish_for_poses(
+    link, simulator
+):
     connect(link, simulator)
-    assert simulator.commands[0] == (
-        "Hello",
-        {"protocolVersion": PROTOCOL_VERSION, "client": "3D Slicer"},
-    )
+    assert simulator.commands == [hello(0.0)]
+
+
+def test_poses_are_asked_for_by_another_hello_and_the_link_opens_once(link, simulator):
+    opened = []
+    link.opened.connect(lambda: opened.append(True))
+    connect(link, simulator)
+    for are_wanted in (True, True, False, False, True):
+        link.wantPoses(are_wanted)
+    run_link_until(link, lambda: len(simulator.commands) == 4)
+    assert simulator.commands == [hello(0.0), hello(POSES_HZ), hello(0.0), hello(POSES_HZ)]
+    replies = []
+    link.send("ListTasks", onReply=replies.append)
+    run_link_until(link, lambda: replies)
+    assert opened == [True]
+
+
+def test_poses_that_were_wanted_before_are_asked_for_with_the_connection(link, simulator):
+    link.wantPoses(True)
+    connect(link, simulator)
+    assert simulator.commands == [hello(POSES_HZ)]
 
 
 def test_each_state_is_told_once(link, simulator):
@@ -57,27 +59,30 @@ def test_each_state_is_told_once(link, simulator):
     link.statusChanged.connect(lambda status: states.append(status.state))
     connect(link, simulator)
     link.disconnect()
-    assert states in (
-        [LinkState.ABSENT, LinkState.GREETING, LinkState.CONNECTED, LinkState.OFF],
-        [LinkState.GREETING, LinkState.CONNECTED, LinkState.OFF],
-    )
+    assert states == [
+        LinkState.LOOKING,
+        LinkState.GREETING,
+        LinkState.CONNECTED,
+        LinkState.OFF,
+    ]
 
 
 def test_silence_is_told_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):
     connect(link, simulator)
-    clock.now += 5.0
+    clock.ahead += 5.0
     run_link_until(link, lambda: link.status.state is LinkState.STALE)
     beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
-    clock.now += RECONNECT_AFTER_S + 1.0
+    clock.ahead += RECONNECT_AFTER_S + 1.0
     run_link_until(link, lambda: len(simulator.commands) == 2)
     assert simulator.commands[1][0] == "Hello"
 
 
 def test_a_connection_that_was_dead_before_the_first_heartbeat_is_made_anew(link, simulator, clock):
+    simulator.beats = False
     link.connectTo(port=simulator.port)
     run_link_until(link, lambda: simulator.commands)
-    clock.now += RECONNECT_AFTER_S + 1.0
+    clock.ahead += RECONNECT_AFTER_S + 1.0
     run_link_until(link, lambda: len(simulator.commands) == 2)
     beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
@@ -223,7 +228,7 @@ def test_a_simulator_that_never_answers_does_not_leave_one_waiting(link, clock):
         connect(link, simulator)
         replies = []
         link.send("ListTasks", onReply=replies.append, timeoutS=2.0)
-        clock.now += 2.1
+        clock.ahead += 2.1
         run_link_until(link, lambda: replies)
         assert replies[0].error == "The simulator gave no answer to ListTasks."
 

@@ -41,13 +41,14 @@ def test_an_empty_host_is_told_in_one_sentence(host):
     assert "Enter the host of the simulator" in host.messages[-1].text
 
 
-def test_host_and_port_are_saved_with_the_scene(host):
+def test_host_and_port_outlive_the_scene(host):
     host.type("hostLineEdit", "10.0.0.7")
+    host.type("portSpinBox", "18999")
+    host.clear_scene()
     host.leave()
     host.enter()
     assert host.text("hostLineEdit") == "10.0.0.7"
-    host.clear_scene()
-    assert host.text("hostLineEdit") == "127.0.0.1"
+    assert host.find("portSpinBox").value == 18999
 
 
 @pytest.mark.usefixtures("connected")
@@ -91,6 +92,26 @@ def test_sample_data_come_into_the_scene_and_the_slices(host):
     volume = host.scene.GetFirstNodeByName("MRBrainTumor1")
     assert red.GetBackgroundVolumeID() == volume.GetID()
     assert host.find("scanComboBox").currentNode() is volume
+
+
+@pytest.mark.parametrize("uri", ["http://127.0.0.1:9/sample.nrrd", "file:///nowhere/sample.nrrd"])
+def test_without_a_network_sample_data_are_a_sentence_and_leave_nothing(host, uri):
+    logic = slicer.util.getModuleLogic("SampleData")
+    logic.uri = uri
+    nodes = host.scene.GetNumberOfNodes()
+    host.press("sampleDataButton")
+    assert "Connect this computer to the Internet" in host.messages[-1].text
+    assert logic.attempts == 0
+    assert host.scene.GetNumberOfNodes() == nodes
+    assert host.text("makeScenarioButton") == "Make scenario"
+    assert host.find("sampleDataButton").enabled
+
+
+def test_a_sample_that_does_not_come_though_there_is_a_network_is_told(host, monkeypatch):
+    logic = slicer.util.getModuleLogic("SampleData")
+    monkeypatch.setattr(logic, "downloadSamples", lambda _name: [None])
+    host.press("sampleDataButton")
+    assert "did not come over the network" in host.messages[-1].text
 
 
 def test_every_choice_that_can_be_made_without_a_simulator_is_taken(host):

@@ -1,18 +1,25 @@
 """The sections Scenario and New scenario without a simulator: lists, files, set-up, sentences."""
 
+import sys
+import threading
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
+import slicer
 
 from rastrainer.head_pose import Perturbation
 from rastrainer.scenario_library import user_library
-from rastrainer.scenario_package import pack
+from rastrainer.scenario_package import pack, unpack
 from rastrainer.scenario_setup import SetUp
 from rastrainer.scenario_writer import new_folder, write_scenario
+from rastrainer.slicer import scenario_files
 from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.head.extraction import HeadSettings, find_head
-from rastrainer.slicer.head.segment import for_segment
+from rastrainer.slicer.head import scenario_build
+from rastrainer.slicer.head.extraction import find_head
+from rastrainer.slicer.head.head_body import HeadSettings
+from rastrainer.slicer.head.segment import for_segment, volume_of_segment
 from rastrainer.slicer.head.volume import Volume
 from rastrainer.slicer.head_preview import HeadPreview
 from rastrainer.slicer.scene import Role, findNode
@@ -60,6 +67,30 @@ def test_a_zip_file_is_added_listed_with_its_picture_and_chosen(host, package):
     host.answer("Add a scenario", package)
     host.press("importScenarioButton")
     assert "already" in host.messages[-1].text
+
+
+def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, monkeypatch):
+    begun, goes_on, ended = threading.Event(), threading.Event(), threading.Event()
+
+    def unpack_when_told(*arguments):
+        begun.set()
+        goes_on.wait()
+        try:
+            return unpack(*arguments)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(scenario_files, "unpack", unpack_when_told)
+    unfold(host, "shareGroupBox")
+    host.answer("Add a scenario", package)
+    with cancels(host, "importScenarioButton", begun.is_set):
+        host.press("importScenarioButton")
+    goes_on.set()
+    assert "Canceled" in host.text("scenarioText")
+    assert host.text("importScenarioButton") == "Add from a zip file"
+    host.wait_until(ended.is_set, "the thread ends")
+    assert not user_library().exists()
+    assert host.find("scenarioComboBox").count == 1
 
 
 def test_a_hostile_zip_file_is_told_and_changes_nothing(host, tmp_path):
@@ -119,15 +150,44 @@ def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(ho
     assert node.GetSegmentation().GetNumberOfSegments() == 1
     bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
     assert bounds[5] == pytest.approx(70.0, abs=1.5)
-    preview = HeadPreview(host.scene)
+    preview = HeadPreview(host.scene, Path(sys.executable))
     settings = HeadSettings()
-    found = find_head(preview.segment(volume, settings), for_segment(settings), ignore)
+    found = find_head(
+        volume_of_segment(preview.segment(volume, settings)), for_segment(settings), ignore
+    )
     assert found.base_mm == pytest.approx(bounds[4], abs=0.01)
     assert preview.segment(add_volume(host.scene, EMPTY, "other"), settings) is None
     host.type("thresholdSpinBox", "60")
     host.press("makeScenarioButton")
     assert "changed since the head was found" in host.messages[-1].text
     assert not user_library().exists()
+
+
+def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_again(
+    host, monkeypatch
+):
+    made = host.widget.logic.session.scenario.find("colin27")
+    monkeypatch.setattr(scenario_build, "build_scenario", lambda *_arguments: (made, []))
+    volume = add_volume(host.scene, phantom(), "phantom")
+    rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
+    volume.AddAndObserveDisplayNodeID(rendering.GetID())
+    unfold(host, "newScenarioCollapsibleButton")
+    host.choose("scanComboBox", volume)
+    host.press("previewHeadButton")
+    draft = [
+        findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT),
+        findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW),
+    ]
+    assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
+    host.type("programPathLineEdit", sys.executable)
+    host.press("makeScenarioButton")
+    assert "is made" in host.text("newScenarioText")
+    assert [bool(node.GetDisplayVisibility()) for node in draft] == [False, False]
+    assert not rendering.GetVisibility()
+    host.press("previewHeadButton")
+    host.wait_until(
+        lambda: all(node.GetDisplayVisibility() for node in draft), "the draft is seen again"
+    )
 
 
 def test_a_preview_shows_a_warning_and_stands_where_the_volumes_transform_places_it(host):
@@ -209,6 +269,7 @@ def test_a_plan_in_the_scene_goes_into_the_scenario(host, tmp_path):
     host.check("handPlacedCheckBox", False)
     unfold(host, "adjustHeadGroupBox")
     host.check("skullCheckBox", False)
+    host.check("volumeCheckBox", False)
     host.type("sourceLineEdit", "The Head Study")
     host.type("licenseLineEdit", "CC BY 4.0")
     (panel,) = [
@@ -216,6 +277,7 @@ def test_a_plan_in_the_scene_goes_into_the_scenario(host, tmp_path):
     ]
     _volume, wishes = panel._wanted()
     assert not wishes.hasSkull
+    assert not wishes.hasVolume
     assert (wishes.source, wishes.license) == ("The Head Study", "CC BY 4.0")
     words = host.widget.logic.session.scenarioMaker._words(wishes, tmp_path)
     assert words[2:] == (

@@ -2,17 +2,21 @@
 
 import csv
 import json
+import sqlite3
 import sys
+import threading
 import uuid
 from pathlib import Path
 
 import numpy as np
 import pytest
 import slicer
+from PySide6 import QtCore
 
 from rastrainer import transforms
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import read_study_protocol
+from rastrainer.journal.journal_reader import read_journal
 from rastrainer.scenario import load_scenario
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.link_nodes import capturedPointsNode
@@ -35,7 +39,16 @@ if "--lan" in sys.argv:
 threading.Event().wait()
 """
 """A simulator that only says how a headset is paired."""
-SECTIONS = ("simulator", "trainees", "scenario", "training", "registration", "plan", "score")
+SECTIONS = (
+    "setup",
+    "simulator",
+    "trainees",
+    "scenario",
+    "training",
+    "registration",
+    "plan",
+    "score",
+)
 
 
 @pytest.fixture
@@ -116,8 +129,10 @@ def cells(host, name):
 
 
 def test_a_trainee_is_created_chosen_archived_and_brought_back(panels, study_path):
+    assert panels.find("pseudonymLineEdit").placeholderText == "T001"
     panels.press("createTraineeButton")
     assert panels.find("traineeComboBox").currentText == "T001"
+    assert panels.find("pseudonymLineEdit").placeholderText == "T002"
     panels.check("consentCheckBox")
     panels.press("archiveButton")
     with Study.open(study_path) as study:
@@ -134,6 +149,26 @@ def test_a_taken_pseudonym_is_told(panels):
         panels.type("pseudonymLineEdit", "Blue")
         panels.press("createTraineeButton")
     assert "taken; choose another" in panels.messages[-1].text
+
+
+def test_a_study_locked_by_another_program_is_told_and_shown_again_by_itself(
+    panels, study_path, add_trial
+):
+    panels.press("createTraineeButton")
+    other = sqlite3.connect(study_path, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    panels.press("archiveButton")
+    assert "Another program has the study" in panels.messages[-1].text
+    panels.press("createTraineeButton")
+    assert "Another program has the study" in panels.messages[-1].text
+    panels.choose("traineeComboBox", "Choose a trainee")
+    assert "Another program has the study" in panels.text("traineeText")
+    other.execute("ROLLBACK")
+    other.close()
+    add_trial(1, "T-007")
+    panels.wait_until(lambda: "nother program" not in panels.text("traineeText"), "it is shown")
+    panels.choose("traineeComboBox", "T-007")
+    assert panels.find("historyTable").rowCount == 1
 
 
 def test_buttons_without_a_trainee_say_why_they_are_disabled(panels):
@@ -172,9 +207,27 @@ def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
     panels.press("exportHistoryButton")
     with (tmp_path / "history.csv").open(newline="") as file:
         assert len(list(csv.DictReader(file))) == 3
-    panels.answer("Export the trainee", str(tmp_path / "trainee.json"))
+    panels.answer("Export the trainee", str(tmp_path / "trainee"))
     panels.press("exportTraineeButton")
     assert len(json.loads((tmp_path / "trainee.json").read_text())["trials"]) == 3
+
+
+def test_a_file_gets_its_suffix_and_replaces_another_only_after_a_yes(panels, add_trial, tmp_path):
+    add_trial(1, "T-001")
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    panels.answer("Export the history", str(tmp_path / "export"))
+    panels.press("exportHistoryButton")
+    assert [path.name for path in tmp_path.glob("export*")] == ["export.csv"]
+    (tmp_path / "export.csv").write_text("mine")
+    for answer, words in (("No", "mine"), ("Yes", "T-001")):
+        panels.answer("Export the history", str(tmp_path / "export"))
+        panels.answer("is there already", answer)
+        panels.press("exportHistoryButton")
+        assert words in (tmp_path / "export.csv").read_text()
+    panels.answer("Export the history", str(tmp_path / "EXPORT.CSV"))
+    panels.press("exportHistoryButton")
+    assert (tmp_path / "EXPORT.CSV").is_file()
 
 
 def test_the_study_is_another_file_once_it_is_chosen_and_one_that_is_none_is_told(panels, tmp_path):
@@ -202,7 +255,9 @@ def test_head_fiducials_and_robot_are_shown(panels):
     fixed = findNode(panels.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
     assert fixed.GetName() == "Task 2 fiducials"
     panels.check("robotCheckBox")
-    assert findNode(panels.scene, "vtkMRMLModelNode", f"{Role.ROBOT} link 7") is not None
+    for role in (Role.HEAD_MODEL, *(f"{Role.ROBOT} link {number}" for number in range(8))):
+        model = findNode(panels.scene, "vtkMRMLModelNode", role)
+        assert panels.sees(model), role
     panels.clear_scene()
     panels.wait_until(lambda: not panels.find("robotCheckBox").checked, "the box follows")
 
@@ -247,8 +302,9 @@ def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched
     touch(panels, touched)
     view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
     panels.choose("residualsTable", 4)
-    place = [view.GetSliceToRAS().GetElement(row, 3) for row in range(3)]
-    assert place == pytest.approx(colin.task("task-1").fiducials[4], abs=1e-3)
+    assert view.GetSliceToRAS().GetElement(2, 3) == pytest.approx(
+        colin.task("task-1").fiducials[4, 2], abs=1e-3
+    )
     panels.press("excludeButton")
     assert "Left out: 5" in panels.text("registrationText")
 
@@ -287,6 +343,19 @@ def test_the_choice_of_a_fit_changes_the_transform(panels, touched):
     assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
 
 
+def test_one_small_legend_is_drawn_in_the_3d_view_alone(panels, touched):
+    touch(panels, touched)
+    seen = [panels.legends()]
+    panels.check("headColoredCheckBox")
+    seen.append(panels.legends())
+    panels.check("headColoredCheckBox", False)
+    seen.append(panels.legends())
+    titles = [[title for title, _share in drawn.pop("View1")] for drawn in seen]
+    assert titles == [["Residual (mm)"], ["TRE (mm)"], ["Residual (mm)"]]
+    assert [drawn for drawn in seen if any(drawn.values())] == []
+    assert panels.legends()["View1"][0][1] < 0.05
+
+
 # Plan
 
 
@@ -302,6 +371,24 @@ def test_a_plan_says_what_is_missing_until_it_can_be_sent(panels, touched):
     assert "mm (95 %" in panels.text("planTreText")
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         panels.press("sendPlanButton")
+
+
+def test_targets_are_added_removed_and_brought_back(panels):
+    with pytest.raises(AssertionError, match="No point is placed"):
+        panels.press("removePlanPointButton")
+    for place in ((10.0, 20.0, 0.0), (20.0, 10.0, 5.0)):
+        panels.press("placeTargetButton")
+        panels.place(*place)
+    node = panels.find("planComboBox").currentNode()
+    assert node.GetNumberOfControlPoints() == 2
+    panels.wait_until(lambda: panels.find("planTargetComboBox").count == 2, "both are offered")
+    panels.choose("planTargetComboBox", 0)
+    panels.press("removePlanPointButton")
+    assert node.GetNthControlPointPosition(0) == (20.0, 10.0, 5.0)
+    panels.press("undoPlanButton")
+    assert node.GetNthControlPointPosition(0) == (10.0, 20.0, 0.0)
+    panels.press("undoPlanButton")
+    assert node.GetNumberOfControlPoints() == 1
 
 
 def test_the_error_to_expect_is_told_at_any_target_of_a_list(panels, touched):
@@ -331,7 +418,7 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert panels.find("trialComboBox").currentText.startswith("2: task-1")
     measures = [row[0] for row in cells(panels, "scoreTable")]
     assert measures[0] == "Score"
-    assert "CTPS as published" in measures
+    assert "CTPS as published" in [row[0] for row in cells(panels, "ctpsTable")]
     assert "rises with a slower completion" in panels.text("ctpsText")
     groups = {row[2] for row in cells(panels, "standingsTable")}
     assert groups == {"own", "reference"}
@@ -372,7 +459,7 @@ def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
     add_trial(1, "T-001")
     panels.press("createTraineeButton")
     panels.choose("traineeComboBox", "T-001")
-    assert panels.text("feedbackText").startswith("Score ")
+    panels.wait_until(lambda: panels.text("feedbackText").startswith("Score "), "it is judged")
     assert "This is your first trial of this task" in panels.text("feedbackText")
     panels.press("replayButton")
     assert "only on the computer whose simulator has recorded it" in panels.messages[-1].text
@@ -383,6 +470,66 @@ def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
     panels.press("worstTouchButton")
     tool = panels.scene.GetFirstNodeByName("T-001, task-1: tool")
     assert tool.GetTransformNodeID() is not None
+
+
+def test_no_journal_is_read_by_the_main_thread(panels, add_trial, monkeypatch):
+    readers = []
+
+    def watched(path):
+        readers.append(threading.get_ident())
+        return read_journal(path)
+
+    for module in ("replay_track", "folder"):
+        monkeypatch.setattr(f"rastrainer.journal.{module}.read_journal", watched)
+    add_trial(1, "T-001")
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    panels.wait_until(lambda: panels.text("feedbackText").startswith("Score "), "it is judged")
+    panels.press("replayButton")
+    assert len(readers) == 2
+    assert threading.get_ident() not in readers
+    # What is in the scene already is not read again, unless a node of it is gone.
+    panels.press("worstTouchButton")
+    assert len(readers) == 2
+    panels.scene.RemoveNode(panels.scene.GetFirstNodeByName("T-001, task-1: tool model"))
+    panels.press("replayButton")
+    assert len(readers) == 3
+    assert panels.scene.GetFirstNodeByName("T-001, task-1: tool model") is not None
+
+
+def test_a_replay_that_is_canceled_or_whose_scene_is_closed_leaves_nothing_behind(
+    panels, add_trial
+):
+    add_trial(1, "T-001")
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
+    panels.press("createTraineeButton")
+    panels.choose("traineeComboBox", "T-001")
+    panels.wait_until(lambda: panels.text("feedbackText").startswith("Score "), "it is judged")
+    for meddle in (lambda: panels.press("replayButton"), panels.clear_scene):
+        done = []
+
+        def meddle_once(meddle=meddle, done=done):
+            # Not before the first of the replay's nodes is in the scene.
+            if (
+                panels.scene.GetFirstNodeByName("T-001, task-1: WorldToHead") is not None
+                and not done
+            ):
+                assert panels.text("replayButton") == "Cancel"
+                done.append(True)
+                meddle()
+
+        timer = QtCore.QTimer()
+        timer.timeout.connect(meddle_once)
+        timer.start(0)
+        panels.press("replayButton")
+        timer.stop()
+        assert done
+        assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1") is None
+        assert panels.text("replayButton") == "Show the trial again"
+    assert "The scene was changed" in panels.messages[-1].text
+    panels.press("replayButton")
+    assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1") is not None
 
 
 def test_who_is_deleted_leaves_no_trace_in_database_journals_and_later_exports(
@@ -429,9 +576,11 @@ def bytes_below(*folders):
 
 
 def test_the_simulator_must_be_set_up_before_it_is_started(panels):
-    assert "press Set up, once" in panels.text("programText")
-    with pytest.raises(AssertionError, match="Set it up first"):
-        panels.press("startSimulatorButton")
+    assert "press Set up, once" in panels.text("setupText")
+    assert "not set up yet" in panels.text("programText")
+    panels.answer("not set up on this computer yet", "Cancel")
+    panels.press("startSimulatorButton")
+    assert "not set up yet" in panels.text("programText")
     panels.find("programPathLineEdit").currentPath = "/nowhere/rastrainer"
     panels.process_events()
     panels.press("startSimulatorButton")

@@ -10,15 +10,16 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
-from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.control_points import setPoints, worldPoints
 from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.slicer.placing import jumpTo, startPlacing
+from rastrainer.slicer.placing import startPlacing, stopPlacing
 from rastrainer.slicer.plan_desk import PlanDesk, targetsOf
 from rastrainer.slicer.registration_desk import RegistrationDesk
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.scene import Role, findNode
+from rastrainer.slicer.slice_views import jumpTo
 from rastrainer.tasks import LABELS
 from rastrainer.trial_results import RevealedTruth
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
@@ -56,7 +57,9 @@ class Room:
         run_link_until(self.link, condition)
 
     def target(self, *points):
-        node = self.desk.newTarget() if len(points) == 1 else self.desk.newTrajectory()
+        node = (
+            self.desk.points.newTarget() if len(points) == 1 else self.desk.points.newTrajectory()
+        )
         for point in points:
             node.AddControlPoint(*point)
         return node
@@ -146,6 +149,91 @@ def test_what_is_out_of_reach_or_refused_is_told_in_the_simulators_words(room):
     assert room.desk.isReachable is None
 
 
+@pytest.mark.parametrize("change", ["point", "registration", "list", "none"])
+def test_what_was_answered_is_not_told_of_another_plan(change, room):
+    room.register()
+    room.connect()
+    node = room.target(TUMOR)
+    room.desk.send(node)
+    room.run_until(lambda: room.desk.isReachable)
+    room.reveal()
+    room.desk.follow(room.desk.read(node))
+    assert room.desk.isReachable is True
+    assert room.desk.trueErrorMm is not None
+    if change == "point":
+        node.SetNthControlPointPosition(0, *ENTRY)
+    elif change == "list":
+        node = room.target(ENTRY, TUMOR)
+    elif change == "registration":
+        room.touched[3] += 5.0
+        room.register()
+    room.desk.follow(None if change == "none" else room.desk.read(node))
+    assert room.desk.isReachable is room.desk.trueErrorMm is None
+    assert "not this plan any more" in room.desk.sentence
+
+
+def test_an_answer_that_comes_after_the_plan_was_changed_is_not_told(room):
+    room.register()
+    room.connect()
+    node = room.target(TUMOR)
+    room.desk.send(node)
+    node.SetNthControlPointPosition(0, *ENTRY)
+    room.desk.follow(room.desk.read(node))
+    room.run_until(lambda: "PlanTarget" in [name for name, _a in room.simulator.commands])
+    room.desk.send(node)
+    room.run_until(lambda: room.desk.isReachable is not None)
+    assert room.desk.isReachable is True
+
+
+def test_a_target_that_is_placed_erases_none_and_each_change_can_be_undone(room):
+    points = room.desk.points
+    node = room.target(TUMOR)
+    assert room.target(ENTRY) is node
+    assert node.GetNumberOfControlPoints() == 2
+    label = node.GetNthControlPointLabel(0)
+    points.remove(node, 0)
+    np.testing.assert_allclose(worldPoints(node), [ENTRY])
+    points.undo()
+    np.testing.assert_allclose(worldPoints(node), [TUMOR, ENTRY])
+    assert node.GetNthControlPointLabel(0) == label
+    points.undo()
+    np.testing.assert_allclose(worldPoints(node), [TUMOR])
+    points.undo()
+    assert node.GetNumberOfControlPoints() == 0
+    assert not points.canUndo
+
+
+def test_undo_passes_over_what_was_not_placed_and_what_is_gone(room):
+    points = room.desk.points
+    node = room.target(TUMOR)
+    points.newTarget()
+    line = room.target(ENTRY, TUMOR)
+    room.scene.RemoveNode(line)
+    points.undo()
+    assert node.GetNumberOfControlPoints() == 0
+
+
+def test_a_second_trajectory_is_a_line_of_its_own_and_an_unfinished_one_is_finished(room):
+    line = room.desk.points.newTrajectory()
+    line.AddControlPoint(*ENTRY)
+    assert room.desk.points.newTrajectory() is line
+    line.AddControlPoint(*TUMOR)
+    second = room.target(TUMOR, ENTRY)
+    assert second is not line
+    assert second.GetName() != line.GetName()
+    np.testing.assert_allclose(worldPoints(line), [ENTRY, TUMOR])
+
+
+def test_the_points_of_a_scenario_are_not_removed(scene, scenario):
+    room = Room(scene, planned(scenario))
+    targets = findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET)
+    with pytest.raises(InputError, match="belong to the scenario"):
+        room.desk.points.remove(targets)
+    with pytest.raises(InputError, match="No point is placed"):
+        room.desk.points.remove(None)
+    room.simulator.close()
+
+
 @pytest.mark.parametrize("is_sent_first", [True, False])
 def test_the_true_error_at_the_target_is_told_once_the_head_is_known(is_sent_first, room):
     room.register()
@@ -168,19 +256,26 @@ def test_without_a_point_or_a_registration_it_is_said_what_is_missing(room):
     with pytest.raises(InputError, match="Place a target or a trajectory"):
         room.desk.read(None)
     with pytest.raises(InputError, match="has no point yet"):
-        room.desk.read(room.desk.newTarget())
+        room.desk.read(room.desk.points.newTarget())
     with pytest.raises(InputError, match="no registration to map the plan"):
         room.desk.read(room.target(TUMOR))
 
 
-def test_clicks_place_the_plan_and_slices_jump_to_it(room):
-    node = room.desk.newTarget()
+def test_clicks_place_the_plan(room):
+    node = room.desk.points.newTarget()
     startPlacing(room.scene, node)
     selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
     interaction = room.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
     assert selection.GetActivePlaceNodeID() == node.GetID()
     assert interaction.GetCurrentInteractionMode() == interaction.Place
+    stopPlacing(room.scene)
+    assert interaction.GetCurrentInteractionMode() == interaction.ViewTransform
+
+
+def test_slices_jump_to_a_place_and_stay_where_they_look(room):
     view = room.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Red")
+    view.SetOrientation("Axial")
+    view.JumpSliceByCentering(7.0, -5.0, 0.0)
     jumpTo(room.scene, TUMOR)
     place = view.GetSliceToRAS()
-    assert [place.GetElement(row, 3) for row in range(3)] == pytest.approx(TUMOR)
+    assert [place.GetElement(row, 3) for row in range(3)] == pytest.approx([7.0, -5.0, TUMOR[2]])

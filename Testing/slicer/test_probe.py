@@ -1,39 +1,153 @@
-"""The connection test tells what answers at an address."""
+"""It is asked who answers at an address, and never waited for."""
 
 import socket
+import threading
+import time
 
 import pytest
 
-from rastrainer.igtl.content import Status
-from rastrainer.protocol import PROTOCOL_VERSION, Device
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.probe import probe
-from Testing.slicer.simulator_double import SimulatorDouble
+from rastrainer.igtl.content import String, Transform
+from rastrainer.igtl.message import Message, pack
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.slicer import address_lookup
+from rastrainer.slicer.finding import Finding, Peer
+from rastrainer.slicer.probe import ANSWER_S, LOOKUP_S, Probe
+from Testing.slicer.simulator_double import SimulatorDouble, wait_until
+from Testing.slicer.strangers import (
+    floods,
+    is_silent,
+    says,
+    says_in_answer,
+    stranger,
+    trickles,
+    web_server,
+)
+
+TEXT = pack(Message("Note", String("from another program")))
+POSE = pack(Message("Tool", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))))
+
+
+class Clock:
+    """Runs, and jumps where a test lets it."""
+
+    def __init__(self):
+        self.ahead = 0.0
+
+    def __call__(self):
+        return time.monotonic() + self.ahead
+
+
+def ask(host, port, clock=time.monotonic):
+    probe = Probe(host, port, clock)
+    found = []
+    wait_until(lambda: found.append(probe.process()) or found[-1], lambda: None)
+    return found[-1]
+
+
+def ask_and_lose_patience(port):
+    """Ask, and let the time for an answer pass once the question has been heard."""
+    clock = Clock()
+    probe = Probe("127.0.0.1", port, clock)
+    for _ in range(20):
+        assert probe.process() is None
+    clock.ahead = ANSWER_S
+    return probe.process()
+
+
+@pytest.mark.parametrize("version", [PROTOCOL_VERSION, PROTOCOL_VERSION + 1])
+def test_a_simulator_is_recognized_with_its_version(version):
+    with SimulatorDouble(version=version) as simulator:
+        found = ask("localhost", simulator.port)
+        assert found == Finding(Peer.SIMULATOR, "127.0.0.1", version)
+        assert simulator.commands == []
+
+
+def test_a_web_server_is_recognized():
+    with web_server() as port:
+        assert ask("127.0.0.1", port).peer is Peer.WEB_PAGE
 
 
 @pytest.mark.parametrize(
-    ("version", "state"),
+    ("behavior", "peer"),
     [
-        (PROTOCOL_VERSION, LinkState.CONNECTED),
-        (PROTOCOL_VERSION + 1, LinkState.WRONG_VERSION),
+        (says(b"SSH-2.0-OpenSSH_9.2p1\r\n"), Peer.OTHER_PROGRAM),
+        (says_in_answer(b"HTTP/1.1 400 Bad Request\r\n\r\n"), Peer.WEB_PAGE),
+        (says_in_answer(b"\x15\x03\x01\0\2\2\x46"), Peer.ENCRYPTED),
+        (says_in_answer(b""), Peer.SILENT),
+        (says_in_answer(TEXT), Peer.OTHER_OPENIGTLINK),
+        (floods(POSE), Peer.OTHER_OPENIGTLINK),
+        (floods(b"\0\2" + 56 * b"A"), Peer.OTHER_PROGRAM),
+        (floods(b"\0\2STRING" + 56 * b"\xff"), Peer.OTHER_PROGRAM),
+        (trickles(b"endless"), Peer.OTHER_PROGRAM),
     ],
 )
-def test_a_simulator_is_recognized_with_its_version(version, state):
-    def respond(_name, _arguments):
-        simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=version))
-        return {}
+def test_what_is_no_simulator_is_recognized_by_what_it_says(behavior, peer):
+    with stranger(behavior) as port:
+        assert ask("127.0.0.1", port).peer is peer
 
-    with SimulatorDouble(respond) as simulator:
-        assert probe("127.0.0.1", simulator.port).state is state
+
+@pytest.mark.parametrize(
+    ("behavior", "peer"),
+    [
+        (is_silent, Peer.SILENT),
+        (says(TEXT), Peer.OTHER_OPENIGTLINK),
+        (trickles(b"\0\2STRING"), Peer.OTHER_PROGRAM),
+        (says(b"HTT"), Peer.OTHER_PROGRAM),
+    ],
+)
+def test_whoever_keeps_the_answer_is_not_waited_for_without_end(behavior, peer):
+    with stranger(behavior) as port:
+        assert ask_and_lose_patience(port).peer is peer
 
 
 def test_nobody_at_home_is_told():
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
-    assert probe("127.0.0.1", port, 0.2).state is LinkState.ABSENT
+    assert ask("127.0.0.1", port) == Finding(Peer.NOBODY, "127.0.0.1")
 
 
-def test_another_program_is_not_taken_for_a_simulator():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        status = probe("127.0.0.1", listener.getsockname()[1], 0.2)
-    assert "no RASTrainer simulator" in status.sentence
+def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypatch):
+    answers, asked = threading.Event(), []
+
+    def look_up(host, *_more):
+        asked.append(host)
+        assert answers.wait(20)
+        return [(None, None, None, None, ("127.0.0.1", 0))]
+
+    monkeypatch.setattr(address_lookup.socket, "getaddrinfo", look_up)
+    with SimulatorDouble() as simulator:
+        probes = [Probe("a-computer", simulator.port) for _ in range(2)]
+        assert [probe.process() for probe in probes] == [None, None]
+        answers.set()
+        wait_until(lambda: all(probe.process() for probe in probes), lambda: None)
+        assert probes[1].process().peer is Peer.SIMULATOR
+    assert asked == ["a-computer"]
+
+
+def test_a_name_that_is_looked_up_for_too_long_is_given_up(monkeypatch):
+    answers, clock = threading.Event(), Clock()
+
+    def look_up(*_):
+        answers.wait(20)
+        raise socket.gaierror
+
+    monkeypatch.setattr(address_lookup.socket, "getaddrinfo", look_up)
+    probe = Probe("a-slow-computer", 18944, clock)
+    assert probe.process() is None
+    clock.ahead = LOOKUP_S
+    assert probe.process() == Finding(Peer.UNKNOWN_HOST)
+    answers.set()
+
+
+@pytest.mark.parametrize("host", ["nowhere.invalid", "::1", "a" * 300, "b..c"])
+def test_a_host_without_an_address_is_told(host):
+    assert ask(host, 18944) == Finding(Peer.UNKNOWN_HOST)
+
+
+def test_asking_leaves_no_socket_open():
+    with stranger(is_silent) as port:
+        probe = Probe("127.0.0.1", port)
+        probe.process()
+        probe.close()
+        probe.close()
+        assert probe._socket is None

@@ -1,5 +1,8 @@
 """Any model or volume of the scene can be the head that is looked at."""
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 import slicer
@@ -21,7 +24,7 @@ class Shelf:
 
 @pytest.fixture
 def desk(scene, scenario):
-    return ScenarioDesk(scene, Shelf(scenario), asset_path("robots", "iiwa7"))
+    return ScenarioDesk(scene, Shelf(scenario), asset_path("robots", "iiwa7"), Path(sys.executable))
 
 
 def volume(scene, values, spacing):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.scenario_library import user_library
+from rastrainer.scenario_library import list_folder, user_library
 from rastrainer.scenario_writer import new_folder, write_scenario
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from Testing.domain.made_up_scenario import ball_head, made_up_scenario
@@ -29,6 +29,26 @@ def test_a_scenario_that_was_built_anew_is_read_anew(tmp_path):
     assert shelf.find("ball") is first
     build(tmp_path / "ball", "Second")
     assert shelf.find("ball").title == "Second"
+
+
+def test_a_list_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monkeypatch):
+    read = []
+
+    def watched(folder):
+        read.append(folder.name)
+        return list_folder(folder)
+
+    monkeypatch.setattr("rastrainer.slicer.scenario_shelf.list_folder", watched)
+    for name in ("ball", "egg"):
+        build(tmp_path / name, name.title())
+    shelf = ScenarioShelf.below(tmp_path)
+    shelf.listed()
+    assert sorted(read) == ["ball", "egg"]
+    read.clear()
+    (tmp_path / "egg" / "head.ply").unlink()
+    shelf.refresh()
+    shelf.listed()
+    assert read == ["egg"]
 
 
 def test_a_scenario_that_was_removed_is_told(tmp_path):

@@ -1,4 +1,4 @@
-"""The simulator is set up by pip in a folder of its own, from wheels alone, or not at all."""
+"""The simulator is set up by pip in a folder of its own, of what the module knows, or not."""
 
 import sys
 import zipfile
@@ -8,13 +8,22 @@ import pytest
 
 from rastrainer import __version__
 from rastrainer.errors import InputError
-from rastrainer.slicer.child_process import environmentWith
-from rastrainer.slicer.simulator_place import defaultPackage, pythonSlicer
+from rastrainer.slicer.setup_source import SetupSource
+from rastrainer.slicer.simulator_package import LOCK, WHEEL, SimulatorPackage
+from rastrainer.slicer.simulator_place import pythonSlicer
 from rastrainer.slicer.simulator_program import ProgramState, SimulatorProgram
-from rastrainer.slicer.simulator_setup import SetupSource, SimulatorSetup
+from rastrainer.slicer.simulator_setup import SimulatorSetup
+from Testing.slicer.made_up_package import (
+    lock_entry,
+    write_checkout,
+    write_package,
+    write_wheel,
+)
+from Testing.slicer.package_index import PackageIndex
 from Testing.slicer.simulator_double import wait_until
 
 CLI = """
+import bolt
 import sys
 def main():
     print("RASTrainer simulator ready on 127.0.0.1:" + sys.argv[sys.argv.index("--port") + 1])
@@ -32,33 +41,32 @@ def main():
         return 3
     input_never_comes = __import__("threading").Event()
     input_never_comes.wait()
+if __name__ == "__main__":
+    sys.exit(main())
 """
 
 
 @pytest.fixture
-def wheels(tmp_path):
-    """A folder with one wheel: a simulator that only says that it is ready."""
-    folder = tmp_path / "wheels"
-    folder.mkdir()
-    info = "rastrainer_simulator-1.0.dist-info"
-    files = {
-        "rastrainer_simulator/__init__.py": "",
-        "rastrainer_simulator/cli.py": CLI,
-        f"{info}/METADATA": "Metadata-Version: 2.1\nName: rastrainer-simulator\nVersion: 1.0\n",
-        f"{info}/WHEEL": "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\n"
-        "Tag: py3-none-any\n",
-    }
-    with zipfile.ZipFile(folder / "rastrainer_simulator-1.0-py3-none-any.whl", "w") as wheel:
-        for name, text in files.items():
-            wheel.writestr(name, text)
-        record = "".join(f"{name},,\n" for name in [*files, f"{info}/RECORD"])
-        wheel.writestr(f"{info}/RECORD", record)
-    return folder
+def bolt(tmp_path):
+    """A wheel of others, in a folder of wheels."""
+    return write_wheel(tmp_path / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 8\n"})
 
 
 @pytest.fixture
-def setup(tmp_path):
-    return SimulatorSetup(Path(sys.executable), tmp_path / "private folder" / "simulator")
+def source(bolt):
+    return SetupSource(wheels=bolt.parent)
+
+
+@pytest.fixture
+def package(tmp_path, bolt):
+    """A simulator that only says that it is ready, and needs a bolt."""
+    elsewhere = lock_entry(bolt, "sys_platform == 'elsewhere'").replace("bolt", "nut")
+    return write_package(tmp_path / "module", CLI, [lock_entry(bolt), elsewhere])
+
+
+@pytest.fixture
+def setup(tmp_path, package):
+    return SimulatorSetup(Path(sys.executable), tmp_path / "private folder" / "simulator", package)
 
 
 def run_setup(setup, source):
@@ -70,29 +78,163 @@ def run_setup(setup, source):
     return lines, ends[0]
 
 
-def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_network(setup, wheels):
-    assert not setup.isCurrent
-    lines, error = run_setup(setup, SetupSource("rastrainer-simulator", wheels))
-    assert error == ""
-    assert any("Installing collected packages" in line for line in lines)
+def left_beside(setup):
+    """Return what is beside the private folder, once what was removed has gone."""
+    kept = setup.folder.parent
+    wait_until(lambda: not any(".removed-" in path.name for path in kept.iterdir()), lambda: None)
+    return [path.name for path in kept.iterdir()]
+
+
+def replaced(wheel, text):
+    """Put other content under the name of a wheel, as whoever keeps the folder could."""
+    write_wheel(wheel.parent, *wheel.name.split("-")[:2], {"bolt.py": text})
+
+
+def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_network(setup, source):
+    assert (setup.isCurrent, setup.isInstalled) == (False, False)
+    lines, error = run_setup(setup, source)
+    assert error == "", lines
     assert (setup.installedVersion, setup.isCurrent) == (__version__, True)
+    assert (setup.folder / "rastrainer_simulator" / "cli.py").is_file()
+    assert (setup.folder / "bolt.py").is_file()
+    assert setup.installedMB == 0
+
+
+def test_a_set_up_counts_the_packages_of_this_platform(setup, source):
+    counts = []
+    setup.progressed.connect(lambda _line: counts.append(setup.progress.done))
+    assert setup.progress.count == 0
+    run_setup(setup, source)
+    assert (setup.progress.done, setup.progress.count) == (2, 2)
+    assert sorted(set(counts)) == [0, 1, 2]
+    assert setup.progress.isInstalling
+
+
+def test_nothing_is_installed_whose_hash_the_module_does_not_know(setup, source, bolt):
+    replaced(bolt, "SIZE = 'whatever'\n")
+    lines, error = run_setup(setup, source)
+    assert "installation ended with status 1" in error
+    assert any("DO NOT MATCH THE HASHES" in line for line in lines)
+    assert left_beside(setup) == []
+
+
+def test_nothing_is_built_from_sources_to_set_up_even_if_their_hash_is_known(
+    setup, source, package, bolt, tmp_path
+):
+    mark = tmp_path / "sources were run"
+    path = bolt.with_name("bolt-1.0.zip")
+    with zipfile.ZipFile(path, "w") as sources:
+        sources.writestr("bolt-1.0/setup.py", f"open({str(mark)!r}, 'w').close()")
+    write_package(package.folder, CLI, [lock_entry(path)])
+    bolt.rename(bolt.with_name("other-1.0-py3-none-any.whl"))
+    lines, error = run_setup(setup, source)
+    assert "installation ended with status 1" in error
+    assert any("No matching distribution found for bolt==1.0" in line for line in lines)
+    assert not mark.exists()
+
+
+def test_an_index_of_ones_own_is_asked_only_for_what_others_have_made(setup, bolt, tmp_path):
+    ours = write_wheel(tmp_path / "squatter", "rastrainer", "99.0", {"rastrainer_simulator.py": ""})
+    with PackageIndex([bolt, ours]) as index:
+        lines, error = run_setup(setup, SetupSource(index=index.address))
+        assert error == "", lines
+        assert index.asked == ["/simple/bolt/", f"/files/{bolt.name}"]
     assert (setup.folder / "rastrainer_simulator" / "cli.py").is_file()
 
 
-def test_what_was_set_up_starts_tells_its_port_and_stops(setup, wheels):
-    run_setup(setup, SetupSource("rastrainer-simulator", wheels))
+def test_pip_does_not_follow_the_settings_of_whoever_runs_slicer(
+    setup, source, bolt, tmp_path, monkeypatch
+):
+    with PackageIndex([bolt]) as index:
+        settings = tmp_path / "pip.conf"
+        text = f"[global]\nindex-url = {index.address}\nextra-index-url = {index.address}\n"
+        settings.write_text(f"{text}no-binary = :all:\nuser = true\n", encoding="utf-8")
+        monkeypatch.setenv("PIP_CONFIG_FILE", str(settings))
+        monkeypatch.setenv("PIP_INDEX_URL", index.address)
+        monkeypatch.setenv("PIP_EXTRA_INDEX_URL", index.address)
+        monkeypatch.setenv("PIP_TARGET", str(tmp_path / "elsewhere"))
+        lines, error = run_setup(setup, source)
+        assert error == "", lines
+        assert index.asked == []
+    assert not (tmp_path / "elsewhere").exists()
+
+
+@pytest.mark.parametrize("address", ["pypi", "ftp://127.0.0.1/simple", "https://", "file:///tmp"])
+def test_what_is_no_address_of_an_index_is_told_before_anything_begins(setup, address):
+    with pytest.raises(InputError, match="it begins with https://"):
+        setup.begin(SetupSource(index=address))
+    assert not setup.folder.parent.exists()
+
+
+def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_told(setup, source, package):
+    wheel = package.folder / WHEEL
+    wheel.write_bytes(wheel.read_bytes()[:-1])
+    with pytest.raises(InputError, match="is damaged: install the extension RASTrainer anew"):
+        setup.begin(source)
+    (package.folder / f"{WHEEL}.sha256").unlink()
+    with pytest.raises(InputError, match=r"is missing in .*: install the extension"):
+        setup.begin(source)
+    assert not setup.folder.parent.exists()
+
+
+def test_the_simulator_of_another_module_of_the_same_version_is_not_this_ones(
+    setup, source, package, bolt
+):
+    run_setup(setup, source)
+    write_package(package.folder, f"{CLI}# Mended.\n", [lock_entry(bolt)])
+    assert (setup.installedVersion, setup.isCurrent) == (__version__, False)
+
+
+def test_in_a_checkout_its_sources_are_run_as_they_are(tmp_path):
+    package = write_checkout(tmp_path / "checkout", CLI.replace("import bolt\n", ""))
+    setup = SimulatorSetup(Path(sys.executable), tmp_path / "private folder" / "simulator", package)
+    write_wheel(tmp_path / "wheels", "bolt", "1.0", {})
+    lines, error = run_setup(setup, SetupSource(wheels=tmp_path / "wheels"))
+    assert error == "", lines
+    assert setup.isCurrent
+    assert not (setup.folder / "rastrainer").exists()
+    source = tmp_path / "checkout" / "RASTrainerSimulatorServer" / "rastrainer_simulator" / "cli.py"
+    source.write_text("print('Edited since.')", encoding="utf-8")
+    program, told = SimulatorProgram(), []
+    program.wroteLine.connect(told.append)
+    program.start(setup.command(["simulator"]))
+    wait_until(lambda: not program.isRunning, program.process, 20.0)
+    assert told == ["Edited since."]
+
+
+def test_removing_the_simulator_leaves_nothing(setup, source):
+    run_setup(setup, source)
+    changes = []
+    setup.changed.connect(lambda: changes.append(setup.isInstalled))
+    setup.remove()
+    assert (changes, setup.isCurrent, setup.isInstalled) == ([False], False, False)
+    assert left_beside(setup) == []
+    setup.remove()
+
+
+def test_what_an_interrupted_removal_has_left_goes_at_the_next_set_up(setup, source):
+    left = setup.folder.with_name("simulator.removed-0123")
+    left.mkdir(parents=True)
+    (left / "library.so").touch()
+    run_setup(setup, source)
+    assert left_beside(setup) == ["simulator"]
+
+
+def test_what_was_set_up_starts_tells_its_port_and_stops(setup, source):
+    run_setup(setup, source)
     program = SimulatorProgram()
     command = setup.command(["simulator", "--port", "18999"])
-    program.start(command, environmentWith(setup.folder))
+    program.start(command)
     assert program.state is ProgramState.STARTING
     wait_until(lambda: program.state is ProgramState.READY, program.process, 20.0)
     assert program.port == 18999
     program.stop()
-    assert (program.state, program.isRunning) == (ProgramState.STOPPED, False)
+    wait_until(lambda: not program.isRunning, program.process, 20.0)
+    assert program.state is ProgramState.STOPPED
 
 
-def test_how_a_headset_is_paired_is_told_until_the_simulator_ends(setup, wheels):
-    run_setup(setup, SetupSource("rastrainer-simulator", wheels))
+def test_how_a_headset_is_paired_is_told_until_the_simulator_ends(setup, source):
+    run_setup(setup, source)
     program, told = SimulatorProgram(), []
     program.pairingChanged.connect(lambda: told.append(program.pairingSentence))
     program.start(setup.command(["simulator", "--port", "1", "--lan"]))
@@ -110,49 +252,62 @@ def test_how_a_headset_is_paired_is_told_until_the_simulator_ends(setup, wheels)
     ]
 
 
-def test_a_simulator_that_ends_by_itself_says_why(setup, wheels):
-    run_setup(setup, SetupSource("rastrainer-simulator", wheels))
+def test_a_simulator_that_ends_by_itself_says_why(setup, source):
+    run_setup(setup, source)
     program = SimulatorProgram()
     program.start(setup.command(["simulator", "--port", "1", "--end"]))
     wait_until(lambda: program.state is ProgramState.FAILED, program.process, 20.0)
     assert program.sentence.endswith("(status 3): The port is taken.")
 
 
-def test_a_simulator_whose_window_is_closed_has_simply_ended(setup, wheels):
-    run_setup(setup, SetupSource("rastrainer-simulator", wheels))
+def test_a_simulator_whose_window_is_closed_has_simply_ended(setup, source):
+    run_setup(setup, source)
     program = SimulatorProgram()
     program.start(setup.command(["simulator", "--port", "1", "--close"]))
     wait_until(lambda: not program.isRunning, program.process, 20.0)
     assert (program.state, program.sentence) == (ProgramState.STOPPED, "The simulator has ended.")
 
 
-def test_a_set_up_that_fails_leaves_the_old_one_and_says_what_to_do(setup, wheels):
-    run_setup(setup, SetupSource("rastrainer-simulator", wheels))
-    lines, error = run_setup(setup, SetupSource("no-such-package", wheels))
-    assert "choose a folder of wheels" in error
-    assert any("no-such-package" in line for line in lines)
+def test_a_set_up_that_fails_leaves_the_old_one_and_says_what_to_do(setup, source, bolt):
+    run_setup(setup, source)
+    replaced(bolt, "")
+    _lines, error = run_setup(setup, source)
+    assert "choose a folder of wheels or your own package index" in error
     assert setup.isCurrent
-    assert [path.name for path in setup.folder.parent.iterdir()] == ["simulator"]
+    assert left_beside(setup) == ["simulator"]
 
 
-def test_a_set_up_can_be_canceled(setup, wheels):
+def test_what_was_installed_and_cannot_be_run_is_not_taken(setup, source, tmp_path, bolt):
+    package = write_package(tmp_path / "broken", CLI + ")", [lock_entry(bolt)])
+    broken = SimulatorSetup(Path(sys.executable), setup.folder, package)
+    lines, error = run_setup(broken, source)
+    assert "cannot be run (status 1)" in error
+    assert "SyntaxError" in lines[-1]
+    assert left_beside(setup) == []
+
+
+def test_a_set_up_can_be_canceled(setup, source):
     ends = []
     setup.finished.connect(ends.append)
-    setup.begin(SetupSource("rastrainer-simulator", wheels))
+    setup.begin(source)
     with pytest.raises(InputError, match="being set up already"):
-        setup.begin(SetupSource("rastrainer-simulator", wheels))
+        setup.begin(source)
+    with pytest.raises(InputError, match="Cancel the set-up first"):
+        setup.remove()
     setup.cancel()
+    assert setup.isEnding
+    wait_until(lambda: ends, setup.process, 60.0)
     assert ends == ["The set-up was canceled."]
     assert not setup.isRunning
-    assert list(setup.folder.parent.iterdir()) == []
+    assert left_beside(setup) == []
 
 
-def test_a_folder_without_wheels_and_a_python_that_is_not_there_are_told(setup, tmp_path):
+def test_a_folder_without_wheels_and_a_python_that_is_not_there_are_told(setup, package, tmp_path):
     with pytest.raises(InputError, match="no wheels"):
-        setup.begin(SetupSource("rastrainer", tmp_path))
-    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator")
+        setup.begin(SetupSource(wheels=tmp_path))
+    missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", package)
     with pytest.raises(InputError, match="cannot be started: No such file"):
-        missing.begin(SetupSource("rastrainer"))
+        missing.begin(SetupSource())
 
 
 def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
@@ -160,6 +315,17 @@ def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
     name = "PythonSlicer.exe" if sys.platform == "win32" else "PythonSlicer"
     (tmp_path / "bin" / name).touch()
     assert pythonSlicer(tmp_path) == tmp_path / "bin" / name
-    assert defaultPackage(tmp_path / "RASTrainer") == f"rastrainer=={__version__}"
+    assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout is None
     (tmp_path / "pyproject.toml").touch()
-    assert defaultPackage(tmp_path / "RASTrainer") == str(tmp_path)
+    assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout == tmp_path
+
+
+def test_what_a_set_up_takes_is_told_for_the_platforms_that_were_measured(package, monkeypatch):
+    assert package.sizes() is None
+    ours = SimulatorPackage.of(Path(__file__).parents[2] / "RASTrainer")
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr("platform.machine", lambda: "x86_64")
+    assert ours.sizes().keptMB <= 700
+    assert (ours.folder / LOCK).is_file()
+    monkeypatch.setattr("platform.machine", lambda: "riscv64")
+    assert ours.sizes() is None

@@ -12,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.history_nodes import showHistory, showLearningCurve
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.score_board import (
+    ctpsRows,
     motionRows,
     scoreRows,
     showMotion,
@@ -144,13 +145,13 @@ def test_a_trial_without_results_has_empty_cells(scene, desk, make_record):
 
 def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(add_trial):
     trial = add_trial(1)
-    rows = {row.title: row for row in scoreRows(trial, COHORT)}
+    rows = {row.title: row for row in [*scoreRows(trial), *ctpsRows(trial, COHORT)]}
     assert rows["Score"].value == trial.score.score
     assert rows["… its part for time"].value == 100 * trial.score.time_desirability
     assert rows["CTPS as published"].note == CTPS_WARNING
     assert rows["CTPS by equation 3"].value == rows["CTPS as published"].value / 2
     assert rows["True TRE"].text == "0.20 mm"
-    assert "CTPS as published" not in {row.title for row in scoreRows(trial, [])}
+    assert ctpsRows(trial, []) == []
 
 
 def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(desk, add_trial):
@@ -177,7 +178,7 @@ def test_motion_metrics_come_with_their_definitions(add_trial):
 
 def test_score_comparison_and_motion_become_tables_of_the_scene(scene, desk, add_trial):
     trial = add_trial(1, motion={"sparc": -1.9})
-    showScore(scene, scoreRows(trial, COHORT))
+    showScore(scene, [*scoreRows(trial), *ctpsRows(trial, COHORT)])
     showStandings(scene, standings(desk.study, trial, COHORT))
     showMotion(scene, motionRows(trial))
     for role, rows in ((Role.SCORE, 9), (Role.COMPARISON, 2), (Role.MOTION, 1)):

@@ -1,5 +1,7 @@
 """A finished trial is kept once, acknowledged when kept, scored, and shown."""
 
+import sqlite3
+import threading
 import uuid
 
 import numpy as np
@@ -9,13 +11,16 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import String
 from rastrainer.protocol import Device
+from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.registration_nodes import isApplied
 from rastrainer.slicer.scene import Role, findNode
-from rastrainer.slicer.trial_desk import TrialDesk
+from rastrainer.slicer.trial_desk import MOST_WAITING, TrialDesk
 from rastrainer.study import Study
-from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
+from rastrainer.study_patience import Patience
+from rastrainer.trial_review import review
+from Testing.slicer.simulator_double import SimulatorDouble, run_desk_until
 
 TRIAL = str(uuid.UUID(int=1))
 OTHER = str(uuid.UUID(int=2))
@@ -31,13 +36,18 @@ class Lab:
         self.path = folder / "study.db"
         self.refusal = None
         self.is_study_broken = False
+        self.threads = set()
         self.simulator = SimulatorDouble(self.answer)
         self.link = Link(scene, headlessKit)
-        self.desk = TrialDesk(scene, self.link, self.find_scenario, self.open_study)
+        self.work = BackgroundWork()
+        self.desk = self.new_desk()
         self.scored = []
         self.problems = []
         self.desk.trialScored.connect(self.scored.append)
         self.desk.problemFound.connect(self.problems.append)
+
+    def new_desk(self):
+        return TrialDesk(self.scene, self.link, self.find_scenario, self.open_study, self.work)
 
     def connect(self):
         opened = []
@@ -64,9 +74,10 @@ class Lab:
         return self.scenario
 
     def open_study(self):
+        self.threads.add(threading.get_ident())
         if self.is_study_broken:
             raise InputError("The disk is full.")
-        return Study.open(self.path)
+        return Study.open(self.path, Patience(0.01))
 
     def stored(self, trial_id=TRIAL):
         with Study.open(self.path) as study:
@@ -76,11 +87,12 @@ class Lab:
         return [arguments for sent, arguments in self.simulator.commands if sent == name]
 
     def run_until(self, condition):
-        run_link_until(self.link, condition)
+        run_desk_until(self.link, self.work, condition)
 
     def close(self):
         self.link.disconnect()
         self.desk.close()
+        self.work.close()
         self.simulator.close()
 
 
@@ -126,9 +138,10 @@ def test_the_trial_stands_in_the_scene(lab, make_record):
 def test_twice_is_once(lab, make_record):
     for _ in range(3):
         lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
-    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) == 3 and lab.scored)
+    lab.run_until(lambda: lab.scored)
+    acknowledged = len(lab.sent("AcknowledgeTrial"))
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
-    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) == 4)
+    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) > acknowledged)
     assert len(lab.scored) == 1
     assert len(lab.sent("TrialScored")) == 1
     with Study.open(lab.path) as study:
@@ -138,7 +151,7 @@ def test_twice_is_once(lab, make_record):
 def test_a_trial_is_not_acknowledged_before_it_is_kept(lab, make_record):
     lab.is_study_broken = True
     lab.desk.close()
-    lab.desk = TrialDesk(lab.scene, lab.link, lab.find_scenario, lab.open_study)
+    lab.desk = lab.new_desk()
     lab.desk.problemFound.connect(lab.problems.append)
     for _ in range(3):
         lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
@@ -213,6 +226,24 @@ def test_scores_that_nobody_heard_are_told_one_after_the_other(lab, make_record)
     assert kept == [0, 1, 2]
 
 
+def test_each_score_is_told_once_though_the_link_opens_again_while_they_are_told(lab, make_record):
+    trials = [str(uuid.UUID(int=number)) for number in range(1, 5)]
+    lab.refusal = "Not now."
+    for trial in trials:
+        lab.simulator.send_command("TrialCompleted", make_record(trial, seed=SEED))
+    lab.run_until(lambda: len(lab.sent("TrialScored")) == 4 and not lab.work.isBusy)
+    lab.run_until(lambda: not lab.desk._told)
+    lab.refusal = None
+    lab.simulator.commands.clear()
+    lab.link.opened.emit()
+    lab.link.opened.emit()
+    lab.run_until(lambda: len(lab.scored) >= 4 and not lab.work.isBusy)
+    lab.run_until(lambda: not lab.desk._told)
+    told = [arguments["trialId"] for arguments in lab.sent("TrialScored")]
+    assert sorted(told) == trials
+    assert sorted(trial.analysis.record.trial_id for trial in lab.scored) == trials
+
+
 def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
     state = f'{{"trialId": "{OTHER}", "phase": "running"}}'
     lab.simulator.send(Device.SIM_STATE, String(state))
@@ -248,11 +279,107 @@ def test_trials_of_a_break_in_the_connection_all_arrive(lab, make_record):
     assert lab.desk.received == trials
 
 
+@pytest.fixture
+def reviews(monkeypatch):
+    """UUID and thread of each scoring."""
+    done = []
+
+    def watched(record, *arguments):
+        done.append((record.trial_id, threading.get_ident()))
+        return review(record, *arguments)
+
+    monkeypatch.setattr("rastrainer.slicer.trial_desk.review", watched)
+    return done
+
+
+def test_the_main_thread_neither_scores_nor_opens_the_study(lab, make_record, reviews):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    assert len(reviews) == 1
+    main = threading.get_ident()
+    assert main not in lab.threads | {thread for _trial, thread in reviews}
+
+
+def test_what_is_known_is_acknowledged_and_not_scored_again(lab, make_record, reviews):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    for count in range(2, 5):
+        lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+        lab.run_until(lambda count=count: len(lab.sent("AcknowledgeTrial")) == count)
+    assert len(reviews) == 1
+
+
+def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, reviews):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    for changes, told in (
+        ({"trial_id": OTHER, "points": []}, "points must be"),
+        ({"trial_id": OTHER, "trainee": "T-001 "}, "A pseudonym must be printable text"),
+        ({"trial_id": TRIAL, "task": "task-2"}, "Another trial is stored under the UUID"),
+    ):
+        lab.simulator.send_command("TrialCompleted", make_record(**changes))
+        lab.run_until(lambda told=told: lab.problems and told in lab.problems[-1])
+    assert len(reviews) == len(lab.sent("AcknowledgeTrial")) == 1
+    with Study.open(lab.path) as study:
+        assert [trainee.pseudonym for trainee in study.trainees()] == ["T-001"]
+
+
+def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_told(lab, make_record):
+    lab.desk.trialKept.connect(lambda _record: kept.append(True))
+    kept = []
+    for number in range(10 * MOST_WAITING):
+        lab.link.trialCompleted.emit(make_record(str(uuid.UUID(int=100 + number))))
+    assert lab.problems == [
+        "Trials arrive faster than they can be scored; they are offered again later."
+    ]
+    before = 0
+    while len(kept) < MOST_WAITING:
+        lab.work.process()
+        assert len(kept) - before <= 1
+        before = len(kept)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: {"trialId": TRIAL} in lab.sent("AcknowledgeTrial"))
+    with Study.open(lab.path) as study:
+        assert len(study.history("T-001")) == MOST_WAITING + 1
+
+
+def test_a_trial_waits_while_another_program_has_the_study_locked(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(OTHER))
+    lab.run_until(lambda: lab.scored)
+    other = sqlite3.connect(lab.path, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    assert "Another program has the study" in lab.problems[0]
+    assert {"trialId": TRIAL} not in lab.sent("AcknowledgeTrial")
+    other.execute("ROLLBACK")
+    other.close()
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: len(lab.scored) == 2)
+    assert lab.stored().true_tre_mm is not None
+
+
+def test_a_trial_kept_when_slicer_ends_is_acknowledged_and_counted_once_by_the_next(
+    lab, make_record
+):
+    lab.link.trialCompleted.emit(make_record(TRIAL))
+    lab.desk.close()
+    lab.work.close()
+    assert not lab.sent("AcknowledgeTrial")
+    lab.work = BackgroundWork()
+    lab.desk = lab.new_desk()
+    lab.desk.trialScored.connect(lab.scored.append)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    with Study.open(lab.path) as study:
+        assert len(study.history("T-001")) == 1
+
+
 def test_after_the_study_is_changed_trials_go_into_the_new_one(lab, make_record, tmp_path):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
     lab.path = tmp_path / "another.db"
-    lab.desk.closeStudy()
+    lab.desk.forgetWaiting()
     lab.simulator.send_command("TrialCompleted", make_record(OTHER))
     lab.run_until(lambda: len(lab.scored) == 2)
     assert lab.stored(OTHER).record.trial_id == OTHER

@@ -10,7 +10,14 @@ from rastrainer.arm_chain import ArmChain, read_arm_chain
 from rastrainer.errors import InputError
 from rastrainer.journal.replay_track import find_track
 from rastrainer.slicer.headless_scene import HeadlessScene
-from rastrainer.slicer.trial_replay import findReplay, goTo, moment, removeReplay, showReplay
+from rastrainer.slicer.trial_replay import (
+    STATES_A_SLICE,
+    findReplay,
+    goTo,
+    moment,
+    removeReplay,
+    showReplay,
+)
 from Testing.slicer.recorded_trial import URDF, write_recorded_trial
 
 TRIAL = "00000000-0000-0000-0000-000000000001"
@@ -101,3 +108,13 @@ def test_a_journal_of_another_robot_or_none_at_all_is_told(scene, tips, tmp_path
     assert findReplay(scene) is None
     with pytest.raises(InputError, match="only on the computer whose simulator has recorded it"):
         find_track(tmp_path, TRIAL[:-1] + "2")
+
+
+def test_the_application_may_draw_after_each_slice_of_a_replay(scene, tips, tmp_path):  # noqa: ARG001
+    shares = []
+    track = find_track(tmp_path, TRIAL)
+    replay = showReplay(scene, "1", track, read_arm_chain(URDF), WORLD_TO_HEAD, shares.append)
+    states = 2 * replay.GetNumberOfItems() + len(track.trajectory.touches) + 1
+    assert len(shares) == states // STATES_A_SLICE
+    assert shares == sorted(shares)
+    assert 0.0 < shares[0] <= shares[-1] <= 1.0

@@ -18,6 +18,7 @@ from playwright.sync_api import Page
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.onto_skin import lowered
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
@@ -209,16 +210,25 @@ class CarriedTrainee(Trainee):
 
     def press_on(self, label: str) -> None:
         """Record the fiducial under the tip."""
-        self.steer_to(self.place_of(label), 0.002)
+        self._lower_onto(label)
         kept = self.touched
         self.press("touch", lambda: self.touched > kept, f"touch {label}")
+
+    def _lower_onto(self, label: str) -> None:
+        """Have the tip lowered onto a fiducial, until it is in contact."""
+        place = self.place_of(label)
+        self.steer_to(place, 0.002)
+        below = lowered(MM * place, MM * self.head_center)
+        target = {"positionMm": below, "speedMmS": 400}
+        assert self._client.send_command("MoveTipTo", target, timeout=20).ok
+        self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")
 
     def have_touched(self, most: int) -> None:
         """Have the points touched by commands, up to so many in all."""
         while (kept := self.touched) < most:
             label = self.view.state["next"]
             self.approach(label, 0.004)
-            self.steer_to(self.place_of(label), 0.002)
+            self._lower_onto(label)
             assert self._client.send_command("Capture", {}, timeout=20).ok
             self.until(lambda k=kept: self.touched > k, f"touch {label}")
 

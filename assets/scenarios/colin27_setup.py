@@ -18,6 +18,9 @@ PERTURBATION = Perturbation(translation_mm=15.0, yaw_deg=8.0, tilt_deg=3.0)
 CLOSE_UP_MM = np.array([480.0, -600.0, 440.0])
 """The eye of the default view, in World."""
 
+WINDOW, LEVEL = 188.0, 94.0
+"""Of the volume's values, as make_colin27.py tells them."""
+
 NOTICE = (
     "Copyright (C) 1993–2009 Louis Collins, McConnell Brain Imaging Centre, Montreal Neurological "
     "Institute, McGill University. Permission to use, copy, modify, and distribute this software "
@@ -63,6 +66,7 @@ def scenario_json(center_ras: np.ndarray, tasks: list[dict[str, Any]]) -> dict[s
         },
         "table": {"centerMm": [300.0, 0.0], "sizeMm": [1300.0, 1000.0, 40.0]},
         "stand": {"diameterMm": 80.0},
+        "volume": {"file": "volume.nrrd", "window": WINDOW, "level": LEVEL},
         "provenance": {
             "source": "Colin27, an average of 27 T1-weighted MRI scans of one person (Holmes et "
             "al. 1998, doi:10.1097/00004728-199803000-00032), as the volume ch2.nii.gz of "

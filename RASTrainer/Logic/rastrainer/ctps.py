@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.inference.correlation import correlation
 
 CTPS_WARNING = (
     "CTPS rises with a slower completion, depends on who else is in the cohort and has no bounds; "
@@ -154,6 +153,12 @@ def _means(
     return {name: float(np.mean(group)) for name, group in groups.items()}
 
 
+def task_number(task: str) -> int | None:
+    """Return the number at the end of a task's name, by which the paper orders complexity."""
+    match = re.search(r"[0-9]{1,9}$", task)
+    return int(match.group()) if match else None
+
+
 def _task_correlation(trials: Sequence[Trial]) -> float | None:
     """Return Pearson's r of task number and task-mean CT; tasks without a number do not count.
 
@@ -161,11 +166,10 @@ def _task_correlation(trials: Sequence[Trial]) -> float | None:
     """
     times = [trial.completion_time_s for trial in trials]
     means = {
-        int(match.group()): mean
+        number: mean
         for task, mean in _means(trials, times, lambda trial: trial.task).items()
-        if (match := re.search(r"[0-9]{1,9}$", task))
+        if (number := task_number(task)) is not None
     }
-    try:
-        return correlation(list(means), list(means.values())).r
-    except InputError:
+    if len(means) < 3 or not np.ptp(list(means.values())) > 0:
         return None
+    return float(np.corrcoef(list(means), list(means.values()))[0, 1])

@@ -78,7 +78,20 @@ def read_json(path: str | os.PathLike[str], limit_bytes: int) -> Any:
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write a UTF-8 text file as a whole: after a crash the old or the new one is there.
+    """Write a UTF-8 text file as `write_bytes` does.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    try:
+        content = text.encode("utf-8")
+    except ValueError as error:
+        raise _unwritable(path, error) from None
+    write_bytes(path, content)
+
+
+def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
+    """Write a file as a whole: after a crash the old or the new one is there.
 
     Raises:
         InputError: the file cannot be written.
@@ -86,8 +99,8 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     target = Path(path)
     partial = target.parent / f".{uuid.uuid4().hex}.partial"
     try:
-        with partial.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        with partial.open("xb") as file:
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())
         if target.exists():
@@ -96,9 +109,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     except (OSError, ValueError) as error:
         with contextlib.suppress(OSError, ValueError):
             partial.unlink()
-        raise InputError(
-            f"The file {_printable(path)} cannot be written: {_reason(error)}."
-        ) from None
+        raise _unwritable(path, error) from None
 
 
 def make_empty_folder(folder: Path) -> None:
@@ -126,6 +137,10 @@ def _too_large(path: object, limit_bytes: int) -> InputError:
     return InputError(
         f"The file {path} is larger than {limit_bytes / 2**20:g} MiB, the most that is read."
     )
+
+
+def _unwritable(path: object, error: Exception) -> InputError:
+    return InputError(f"The file {_printable(path)} cannot be written: {_reason(error)}.")
 
 
 def _reason(error: Exception) -> str:

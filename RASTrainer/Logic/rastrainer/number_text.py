@@ -5,12 +5,28 @@ from __future__ import annotations
 
 def fixed(value: float, digits: int) -> str:
     """Return a number with so many digits after the point."""
-    return f"{_past_half(value):.{digits}f}".replace("-", "−")
+    text = f"{_past_half(value):.{digits}f}"
+    if float(text) == 0:
+        # What rounds to 0 has no sign.
+        text = text.removeprefix("-")
+    return text.replace("-", "−")
 
 
 def significant(value: float, digits: int = 3, sign: bool = False) -> str:
     """Return a number with so many significant digits, with its sign even where that is +."""
     return f"{_past_half(value):{'+' if sign else ''}.{digits}g}".replace("-", "−")
+
+
+def p_text(p: float) -> str:
+    """Return a p-value as papers print it, with three digits and no zero before the point."""
+    return "< .001" if p < 0.001 else fixed(p, 3).removeprefix("0")
+
+
+def p_phrase(p: float) -> str:
+    """Return a p-value within a sentence, kept on one line: `p = .125` or `p < .001`."""
+    text = p_text(p)
+    words = f"p {text}" if text.startswith("<") else f"p = {text}"
+    return words.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def percent(share: float) -> str:

@@ -35,7 +35,10 @@ class Device:
 
 
 class Rate:
-    """How often each device is sent: poses and state in simulated time, the rest in wall time."""
+    """How often each device is sent: poses and state in simulated time, the rest in wall time.
+
+    Poses and state come at most so often, and only when they have changed.
+    """
 
     TOOL_TIP_HZ = 60.0
     LINKS_HZ = 30.0
@@ -65,6 +68,13 @@ class Mode(str, Enum):
 
     DESKTOP = "desktop"
     HMD = "hmd"
+
+
+class TouchRule(str, Enum):
+    """Which touch counts: of a tip on the skin, or, as in the paper, anywhere near the fiducial."""
+
+    ON_SKIN = "on skin"
+    WITHIN_RADIUS = "within radius"
 
 
 class StepKind(str, Enum):
@@ -142,6 +152,17 @@ def text(longest: int = 64) -> Callable[[Any], str]:
     return check
 
 
+def pseudonym() -> Callable[[Any], str]:
+    """Accept what a trainee may be called: short printable text without a space at an end."""
+
+    def check(value: Any) -> str:
+        if text()(value) != value.strip():
+            raise ValueError("printable text without a space at its beginning or end")
+        return value
+
+    return check
+
+
 def number(lowest: float, highest: float, unit: str = "") -> Callable[[Any], float]:
     """Accept a finite number from `lowest` to `highest`."""
 
@@ -192,6 +213,13 @@ def one_of(*choices: str) -> Callable[[Any], str]:
     return check
 
 
+def yes_or_no(value: Any) -> bool:
+    """Accept true or false."""
+    if not isinstance(value, bool):
+        raise ValueError("true or false")
+    return value
+
+
 def trial_id(value: Any) -> str:
     """Accept the UUID of a trial in its canonical spelling."""
     try:
@@ -218,12 +246,13 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "client": Argument(text()),
         "toolTipHz": Argument(number(0, 250, "Hz"), Rate.TOOL_TIP_HZ),
         "linksHz": Argument(number(0, 250, "Hz"), Rate.LINKS_HZ),
+        "steady": Argument(yes_or_no, False),
     },
     CommandName.LIST_TASKS: {},
     CommandName.LOAD_SCENARIO: {"folder": Argument(text(1024))},
     CommandName.START_TASK: {
         "task": Argument(text()),
-        "trainee": Argument(text()),
+        "trainee": Argument(pseudonym()),
         "mode": Argument(one_of(*(mode.value for mode in Mode)), Mode.DESKTOP.value),
         "seed": Argument(whole_number(0, 2**63 - 1), None),
     },

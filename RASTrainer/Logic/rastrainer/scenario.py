@@ -1,6 +1,7 @@
 """A scenario: a head, where it stands, the tasks on it, and how it is looked at.
 
-A scenario is a folder with `scenario.json`, the head's mesh and one `.mrk.json` file a task.
+A scenario is a folder with `scenario.json`, the head's mesh, one `.mrk.json` file a task and, where
+there are, the images that the head was made of.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import RAS_LIMIT_MM
 from rastrainer.head_pose import WIDEST, Perturbation, perturbed_pose
+from rastrainer.head_volume import VolumeFile, read_volume_file
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario_plan import (
     PlannedTarget,
@@ -101,6 +103,7 @@ class Scenario:
         is_skull_approximate: whether it is only estimated from the skin, as it is of MRI.
         targets: further points that are planned to be reached.
         trajectory: the way that is planned into the head.
+        volume: the images, for whoever looks at them; None where there are none.
     """
 
     folder: Path
@@ -119,6 +122,7 @@ class Scenario:
     is_skull_approximate: bool = False
     targets: tuple[PlannedTarget, ...] = ()
     trajectory: PlannedTrajectory | None = None
+    volume: VolumeFile | None = None
 
     @property
     def preview(self) -> Path | None:
@@ -184,6 +188,7 @@ def _load(folder: Path) -> Scenario:
         **_skull(fields),
         targets=read_targets(fields),
         trajectory=read_trajectory(fields),
+        volume=read_volume_file(fields),
     )
 
 

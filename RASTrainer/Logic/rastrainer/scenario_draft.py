@@ -1,6 +1,6 @@
 """A head on its way to become a scenario: what Slicer's side hands to the planner of tasks.
 
-A folder with `draft.json`, `head.ply` and, where there is one, `skull.ply`.
+A folder with `draft.json`, `head.ply` and, where there are, `skull.ply` and `volume.nrrd`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,14 @@ from pathlib import Path
 from rastrainer.checked_json import read_fields
 from rastrainer.files import write_text
 from rastrainer.head_mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.head_volume import (
+    HeadVolume,
+    read_head_volume,
+    read_volume_file,
+    write_head_volume,
+)
 from rastrainer.scenario import SKULL_KINDS
-from rastrainer.scenario_writer import HEAD_NAME, SKULL_NAME
+from rastrainer.scenario_writer import HEAD_NAME, SKULL_NAME, VOLUME_NAME, volume_entry
 
 FILE_NAME = "draft.json"
 NO_SKULL = "none"
@@ -28,12 +34,14 @@ class HeadDraft:
         method: how it was made, for the scenario's provenance.
         skull: None where there is none.
         is_skull_approximate: whether the skull is only the skin moved inward.
+        volume: the images it was made of; None where they are not wanted.
     """
 
     head: HeadMesh
     method: str
     skull: HeadMesh | None = None
     is_skull_approximate: bool = False
+    volume: HeadVolume | None = None
 
 
 def write_draft(folder: Path, draft: HeadDraft) -> None:
@@ -47,6 +55,9 @@ def write_draft(folder: Path, draft: HeadDraft) -> None:
     if draft.skull is not None:
         write_head_mesh(folder / SKULL_NAME, draft.skull)
     content = {"method": draft.method, "skull": kind}
+    if draft.volume is not None:
+        write_head_volume(folder / VOLUME_NAME, draft.volume)
+        content["volume"] = volume_entry(draft.volume)
     write_text(folder / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 
 
@@ -58,9 +69,11 @@ def read_draft(folder: Path) -> HeadDraft:
     """
     fields = read_fields(folder / FILE_NAME)
     kind = fields.one_of("skull", (*SKULL_KINDS, NO_SKULL))
+    volume = read_volume_file(fields)
     return HeadDraft(
         read_head_mesh(folder / HEAD_NAME),
         fields.text("method", 4000),
         None if kind == NO_SKULL else read_head_mesh(folder / SKULL_NAME),
         kind == SKULL_KINDS[1],
+        None if volume is None else read_head_volume(volume),
     )

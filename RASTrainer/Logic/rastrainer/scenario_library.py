@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,29 +40,39 @@ def user_library() -> Path:
     return Path.home() / "RASTrainer" / "scenarios"
 
 
-def list_scenarios(libraries: Iterable[Path]) -> list[ListedScenario]:
+def list_scenarios(
+    libraries: Iterable[Path], list_one: Callable[[Path], ListedScenario] | None = None
+) -> list[ListedScenario]:
     """Return the scenarios in these folders, each below its own folder, by title.
 
     One that cannot be used is listed with its problem. Of two of the same name, which commands
     could not tell apart, the first folder's counts.
+
+    Args:
+        libraries: folders of folders.
+        list_one: lists the scenario of a folder; `list_folder` when left out.
     """
-    return list_folders(
+    folders = [
         path.parent
         for library in libraries
         for path in sorted(Path(library).glob(f"*/{FILE_NAME}"))[:MOST_SCENARIOS]
-    )
+    ]
+    return list_folders(folders, list_one)
 
 
-def list_folders(folders: Iterable[Path]) -> list[ListedScenario]:
+def list_folders(
+    folders: Iterable[Path], list_one: Callable[[Path], ListedScenario] | None = None
+) -> list[ListedScenario]:
     """Return the scenarios of these folders themselves; otherwise as `list_scenarios`."""
     listed: dict[str, ListedScenario] = {}
     for folder in folders:
-        entry = _listed(folder)
+        entry = (list_one or list_folder)(folder)
         listed.setdefault(entry.name, entry)
     return sorted(listed.values(), key=lambda entry: entry.title.casefold())
 
 
-def _listed(folder: Path) -> ListedScenario:
+def list_folder(folder: Path) -> ListedScenario:
+    """Return the scenario of a folder; one that cannot be used says why."""
     try:
         scenario = load_scenario(folder)
     except InputError as error:

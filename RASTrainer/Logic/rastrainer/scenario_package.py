@@ -13,6 +13,8 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_volume import check_place, read_head_volume
+from rastrainer.progress import Progress
 from rastrainer.scenario import PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario_writer import new_folder, write_scenario
 
@@ -21,6 +23,9 @@ MOST_BYTES = 100_000_000
 MOST_FILES = 64
 MOST_TRIANGLES = 100_000
 """More than what is built here has (60,000); what the views and the collisions can carry."""
+
+UNPACKING, CHECKING = "Unpacking the scenario", "Checking the scenario"
+UNPACKED_SHARE = 0.5
 
 _TIME = (2000, 1, 1, 0, 0, 0)
 _CHUNK = 1 << 20
@@ -41,11 +46,12 @@ def pack(folder: Path, package: Path) -> Path:
         raise InputError(f"{package} is there already; name a file that is new.")
     head = read_head_mesh(scenario.head_mesh)
     skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    volume = read_head_volume(scenario.volume) if scenario.volume else None
     partial = package.parent / f".{uuid.uuid4().hex}.partial"
     try:
         with tempfile.TemporaryDirectory() as temporary:
             clean = Path(temporary)
-            write_scenario(clean, scenario, head, skull)
+            write_scenario(clean, scenario, head, skull, volume)
             if scenario.preview:
                 shutil.copyfile(scenario.preview, clean / PREVIEW_NAME)
             _write_archive(partial, clean)
@@ -57,10 +63,15 @@ def pack(folder: Path, package: Path) -> Path:
     return package
 
 
-def unpack(package: Path, library: Path) -> Path:
+def unpack(package: Path, library: Path, progress: Progress = lambda _step, _share: None) -> Path:
     """Unpack a scenario into a new folder of `library`, named as the scenario, and return it.
 
     Nothing is left behind where the package cannot be used.
+
+    Args:
+        package: the zip file.
+        library: folder of folders.
+        progress: told the step's name and the share of the work done; may raise to cancel.
 
     Raises:
         InputError: the file is no package of a scenario, holds what no scenario holds, is larger
@@ -70,18 +81,20 @@ def unpack(package: Path, library: Path) -> Path:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
         folder = Path(temporary) / "scenario"
         folder.mkdir()
-        _read_archive(package, folder)
+        _read_archive(package, folder, progress)
+        progress(CHECKING, UNPACKED_SHARE)
         scenario = _checked(package, folder)
         goal = library / scenario.name
         if goal.exists():
             raise InputError(f"The scenario {scenario.name} is in {library} already.")
+        progress(CHECKING, 1.0)
         with new_folder(goal) as made:
             shutil.copytree(folder, made, dirs_exist_ok=True)
     return goal
 
 
 def checked_scenario(folder: Path) -> Scenario:
-    """Load a scenario and look into its meshes.
+    """Load a scenario and look into its meshes and its volume.
 
     Raises:
         InputError: something of it cannot be used.
@@ -96,6 +109,9 @@ def checked_scenario(folder: Path) -> Scenario:
             )
         if path == scenario.head_mesh and not mesh.is_closed:
             raise InputError(f"The head mesh {path} is not closed: it has a hole.")
+    if scenario.volume is not None:
+        volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head_mesh)
+        check_place(volume, head, scenario.volume.path)
     return scenario
 
 
@@ -108,12 +124,12 @@ def _write_archive(path: Path, folder: Path) -> None:
             archive.writestr(info, file.read_bytes())
 
 
-def _read_archive(package: Path, folder: Path) -> None:
+def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
     try:
         if package.stat().st_size > MOST_PACKED_BYTES:
             raise _refused(package, f"is larger than {MOST_PACKED_BYTES // 10**6} MB")
         with zipfile.ZipFile(package) as archive:
-            _extract(package, archive, folder)
+            _extract(package, archive, folder, progress)
     except FileNotFoundError:
         raise InputError(f"There is no file {package}.") from None
     except OSError as error:
@@ -124,7 +140,7 @@ def _read_archive(package: Path, folder: Path) -> None:
         raise _refused(package, "is no zip file, or a damaged one") from None
 
 
-def _extract(package: Path, archive: zipfile.ZipFile, folder: Path) -> None:
+def _extract(package: Path, archive: zipfile.ZipFile, folder: Path, progress: Progress) -> None:
     members = [info for info in archive.infolist() if not info.is_dir()]
     if not 1 <= len(members) <= MOST_FILES:
         raise _refused(package, f"holds {len(members)} files; a scenario has 1 to {MOST_FILES}")
@@ -133,7 +149,8 @@ def _extract(package: Path, archive: zipfile.ZipFile, folder: Path) -> None:
     if len({info.filename.lower() for info in members}) != len(members):
         raise _refused(package, "holds a file twice")
     left = MOST_BYTES
-    for info in members:
+    for number, info in enumerate(members):
+        progress(UNPACKING, UNPACKED_SHARE * number / len(members))
         left = _extract_member(package, archive, info, folder / info.filename, left)
 
 

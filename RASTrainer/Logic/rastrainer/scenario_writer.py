@@ -16,12 +16,14 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files import write_text
 from rastrainer.head_mesh import HeadMesh, write_head_mesh
+from rastrainer.head_volume import HeadVolume, write_head_volume
 from rastrainer.markups import write_markups
 from rastrainer.point_list import PointList
+from rastrainer.private_files import make_private_folder
 from rastrainer.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
 from rastrainer.tasks import Task, is_task_name
 
-HEAD_NAME, SKULL_NAME = "head.ply", "skull.ply"
+HEAD_NAME, SKULL_NAME, VOLUME_NAME = "head.ply", "skull.ply", "volume.nrrd"
 _DECIMALS = 4
 
 
@@ -37,7 +39,9 @@ def new_folder(folder: Path) -> Iterator[Path]:
         raise InputError(f"{folder} is there already; name a folder that is new or empty.")
     partial = folder.parent / f".{uuid.uuid4().hex}.partial"
     try:
-        partial.mkdir(parents=True)
+        # A head shows a face.
+        make_private_folder(folder.parent)
+        partial.mkdir()
         yield partial
         partial.replace(folder)
     except OSError as error:
@@ -61,15 +65,20 @@ def scenario_name(title: str) -> str:
 
 
 def write_scenario(
-    folder: Path, scenario: Scenario, head: HeadMesh, skull: HeadMesh | None = None
+    folder: Path,
+    scenario: Scenario,
+    head: HeadMesh,
+    skull: HeadMesh | None = None,
+    volume: HeadVolume | None = None,
 ) -> None:
-    """Write `scenario.json`, the meshes and the tasks into a folder that exists.
+    """Write `scenario.json`, the meshes, the volume and the tasks into a folder that exists.
 
     Args:
         folder: such as `new_folder` yields.
         scenario: what to write; its own paths do not matter.
         head: its head's mesh.
         skull: its skull's; None where it has none.
+        volume: its images; None where it has none.
 
     Raises:
         InputError: a file cannot be written.
@@ -78,13 +87,17 @@ def write_scenario(
     write_head_mesh(folder / HEAD_NAME, head)
     if skull is not None:
         write_head_mesh(folder / SKULL_NAME, skull)
+    if volume is not None:
+        write_head_volume(folder / VOLUME_NAME, volume)
     for task in scenario.tasks:
         write_markups(folder / _file(task), PointList(task.labels, task.fiducials))
-    content = scenario_json(scenario, has_skull=skull is not None)
+    content = scenario_json(scenario, skull is not None, volume)
     write_text(folder / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 
 
-def scenario_json(scenario: Scenario, has_skull: bool) -> dict[str, Any]:
+def scenario_json(
+    scenario: Scenario, has_skull: bool, volume: HeadVolume | None = None
+) -> dict[str, Any]:
     """Return the content of a scenario's `scenario.json`."""
     limits, furniture, provenance = scenario.perturbation, scenario.furniture, scenario.provenance
     content: dict[str, Any] = {
@@ -115,6 +128,8 @@ def scenario_json(scenario: Scenario, has_skull: bool) -> dict[str, Any]:
     if has_skull:
         kind = SKULL_KINDS[1 if scenario.is_skull_approximate else 0]
         content["skull"] = {"file": SKULL_NAME, "kind": kind}
+    if volume is not None:
+        content["volume"] = volume_entry(volume)
     if scenario.targets:
         content["targets"] = [_named_point(t.name, t.position) for t in scenario.targets]
     if scenario.trajectory is not None:
@@ -124,6 +139,11 @@ def scenario_json(scenario: Scenario, has_skull: bool) -> dict[str, Any]:
             "targetRas": _listed(scenario.trajectory.target),
         }
     return content
+
+
+def volume_entry(volume: HeadVolume) -> dict[str, Any]:
+    """Return what JSON says about a volume that `write_head_volume` has put beside it."""
+    return {"file": VOLUME_NAME, "window": volume.window, "level": volume.level}
 
 
 def _task_entry(task: Task) -> dict[str, Any]:

@@ -20,6 +20,9 @@ from rastrainer.scenario import Scenario
 LIFT_MM = 35.0
 """How far the tip is taken off the skin before it travels to the next fiducial."""
 
+PRESS_MM = 1.5
+"""How far below the skin the last aim is: the tip is to be felt touching it."""
+
 DECISION_PERIOD_S = 0.05
 JOG_DURATION_S = 0.1
 STUCK_AFTER_S = 12.0
@@ -41,6 +44,8 @@ class Skill:
         dwell_s: how long the tip is held still before a touch.
         slip_at: the fiducial (1 is the first) at which the trainee slips by 4 mm, notices and
             takes the touch back; None for a trainee who never does.
+        aim_bias_mm: by what the view misleads the aim; x, y, z in World. The part along the skin
+            is what counts.
     """
 
     speed_mm_s: float = 120.0
@@ -51,14 +56,24 @@ class Skill:
     reaction_s: float = 0.25
     dwell_s: float = 0.3
     slip_at: int | None = 4
+    aim_bias_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Observation:
-    """What the trainee sees: the tip (3,) mm in World, the phase, the next fiducial (1-based)."""
+    """What the trainee sees.
+
+    Attributes:
+        sim_time_s: simulated time, s.
+        tip_mm: (3,) float, of the tool, World, mm.
+        is_in_contact: whether the tool is shown to touch the head.
+        phase: of the trial.
+        next_point: number of the fiducial to touch, from 1; None where there is none.
+    """
 
     sim_time_s: float
     tip_mm: np.ndarray
+    is_in_contact: bool
     phase: Phase
     next_point: int | None
 
@@ -95,6 +110,7 @@ class ScriptedTrainee:
         self._acts_from_s = 0.0
         self._gives_up_at_s = np.inf
         self._tremor = np.zeros(3)
+        self._outward_at_aim = np.zeros(3)
 
     @classmethod
     def of(
@@ -155,6 +171,7 @@ class ScriptedTrainee:
         above = fiducial + LIFT_MM * outward
         past = above + self._skill.overshoot * (above - lifted)
         self._path = [*self._arc(lifted, past), above, aim]
+        self._outward_at_aim = outward
         self._planned_for = point
         self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
         self._gives_up_at_s = observation.sim_time_s + STUCK_AFTER_S
@@ -165,13 +182,23 @@ class ScriptedTrainee:
         is_aim = len(self._path) == 1
         remaining = self._path[0] - observation.tip_mm
         gave_up = is_aim and observation.sim_time_s > self._gives_up_at_s
-        if np.linalg.norm(remaining) < (0.4 if is_aim else 8.0) or gave_up:
+        if is_aim:
+            is_there = observation.is_in_contact and self._is_over_aim(remaining)
+            remaining = remaining - PRESS_MM * self._outward_at_aim
+        else:
+            is_there = np.linalg.norm(remaining) < 8.0
+        if is_there or gave_up:
             self._path.pop(0)
             if not is_aim:
                 return self._approach(observation)
             self._acts_from_s = observation.sim_time_s + self._skill.dwell_s
             return None
         return self._jog(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
+
+    def _is_over_aim(self, remaining: np.ndarray) -> bool:
+        """Tell whether the tip is less than 0.4 mm beside the aim, however high above it."""
+        along = remaining - self._outward_at_aim * float(remaining @ self._outward_at_aim)
+        return bool(np.linalg.norm(along) < 0.4)
 
     def _jog(self, remaining: np.ndarray, fastest_mm_s: float) -> Action:
         velocity = self._skill.gain_per_s * remaining
@@ -197,7 +224,7 @@ class ScriptedTrainee:
         return away / max(float(np.linalg.norm(away)), 1e-9)
 
     def _tangential_error(self, outward: np.ndarray, slips: bool) -> np.ndarray:
-        error = self._random.normal(0.0, self._skill.aim_sd_mm, 3)
+        error = self._random.normal(self._skill.aim_bias_mm, self._skill.aim_sd_mm, 3)
         if slips:
             error = error + 4.0 * self._random.choice([-1.0, 1.0], 3) / np.sqrt(3.0)
         return error - outward * float(error @ outward)

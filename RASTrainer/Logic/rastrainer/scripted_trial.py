@@ -11,7 +11,7 @@ import numpy as np
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device, Mode, Phase
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device, Mode, Phase, Proximity
 from rastrainer.scenario import Scenario
 from rastrainer.scripted_trainee import Observation, ScriptedTrainee, Skill
 
@@ -32,12 +32,13 @@ class PlayedTrial:
 
 
 def say_hello(client: Client, name: str) -> None:
-    """Greet the server.
+    """Greet the server, and ask for poses also while the arm stands: they are our clock.
 
     Raises:
         TrialStoppedError: it speaks another version of the protocol.
     """
-    _send(client, CommandName.HELLO, {"protocolVersion": PROTOCOL_VERSION, "client": name})
+    hello = {"protocolVersion": PROTOCOL_VERSION, "client": name, "steady": True}
+    _send(client, CommandName.HELLO, hello)
 
 
 def play_trial(
@@ -106,6 +107,7 @@ class _View:
         return Observation(
             sim_time_s=float(tip.metadata["simTime"]),
             tip_mm=np.array(tip.content.matrix)[:3, 3],
+            is_in_contact=state["proximity"] == Proximity.CONTACT.value,
             phase=Phase(state["phase"]),
             next_point=None if point is None else int(point),
         )

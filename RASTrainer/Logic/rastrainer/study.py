@@ -14,7 +14,8 @@ from rastrainer import study_trainees, study_trials
 from rastrainer.ctps import Trial
 from rastrainer.registration import Registration
 from rastrainer.scoring import TrialScore
-from rastrainer.study_database import StudyDatabase
+from rastrainer.study_database import StudyBusyError, StudyDatabase
+from rastrainer.study_patience import Patience
 from rastrainer.study_tombstones import DeletedTrialError
 from rastrainer.study_values import (
     PastTrial,
@@ -26,27 +27,41 @@ from rastrainer.study_values import (
 from rastrainer.target_error import TargetError
 from rastrainer.trial_record import TrialRecord
 
-__all__ = ["DeletedTrialError", "StoredRegistration", "StoredTrial", "Study", "Trainee"]
+__all__ = [
+    "DeletedTrialError",
+    "StoredRegistration",
+    "StoredTrial",
+    "Study",
+    "StudyBusyError",
+    "Trainee",
+]
 
 
 class Study:
     """A study's file; use it in a `with` statement, or call `close`.
 
-    Every method raises `InputError` where the file cannot be read or written: read-only, kept busy
-    for half a minute by another program, damaged, disk full. One thread may use it.
+    Every method raises `InputError` where the file cannot be read or written: read-only, damaged,
+    disk full; `StudyBusyError` where another program has it locked for longer than the patience
+    lasts. One thread may use it.
     """
 
     def __init__(self, database: StudyDatabase) -> None:
         self._database = database
+        self._read_trials: dict[str, tuple[tuple, StoredTrial]] = {}
 
     @classmethod
-    def open(cls, path: str | os.PathLike[str]) -> Study:
+    def open(cls, path: str | os.PathLike[str], patience: Patience | None = None) -> Study:
         """Open the study in a file, or begin one there.
+
+        Args:
+            path: Of the file.
+            patience: With a lock held elsewhere; half a minute when left out.
 
         Raises:
             InputError: the file is no study, damaged, or of a newer RASTrainer.
+            StudyBusyError: another program has it locked.
         """
-        return cls(StudyDatabase(path))
+        return cls(StudyDatabase(path, patience))
 
     def __enter__(self) -> Study:
         return self
@@ -67,10 +82,15 @@ class Study:
         """Add a trainee, by default under the next free pseudonym (`T001`, `T002`, …).
 
         Raises:
-            InputError: the pseudonym is taken, or not printable text of 1 to 64 characters.
+            InputError: the pseudonym is taken, or cannot be one; see `protocol.pseudonym`.
         """
         with self._database.writing() as connection:
             return study_trainees.create(connection, pseudonym, consent)
+
+    def next_pseudonym(self) -> str:
+        """Return the next free pseudonym, such as `T001`."""
+        with self._database.reading() as connection:
+            return study_trainees.next_pseudonym(connection)
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
         """Return those who train, or those who are archived, by pseudonym."""
@@ -100,6 +120,7 @@ class Study:
         Raises:
             InputError: the study has none of this pseudonym.
         """
+        self._read_trials.clear()
         with self._database.writing() as connection:
             return study_trainees.delete(connection, pseudonym)
 
@@ -134,6 +155,16 @@ class Study:
                     connection, checked.trial_id, registrations, target_errors or {}, score
                 )
             return is_new
+
+    def check_trial(self, record: TrialRecord) -> bool:
+        """Return whether a trial would be new, before anything is computed from it.
+
+        Raises:
+            InputError: another trial has its UUID, or its trainee's name is no pseudonym.
+            DeletedTrialError: the trial was deleted with its trainee.
+        """
+        with self._database.reading() as connection:
+            return study_trials.check(connection, record)
 
     def add_results(
         self,
@@ -185,6 +216,11 @@ class Study:
         with self._database.reading() as connection:
             return study_trials.exists(connection, trial_id)
 
+    def is_revealed(self, trial_id: str) -> bool:
+        """Return whether the truth of a stored trial is known."""
+        with self._database.reading() as connection:
+            return study_trials.is_revealed(connection, trial_id)
+
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
         """Return all trials of a trainee in the order they were started.
 
@@ -192,7 +228,7 @@ class Study:
             InputError: the study has no trainee of this pseudonym.
         """
         with self._database.reading() as connection:
-            return study_trials.history(connection, pseudonym)
+            return study_trials.history(connection, pseudonym, self._read_trials)
 
     def past_trials(self, pseudonym: str) -> tuple[PastTrial, ...]:
         """Return what progress is told from: scored trials but the trial runs, as started.

@@ -7,6 +7,7 @@ word. Writers wait for each other; a trial takes milliseconds and comes once in 
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sqlite3
 from collections.abc import Iterator
@@ -14,28 +15,40 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.private_files import keep_others_out, open_private
+from rastrainer.study_patience import Patience
 from rastrainer.study_schema import APPLICATION_ID, MIGRATIONS
 
-BUSY_TIMEOUT_S = 30.0
 _COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
 
 
-class StudyDatabase:
-    """A connection to one file; several processes may have one each."""
+class StudyBusyError(InputError):
+    """Another program has the study locked; nothing has changed, and it may be tried again."""
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+
+class StudyDatabase:
+    """A connection to one file; several processes and threads may have one each."""
+
+    def __init__(self, path: str | os.PathLike[str], patience: Patience | None = None) -> None:
         """Open the file, create it if it is not there, and bring its tables up to date.
+
+        Args:
+            path: of the file.
+            patience: with a lock held elsewhere; half a minute when left out.
 
         Raises:
             InputError: no such folder, not a database, another program's, damaged, or made by a
                 newer RASTrainer.
+            StudyBusyError: another program has it locked.
         """
         self.path = Path(path)
+        self._patience = patience or Patience()
         self._check_place()
+        self._keep_private()
         with self._sentences():
             # Transactions are begun by us alone: `isolation_level=None`.
             self._connection = sqlite3.connect(
-                self.path, timeout=BUSY_TIMEOUT_S, isolation_level=None
+                self.path, timeout=self._patience.timeout_s, isolation_level=None
             )
         try:
             with self._sentences():
@@ -59,14 +72,28 @@ class StudyDatabase:
         """Give the connection for changes that are stored together or not at all.
 
         Raises:
-            InputError: the file is read-only, the disk is full, or another program keeps writing.
+            InputError: the file is read-only, or the disk is full.
+            StudyBusyError: another program has it locked.
         """
         with self._transaction("BEGIN IMMEDIATE") as connection:
             yield connection
 
+    def version(self) -> int | None:
+        """Return a number that is another one once another connection has changed the file.
+
+        It waits for nobody, and is cheap enough to be asked every second. None while it cannot be
+        told, as in the moment of such a change.
+        """
+        try:
+            self._connection.execute("PRAGMA busy_timeout = 0")
+            return self._number("data_version")
+        except sqlite3.Error:
+            return None
+
     @contextmanager
     def _transaction(self, begin: str) -> Iterator[sqlite3.Connection]:
         with self._sentences():
+            self._connection.execute(f"PRAGMA busy_timeout = {1000 * self._patience.timeout_s:.0f}")
             self._connection.execute(begin)
             try:
                 yield self._connection
@@ -82,6 +109,14 @@ class StudyDatabase:
             raise InputError(f"{self.path} is a folder; a study database is a file.")
         if not self.path.parent.is_dir():
             raise InputError(f"There is no folder {self.path.parent} for the study database.")
+
+    def _keep_private(self) -> None:
+        """Keep others out of the file, and of what SQLite lays beside it and leaves in a crash."""
+        # Only a new one is opened: to close another would end the locks of our other connections.
+        with contextlib.suppress(OSError):
+            os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
+        for suffix in ("", "-journal", "-wal", "-shm"):
+            keep_others_out(f"{self.path}{suffix}")
 
     def _prepare(self) -> None:
         for pragma in (
@@ -138,12 +173,18 @@ class StudyDatabase:
         except (sqlite3.IntegrityError, sqlite3.ProgrammingError, sqlite3.InterfaceError):
             raise
         except sqlite3.Error as error:
-            raise InputError(self._sentence(str(error).lower())) from error
+            text = str(error).lower()
+            if "locked" in text:
+                self._patience.lose()
+                raise StudyBusyError(
+                    f"Another program has the study {self.path} locked; try again when it has "
+                    "finished."
+                ) from error
+            raise InputError(self._sentence(text)) from error
 
     def _sentence(self, text: str) -> str:
         reasons = {
             "not a database": f"{self.path} is not a study database.",
-            "locked": f"The study {self.path} is kept busy by another program; try again.",
             "readonly": f"The study {self.path} is read-only; allow writing to it and its folder.",
             "unable to open": f"The study {self.path} cannot be opened; check its permissions.",
             "full": f"The study {self.path} cannot be written: the disk is full.",

@@ -116,4 +116,17 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         )
         """,
     ),
+    (
+        # A virtual cohort: what is planned, when it was finished, and who never got through.
+        """
+        CREATE TABLE cohort (
+            id INTEGER PRIMARY KEY CHECK (id = 1),
+            plan_json TEXT NOT NULL,
+            planned_trials INTEGER NOT NULL CHECK (planned_trials > 0),
+            stored_utc TEXT NOT NULL,
+            finished_utc TEXT
+        )
+        """,
+        "CREATE TABLE stuck_trials (trial_id TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
+    ),
 )

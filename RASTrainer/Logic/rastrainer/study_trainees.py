@@ -19,13 +19,10 @@ def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool)
     """Add a trainee, by default under the next free pseudonym.
 
     Raises:
-        InputError: the pseudonym is taken, or not printable text of 1 to 64 characters.
+        InputError: the pseudonym is taken, or cannot be one.
     """
-    pseudonym = _next_pseudonym(connection) if pseudonym is None else pseudonym
-    try:
-        protocol.text()(pseudonym)
-    except ValueError as error:
-        raise InputError(f"A pseudonym must be {error}.") from None
+    pseudonym = next_pseudonym(connection) if pseudonym is None else pseudonym
+    check_pseudonym(pseudonym)
     if exists(connection, pseudonym):
         raise InputError(f"The pseudonym {json.dumps(pseudonym)} is taken; choose another.")
     connection.execute(
@@ -33,6 +30,14 @@ def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool)
         (pseudonym, bool(consent), utc_now()),
     )
     return find(connection, pseudonym)
+
+
+def check_pseudonym(pseudonym: str) -> None:
+    """Raise `InputError` where a text cannot be a pseudonym, typed in or from the simulator."""
+    try:
+        protocol.pseudonym()(pseudonym)
+    except ValueError as error:
+        raise InputError(f"A pseudonym must be {error}.") from None
 
 
 def exists(connection: sqlite3.Connection, pseudonym: str) -> bool:
@@ -92,7 +97,8 @@ def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
     return len(trials)
 
 
-def _next_pseudonym(connection: sqlite3.Connection) -> str:
+def next_pseudonym(connection: sqlite3.Connection) -> str:
+    """Return the pseudonym of a trainee who is created without one."""
     # Numbers of deleted trainees do not come back: someone else would get their name.
     row = connection.execute("SELECT seq FROM sqlite_sequence WHERE name = 'trainees'").fetchone()
     number = (row[0] if row else 0) + 1

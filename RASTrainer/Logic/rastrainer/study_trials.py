@@ -29,6 +29,16 @@ _LATEST_SCORE = """
     SELECT {} FROM scores WHERE scores.trial_id = trials.trial_id ORDER BY scores.id DESC LIMIT 1
 """
 
+_STAMPED_TRIALS = f"""
+    SELECT trial_id, rowid, stored_utc,
+        (SELECT max(id) FROM registrations WHERE registrations.trial_id = trials.trial_id),
+        (SELECT max(id) FROM scores WHERE scores.trial_id = trials.trial_id),
+        (SELECT stored_utc FROM truths WHERE truths.trial_id = trials.trial_id),
+        (SELECT stored_utc FROM motions WHERE motions.trial_id = trials.trial_id)
+    FROM trials WHERE trainee_id = ({TRAINEE_ID}) ORDER BY started_utc, rowid
+"""
+"""Each trial of a trainee with what changes whenever something of it is stored."""
+
 Value = TypeVar("Value")
 
 
@@ -49,9 +59,7 @@ def add(
     text = json_text(json_object)
     if len(text) > RECORD_LIMIT_BYTES:
         raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
-    check_not_buried(connection, record.trial_id)
-    if exists(connection, record.trial_id):
-        _check_same(find_record(connection, record.trial_id), record)
+    if not check(connection, record):
         return False
     if not study_trainees.exists(connection, record.trainee):
         study_trainees.create(connection, record.trainee, consent=False)
@@ -71,6 +79,22 @@ def add(
     )
     if record.motion:
         set_motion(connection, record.trial_id, record.motion)
+    return True
+
+
+def check(connection: sqlite3.Connection, record: TrialRecord) -> bool:
+    """Return whether a trial would be new.
+
+    Raises:
+        InputError: another trial has its UUID, or its trainee's name is no pseudonym.
+        DeletedTrialError: the trial was deleted with its trainee.
+    """
+    check_not_buried(connection, record.trial_id)
+    if exists(connection, record.trial_id):
+        _check_same(find_record(connection, record.trial_id), record)
+        return False
+    if not study_trainees.exists(connection, record.trainee):
+        study_trainees.check_pseudonym(record.trainee)
     return True
 
 
@@ -146,6 +170,12 @@ def exists(connection: sqlite3.Connection, trial_id: str) -> bool:
     return connection.execute(query, (trial_id,)).fetchone() is not None
 
 
+def is_revealed(connection: sqlite3.Connection, trial_id: str) -> bool:
+    """Return whether the simulator has told the truth of a trial."""
+    query = "SELECT 1 FROM truths WHERE trial_id = ?"
+    return connection.execute(query, (trial_id,)).fetchone() is not None
+
+
 def find_record(connection: sqlite3.Connection, trial_id: str) -> TrialRecord:
     """Return the record of a trial; raise `InputError` if the study has no such trial."""
     _check_exists(connection, trial_id)
@@ -183,15 +213,28 @@ def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
     )
 
 
-def history(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredTrial, ...]:
-    """Return a trainee's trials as they were started; raise `InputError` for an unknown one."""
+def history(
+    connection: sqlite3.Connection, pseudonym: str, known: dict[str, tuple[tuple, StoredTrial]]
+) -> tuple[StoredTrial, ...]:
+    """Return a trainee's trials as they were started; raise `InputError` for an unknown one.
+
+    Args:
+        connection: In a transaction.
+        pseudonym: Of the trainee.
+        known: Trials that were read before, with what tells whether they have changed since;
+            becomes those of this trainee.
+    """
     study_trainees.find(connection, pseudonym)
-    rows = connection.execute(
-        f"SELECT trial_id FROM trials WHERE trainee_id = ({TRAINEE_ID}) "
-        "ORDER BY started_utc, rowid",
-        (pseudonym,),
-    ).fetchall()
-    return tuple(find(connection, trial_id) for (trial_id,) in rows)
+    rows = connection.execute(_STAMPED_TRIALS, (pseudonym,)).fetchall()
+    read = {
+        trial_id: known[trial_id]
+        if trial_id in known and known[trial_id][0] == tuple(stamp)
+        else (tuple(stamp), find(connection, trial_id))
+        for trial_id, *stamp in rows
+    }
+    known.clear()
+    known.update(read)
+    return tuple(trial for _stamp, trial in read.values())
 
 
 def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTrial, ...]:

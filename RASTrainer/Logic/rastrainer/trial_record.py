@@ -16,7 +16,7 @@ import numpy as np
 
 from rastrainer import protocol
 from rastrainer.errors import InputError
-from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM, Argument, Mode
+from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM, Argument, Mode, TouchRule
 
 TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000
@@ -56,10 +56,11 @@ class TrialRecord:
         completed_utc: ISO 8601 in UTC.
         completion_time_s: Simulated time from the start to the last kept touch, without pauses.
         points: The kept touches; their labels differ and their times do not fall.
-        rejected_touches: Number of touches that were refused (too far, wrong fiducial).
+        rejected_touches: Number of touches that were refused (too far off, wrong fiducial).
         undone_touches: Number of touches that the trainee took back.
         versions: Name and version of each program and format that made the record.
         seed: Seed of the trial, where the simulator tells it.
+        touch_rule: Which touches counted, a `TouchRule`; in older records the paper's.
         motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
         display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
             `droppedFrames`; empty where no view told it.
@@ -78,6 +79,7 @@ class TrialRecord:
     undone_touches: int
     versions: Mapping[str, str]
     seed: int | None = None
+    touch_rule: str = TouchRule.WITHIN_RADIUS.value
     motion: Mapping[str, float] = field(default_factory=dict)
     display: Mapping[str, str | float] = field(default_factory=dict)
 
@@ -246,6 +248,9 @@ _RECORD_KEYS = {
     "undoneTouches": Argument(protocol.whole_number(0, TOUCH_LIMIT)),
     "versions": Argument(_versions),
     "seed": Argument(_optional(protocol.whole_number(0, 2**63 - 1)), None),
+    "touchRule": Argument(
+        protocol.one_of(*(rule.value for rule in TouchRule)), TouchRule.WITHIN_RADIUS.value
+    ),
     "motion": Argument(_motion, {}),
     "display": Argument(_display, {}),
 }
@@ -264,6 +269,7 @@ _PYTHON_NAMES = {
     "undoneTouches": "undone_touches",
     "versions": "versions",
     "seed": "seed",
+    "touchRule": "touch_rule",
     "motion": "motion",
     "display": "display",
 }

@@ -142,9 +142,14 @@ def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, A
 
 def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetime) -> None:
     name = f"{file_stamp(iso(started))}_{entries[0]['trialId']}{SUFFIX}"
-    journal = Journal(folder / name)
+    # Whole or not there, also where this process is killed; one of a trial that was not stored
+    # any more is replaced by its like.
+    partial = folder / f".{name}.partial"
+    partial.unlink(missing_ok=True)
+    journal = Journal(partial)
     journal.write(entries, sync=False)
     journal.close()
+    partial.replace(folder / name)
 
 
 @functools.lru_cache(maxsize=1)

@@ -9,6 +9,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files import read_json, write_text
+from rastrainer.private_files import keep_others_out, make_private_folder
 from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS, Bindings, Table
 from rastrainer_simulator.controls.control_name import ControlName
 from rastrainer_simulator.controls.inputs import Device, is_input
@@ -48,10 +49,11 @@ def write_bindings(path: Path, bindings: Bindings) -> None:
         table = bindings.table(device)
         values[device.value] = {control.value: list(table[control]) for control in ControlName}
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
     except OSError as error:
         raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
     write_text(path, json.dumps(values, indent=2) + "\n")
+    keep_others_out(path)
 
 
 def _read_table(values: dict[str, Any], device: Device) -> Table:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import pickle
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -18,12 +17,14 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.private_files import make_private_folder
+from rastrainer.private_folder import python_words
 from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
 from rastrainer_simulator.desktop.quality import Quality
 from rastrainer_simulator.flow.screen import Screen
 from rastrainer_simulator.views.offscreen import write_png
 
-COMMAND = ("-m", "rastrainer_simulator.desktop.still_process")
+MODULE = "rastrainer_simulator.desktop.still_process"
 TOLD = 2
 """Exit status of a process that says in one sentence what is wrong."""
 
@@ -71,7 +72,7 @@ def write_picture(pixels: np.ndarray, path: Path) -> None:
         InputError: it cannot be written.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
     except OSError as error:
         raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
     write_png(pixels, path)
@@ -84,9 +85,7 @@ async def keep_still(still: Still) -> None:
         InputError: it cannot be drawn or written.
     """
     pipe = asyncio.subprocess.PIPE
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, *COMMAND, stdin=pipe, stderr=pipe
-    )
+    process = await asyncio.create_subprocess_exec(*python_words(MODULE), stdin=pipe, stderr=pipe)
     _, said = await process.communicate(pickle.dumps(still))
     if process.returncode == TOLD:
         raise InputError(said.decode(errors="replace").strip().rpartition("\n")[2])

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+from rastrainer.private_folder import python_words
 from rastrainer_simulator.doctor.finding import Finding, Verdict
 
-PROBE = (sys.executable, "-m", "rastrainer_simulator.doctor.gl_probe")
+PROBE = "rastrainer_simulator.doctor.gl_probe"
 LONGEST_PROBE_S = 60.0
 IN_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "gdi generic", "microsoft basic render")
 NO_WINDOW = "The trainee's window cannot open; browsers and headsets can still be used."
@@ -17,8 +18,8 @@ NO_WINDOW = "The trainee's window cannot open; browsers and headsets can still b
 _ANSWER = "renderer: "
 
 
-def check_graphics(probe: tuple[str, ...] = PROBE) -> Iterator[Finding]:
-    """Open a hidden window and tell who draws it; `probe` is the command that does."""
+def check_graphics(probe: Sequence[str] = ()) -> Iterator[Finding]:
+    """Open a hidden window and tell who draws it; `probe` is the command that does, if not ours."""
     has_x11_or_wayland = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     if sys.platform.startswith("linux") and not has_x11_or_wayland:
         yield Finding(
@@ -30,7 +31,11 @@ def check_graphics(probe: tuple[str, ...] = PROBE) -> Iterator[Finding]:
         return
     try:
         done = subprocess.run(
-            probe, capture_output=True, text=True, timeout=LONGEST_PROBE_S, check=False
+            probe or python_words(PROBE),
+            capture_output=True,
+            text=True,
+            timeout=LONGEST_PROBE_S,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         yield _failure(f"A window did not open within {LONGEST_PROBE_S:g} s.")

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from importlib import metadata
 
+from rastrainer.errors import InputError
 from rastrainer_simulator.doctor.finding import Finding, Verdict
 
 OLDEST_PYTHON = (3, 10)
@@ -41,9 +42,23 @@ def check_python() -> Iterator[Finding]:
     broken = list(_broken(MODULES, Verdict.PROBLEM))
     yield from broken
     yield from _broken({} if sys.platform == "win32" else FASTER, Verdict.WARNING)
+    yield from _kinematics()
     if not broken:
         told = ", ".join(f"{name} {metadata.version(name)}" for name in sorted(MODULES))
         yield Finding("packages", Verdict.OK, f"All packages can be loaded: {told}.")
+
+
+def _kinematics() -> Iterator[Finding]:
+    try:
+        from rastrainer_simulator.robot.kinematics import kinematics_name
+
+        name = kinematics_name()
+    except (ImportError, InputError) as error:
+        remedy = "Set RASTRAINER_KINEMATICS=numpy, or unset it and install pin."
+        sentence = f"The robot's kinematics cannot be computed: {error}"
+        yield Finding("kinematics", Verdict.PROBLEM, sentence, remedy)
+        return
+    yield Finding("kinematics", Verdict.OK, f"{name} computes the robot's kinematics.")
 
 
 def _broken(modules: dict[str, str], verdict: Verdict) -> Iterator[Finding]:

@@ -10,6 +10,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files import read_json, write_text
+from rastrainer.private_files import keep_others_out, make_private_folder
+from rastrainer.protocol import TouchRule
 from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
@@ -33,6 +35,7 @@ class Preferences:
         fine: the same while the trigger for fine speed is held, mm/s.
         axes: whose right, forward and up the sticks follow.
         direction: who decides the tool's direction.
+        touch: whether a touch has to be on the skin.
     """
 
     language: str = "en"
@@ -43,6 +46,7 @@ class Preferences:
     fine: int = 20
     axes: str = AxesChoice.CAMERA.value
     direction: str = ToolDirection.CLEAR.value
+    touch: str = TouchRule.ON_SKIN.value
 
     def stepped(self, name: str, direction: int) -> Preferences:
         """Return the preferences with one of them moved to its next or previous option."""
@@ -56,6 +60,7 @@ class Preferences:
         return dataclasses.replace(
             settings,
             axes=AxesChoice(self.axes),
+            training=dataclasses.replace(settings.training, touch_rule=TouchRule(self.touch)),
             teleoperation=dataclasses.replace(
                 teleoperation,
                 coarse_speed=self.coarse / MM,
@@ -76,9 +81,10 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
     "fine": (5, 10, 20, 40),
     "axes": tuple(choice.value for choice in AxesChoice),
     "direction": tuple(choice.value for choice in ToolDirection),
+    "touch": tuple(rule.value for rule in TouchRule),
 }
 
-OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction")
+OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch")
 """Preferences that a running trial must not change: they are in its record."""
 
 
@@ -106,7 +112,8 @@ def write_preferences(path: Path, preferences: Preferences) -> None:
         InputError: the file cannot be written.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
     except OSError as error:
         raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
     write_text(path, json.dumps(dataclasses.asdict(preferences), indent=2) + "\n")
+    keep_others_out(path)

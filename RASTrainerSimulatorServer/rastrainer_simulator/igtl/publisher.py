@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -13,11 +12,15 @@ from rastrainer_simulator.igtl import devices
 from rastrainer_simulator.igtl.connection import Connection
 from rastrainer_simulator.igtl.outgoing import Outgoing
 from rastrainer_simulator.igtl.pacer import Pacer
+from rastrainer_simulator.igtl.pose_subscription import PoseSubscription
 from rastrainer_simulator.state import SimulationState, TrainingState
 
 
 class Publisher:
     """Sends the simulation's state to its subscribers, at rates of simulated time.
+
+    While nothing changes nothing is sent: for Slicer each pose, even the same again, is a reason to
+    render all its views.
 
     `is_due` may be called in the control loop's thread; everything else belongs to the event
     loop's.
@@ -26,55 +29,46 @@ class Publisher:
     def __init__(self, latest: Callable[[], SimulationState]):
         """`latest` gives the newest state, for those who subscribe between two publications."""
         self._latest = latest
-        self._tool_tip: dict[Connection, Pacer] = {}
-        self._links: dict[Connection, Pacer] = {}
+        self._poses: dict[Connection, PoseSubscription] = {}
         self._state = Pacer(Rate.STATE_HZ)
-        self._numbers = itertools.count(1)
+        self._number = 0
         self._told: dict[str, Any] = {}
         self._told_training: TrainingState | None = None
         self._next = math.inf
 
-    def subscribe(
-        self,
-        connection: Connection,
-        tool_tip_hz: float = Rate.TOOL_TIP_HZ,
-        links_hz: float = Rate.LINKS_HZ,
-    ) -> None:
+    def subscribe(self, connection: Connection, poses: PoseSubscription) -> None:
         """Tell a client how things stand, and from now on what changes; again for other rates."""
-        self._tool_tip[connection] = Pacer(tool_tip_hz)
-        self._links[connection] = Pacer(links_hz)
+        self._poses[connection] = poses
         state = self._latest()
         self._send([connection], devices.captured_points(state.training))
         changing = devices.what_changes(state)
-        self._send([connection], devices.sim_state(changing, state, next(self._numbers)))
+        self._send([connection], devices.sim_state(changing, state, self._next_number()))
         self._next = -math.inf
 
     def unsubscribe(self, connection: Connection) -> None:
         """Tell a client nothing more."""
-        self._tool_tip.pop(connection, None)
-        self._links.pop(connection, None)
+        self._poses.pop(connection, None)
 
     def is_due(self, state: SimulationState) -> bool:
-        """Return whether `publish` would have something to send."""
+        """Return whether `publish` would have something to look at."""
         is_news = state.training is not self._told_training
-        return bool(self._tool_tip) and (is_news or state.sim_time >= self._next)
+        return bool(self._poses) and (is_news or state.sim_time >= self._next)
 
     def publish(self, state: SimulationState) -> None:
-        """Send whatever is due to whom it is due."""
+        """Send whatever is due, and new, to whom it is due."""
         now = state.sim_time
-        everyone = tuple(self._tool_tip)
+        everyone = tuple(self._poses)
         if state.training is not self._told_training:
             self._publish_training(everyone, state.training)
         if self._state.is_due(now):
             self._publish_state(everyone, state)
-        tool_tip_due = [who for who, pacer in self._tool_tip.items() if pacer.is_due(now)]
-        if tool_tip_due:
-            self._send(tool_tip_due, devices.tool_tip(state, next(self._numbers)))
-        links_due = [who for who, pacer in self._links.items() if pacer.is_due(now)]
+        tip_due = [who for who, poses in self._poses.items() if poses.tool_tip.is_due(now)]
+        if tip_due:
+            self._publish_poses(tip_due, (devices.tool_tip(state, self._number + 1),))
+        links_due = [who for who, poses in self._poses.items() if poses.links.is_due(now)]
         if links_due:
-            self._send(links_due, *devices.links(state, next(self._numbers)))
-        pacers = (self._state, *self._tool_tip.values(), *self._links.values())
-        self._next = min(pacer.next for pacer in pacers)
+            self._publish_poses(links_due, devices.links(state, self._number + 1))
+        self._next = min([self._state.next, *(poses.next for poses in self._poses.values())])
 
     def _publish_training(self, everyone: Iterable[Connection], training: TrainingState) -> None:
         """Send the touched points whenever one was touched or taken back, and with a new trial."""
@@ -87,8 +81,23 @@ class Publisher:
         changing = devices.what_changes(state)
         if changing != self._told:
             self._told = changing
-            message = devices.sim_state(changing, state, next(self._numbers))
+            message = devices.sim_state(changing, state, self._next_number())
             self._send(everyone, message)
+
+    def _publish_poses(self, due: Iterable[Connection], messages: Iterable[Message]) -> None:
+        """Send each client what is new to it; the messages carry the next number."""
+        is_sent = False
+        for message in messages:
+            content = message.content.pack()
+            receivers = [who for who in due if self._poses[who].is_news(message.device, content)]
+            self._send(receivers, message)
+            is_sent = is_sent or bool(receivers)
+        if is_sent:
+            self._next_number()
+
+    def _next_number(self) -> int:
+        self._number += 1
+        return self._number
 
     def _send(self, receivers: Iterable[Connection], *messages: Message) -> None:
         for message in messages:

@@ -69,7 +69,7 @@ class IgtlServer:
             reason = error.strerror or str(error)
             raise InputError(
                 f"Cannot listen on {host}:{port} ({reason}); "
-                "choose another --port, or stop the program that uses it."
+                "choose another port, or stop the program that uses it."
             ) from None
         self._listener = listener
         return found

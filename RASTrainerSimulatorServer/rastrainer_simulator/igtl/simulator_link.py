@@ -22,6 +22,7 @@ from rastrainer_simulator.igtl.command_handler import CommandHandler
 from rastrainer_simulator.igtl.connection import Connection
 from rastrainer_simulator.igtl.limits import Limits
 from rastrainer_simulator.igtl.outgoing import Outgoing
+from rastrainer_simulator.igtl.pose_subscription import PoseSubscription
 from rastrainer_simulator.igtl.publisher import Publisher
 from rastrainer_simulator.igtl.server import IgtlServer
 from rastrainer_simulator.igtl.trial_offers import TrialOffers
@@ -77,7 +78,7 @@ class SimulatorLink:
     def connected(self, connection: Connection) -> None:
         """Tell a client how things stand."""
         connection.send_latest(self._heartbeat())
-        self.publisher.subscribe(connection)
+        self.publisher.subscribe(connection, PoseSubscription())
 
     def received(self, connection: Connection, message: Message) -> None:
         """Do what a message asks for."""
@@ -148,6 +149,6 @@ class SimulatorLink:
             )
             return Answer(0, False, sentence, spoken)
         connection.name = arguments["client"]
-        rates = {rate: arguments[rate] for rate in ("toolTipHz", "linksHz")}
-        self.publisher.subscribe(connection, *rates.values())
-        return Answer(0, True, data={**spoken, **rates})
+        wishes = {wish: arguments[wish] for wish in ("toolTipHz", "linksHz", "steady")}
+        self.publisher.subscribe(connection, PoseSubscription(*wishes.values()))
+        return Answer(0, True, data={**spoken, **wishes})

@@ -12,9 +12,11 @@ import logging.handlers
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TextIO
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.journal.file_lock import lock
+from rastrainer.private_files import make_private_folder, open_private
 from rastrainer_simulator.logs.aside import Aside
 from rastrainer_simulator.logs.json_lines import JsonLines
 
@@ -32,6 +34,11 @@ _crashes = logging.getLogger("rastrainer.crash")
 
 class _LogFile(logging.handlers.RotatingFileHandler):
     """A file that gives up silently: a full disk is told where the trial is recorded."""
+
+    def _open(self) -> TextIO:
+        """Open the file for its user alone; an older one is this one, renamed."""
+        descriptor = open_private(self.baseFilename, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        return os.fdopen(descriptor, self.mode, encoding=self.encoding, errors=self.errors)
 
     def handleError(self, _record: logging.LogRecord) -> None:  # noqa: N802 - logging's own name
         """Do nothing."""
@@ -64,7 +71,7 @@ def keep_logs(folder: Path, name: str) -> Iterator[None]:
 
 def _opened(ends: contextlib.ExitStack, folder: Path, name: str) -> _LogFile | None:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_private_folder(folder)
         file = _LogFile(
             folder / f"{_free_name(ends, folder, name)}.log",
             maxBytes=LARGEST_FILE,
@@ -82,7 +89,7 @@ def _free_name(ends: contextlib.ExitStack, folder: Path, name: str) -> str:
     """Return the first name that no other program logs by, and hold it."""
     for own in (name, *(f"{name}-{number}" for number in range(2, MOST_LOGS + 1))):
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
-        descriptor = os.open(folder / f".{own}.lock", flags, 0o644)
+        descriptor = open_private(folder / f".{own}.lock", flags)
         ends.callback(os.close, descriptor)
         with contextlib.suppress(OSError):
             lock(descriptor)

@@ -21,7 +21,7 @@ from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.record.trial_order import newest_journal
 from rastrainer_simulator.state import StartingPoint
 from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED
-from rastrainer_simulator.training.training import Moment
+from rastrainer_simulator.training.touch_rule import Moment
 from rastrainer_simulator.vectors import Vector
 
 MM = 1000.0
@@ -91,7 +91,7 @@ class InterruptedTrial:
         if not steps:
             return None
         last = max(entries, key=lambda entry: entry["tick"])
-        steps.append((Command(INTERRUPTED), Moment(last["simTime"], _NOWHERE)))
+        steps.append((Command(INTERRUPTED), Moment(last["simTime"], _NOWHERE, 0.0)))
         told = {entry["kind"]: entry for entry in entries}
         reach = told.get("reach", {"isWithinReach": True, "obstacle": ""})
         return cls(
@@ -149,7 +149,7 @@ def _steps(entries: Sequence[Mapping[str, Any]], tick_s: float) -> Iterator[tupl
         together = list(group)
         for place, entry in enumerate(together):
             if entry["kind"] == "continued":
-                yield Command(INTERRUPTED), Moment(entry["since"], _NOWHERE)
+                yield Command(INTERRUPTED), Moment(entry["since"], _NOWHERE, 0.0)
             if entry["kind"] != "command" or entry["name"] not in _EFFECTS:
                 continue
             kinds = _EFFECTS[entry["name"]]
@@ -157,7 +157,9 @@ def _steps(entries: Sequence[Mapping[str, Any]], tick_s: float) -> Iterator[tupl
             if effect is not None:
                 # Commands are carried out at the state reached, one tick before their line.
                 tip = tuple(map(_metres, effect.get("positionMm", _NOWHERE)))
-                yield recorded_command(entry), Moment(entry["simTime"] - tick_s, tip)
+                # Older journals do not tell: at that time every height counted.
+                clearance = float(effect.get("clearanceMm", 0.0)) / MM
+                yield recorded_command(entry), Moment(entry["simTime"] - tick_s, tip, clearance)
 
 
 def _camera(entries: Sequence[Mapping[str, Any]]) -> str | None:

@@ -15,6 +15,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.journal.file_lock import lock
 from rastrainer.journal.journal_line import NO_LINE, encode_line
 from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
+from rastrainer.private_files import make_private_folder, open_private
 
 
 class RecordError(RASTrainerError):
@@ -83,12 +84,12 @@ class Journal:
             return
         flags = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
         if self._size is None:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            self._descriptor = os.open(self.path, flags | os.O_CREAT | os.O_EXCL, 0o644)
+            make_private_folder(self.path.parent)
+            self._descriptor = open_private(self.path, flags | os.O_CREAT | os.O_EXCL)
             self._size = 0
             _sync_folder(self.path.parent)
         else:
-            self._descriptor = os.open(self.path, flags)
+            self._descriptor = open_private(self.path, flags)
         lock(self._descriptor)
         if os.fstat(self._descriptor).st_size != self._size:
             self._catch_up()

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import TouchRule
 from rastrainer_simulator.settings import SimulationSettings, settings_from_json
 from rastrainer_simulator.setup import SimulationSetup, load_setup
 
@@ -22,7 +23,7 @@ def setup_of(
         InputError: scenario or robot are others here, or the header is not usable.
     """
     try:
-        settings = settings_from_json(SimulationSettings, header["settings"])
+        settings = settings_from_json(SimulationSettings, _with_touch_rule(header["settings"]))
         name, sha256 = header["scenario"]["name"], header["scenario"]["sha256"]
     except (KeyError, TypeError, AttributeError):
         raise InputError("The journal's header lacks the scenario or the settings.") from None
@@ -35,3 +36,9 @@ def setup_of(
     if setup.robot.name != header.get("robot"):
         raise InputError(f"The trial was recorded with another robot than {setup.robot.name} here.")
     return setup
+
+
+def _with_touch_rule(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return recorded settings with the touch rule that was in force before there was a choice."""
+    rule = {"touch_rule": TouchRule.WITHIN_RADIUS.value}
+    return {**settings, "training": {**rule, **settings.get("training", {})}}

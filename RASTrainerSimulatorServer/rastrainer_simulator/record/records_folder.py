@@ -4,13 +4,26 @@ from __future__ import annotations
 
 import contextlib
 import os
+import time
+from dataclasses import replace
+from datetime import datetime, timezone
 from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.journal.file_lock import lock
+from rastrainer.journal.folder import SUFFIX
+from rastrainer.journal.folder_holder import (
+    LOCK_NAME,
+    STARTED_BY,
+    FolderHolder,
+    read_open_holder,
+    write_holder,
+)
+from rastrainer.private_files import keep_others_out, make_private_folder, open_private
 
-LOCK_NAME = ".simulator.lock"
-_LONGEST_NUMBER = 20
+LOOK_S = 0.5
+"""How long somebody who only looks who holds the folder may hold it."""
+_PERIOD_S = 0.02
 
 
 class RecordsFolder:
@@ -23,14 +36,19 @@ class RecordsFolder:
             InputError: it cannot be made or written to, or another simulator has it.
         """
         self._folder = folder
+        self._holder = FolderHolder(
+            os.getpid(),
+            datetime.now(timezone.utc).isoformat(timespec="milliseconds"),
+            os.environ.get(STARTED_BY, ""),
+        )
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_private_folder(folder)
             flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
-            self._descriptor = os.open(folder / LOCK_NAME, flags, 0o644)
+            self._descriptor = open_private(folder / LOCK_NAME, flags)
         except OSError as error:
             raise InputError(
-                f"Trials cannot be recorded in {folder}: {error.strerror}. Allow writing to it, "
-                "or choose another folder with --records."
+                f"Trials cannot be recorded in {folder}: {error.strerror}. Allow writing to it"
+                f"{self._or_elsewhere}."
             ) from None
         try:
             self._take()
@@ -38,31 +56,49 @@ class RecordsFolder:
             os.close(self._descriptor)
             raise
 
+    def tell(self, host: str, port: int, page: str) -> None:
+        """Say in the folder where the simulator that holds it is found; see `FolderHolder`."""
+        self._holder = replace(self._holder, host=host, port=port, page=page)
+        # Who it is helps others only: a full disk is told with the first trial.
+        with contextlib.suppress(OSError):
+            write_holder(self._descriptor, self._holder)
+
     def close(self) -> None:
         """Leave the folder to others."""
         os.close(self._descriptor)
 
+    @property
+    def _or_elsewhere(self) -> str:
+        """What people who have started it themselves may do instead."""
+        if self._holder.started_by:
+            return ""
+        return ", or choose another folder with --records"
+
     def _take(self) -> None:
         try:
-            lock(self._descriptor)
+            self._lock()
         except (BlockingIOError, PermissionError):
+            pid = read_open_holder(self._descriptor).pid
+            who = f" (process {pid})" if pid else ""
             raise InputError(
-                f"Another simulator{self._holder()} records in {self._folder}: end it, or choose "
-                "another folder with --records."
+                f"Another simulator{who} records in {self._folder}: end it{self._or_elsewhere}."
             ) from None
         except OSError as error:
             raise InputError(
                 f"{self._folder} cannot be kept from being written by two simulators at once: "
-                f"{error.strerror}. Choose a folder on a disk of this computer with --records."
+                f"{error.strerror}. Let it be on a disk of this computer{self._or_elsewhere}."
             ) from None
-        # Only for the sentence above: a full disk is told with the first trial.
-        with contextlib.suppress(OSError):
-            os.ftruncate(self._descriptor, 0)
-            os.write(self._descriptor, str(os.getpid()).encode("ascii"))
+        self.tell("", 0, "")
+        for journal in self._folder.glob(f"*{SUFFIX}"):
+            keep_others_out(journal)
 
-    def _holder(self) -> str:
-        with contextlib.suppress(OSError):
-            number = os.read(self._descriptor, _LONGEST_NUMBER).decode("ascii", "ignore")
-            if number.isdecimal():
-                return f" (process {number})"
-        return ""
+    def _lock(self) -> None:
+        """Lock the folder, though somebody may just look whether it is."""
+        end = time.monotonic() + LOOK_S
+        while True:
+            try:
+                return lock(self._descriptor)
+            except (BlockingIOError, PermissionError):
+                if time.monotonic() > end:
+                    raise
+            time.sleep(_PERIOD_S)

@@ -42,6 +42,7 @@ class TrialEntries:
         self.started_utc = started_utc
         self._seed = simulation.trial_seed
         self._scenario = simulation.setup.scenario.name
+        self._touch_rule = simulation.setup.settings.training.touch_rule
         self.versions = versions() | {"kinematics": simulation.kinematics_name}
         self._every = max(1, round(1.0 / (SAMPLE_HZ * dt)))
         self._sticks: tuple[Any, ...] | None = None
@@ -225,6 +226,7 @@ class TrialEntries:
             rejected_touches=training.rejected,
             undone_touches=training.undone,
             versions=self.versions,
+            touch_rule=self._touch_rule.value,
             display=self._display.summary(),
         )
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import json
 import pickle
 import subprocess
-import sys
 import threading
 from concurrent.futures import Future
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.private_folder import python_words
 from rastrainer_simulator.child_process import BELOW_NORMAL, environment_without_secrets
 from rastrainer_simulator.replaying.film import Film
 
-COMMAND = ("-m", "rastrainer_simulator.replaying.film_process")
+MODULE = "rastrainer_simulator.replaying.film_process"
 
 
 class FilmMaking:
@@ -78,7 +78,7 @@ class FilmMaking:
 def _start() -> subprocess.Popen[bytes]:
     pipe = subprocess.PIPE
     return subprocess.Popen(
-        [sys.executable, *COMMAND],
+        python_words(MODULE),
         stdin=pipe,
         stdout=pipe,
         stderr=pipe,

@@ -40,9 +40,7 @@ def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics
     `backend` is "pinocchio" or "numpy"; by default the environment variable RASTRAINER_KINEMATICS
     says which, else Pinocchio is used where it is installed (it has no wheels for Windows).
     """
-    chosen = backend or os.environ.get(VARIABLE) or _available()
-    if chosen not in BACKENDS:
-        raise InputError(f"{VARIABLE} is {chosen!r}; it should be one of {', '.join(BACKENDS)}.")
+    chosen = _chosen(backend)
     if chosen == "numpy":
         from rastrainer_simulator.robot.numpy_kinematics import NumpyKinematics
 
@@ -52,6 +50,26 @@ def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics
     from rastrainer_simulator.robot.pinocchio_kinematics import PinocchioKinematics
 
     return PinocchioKinematics(model)
+
+
+def kinematics_name(backend: str | None = None) -> str:
+    """Return what `make_kinematics` computes with, and its version, such as "Pinocchio 3.9.0".
+
+    Raises:
+        InputError: there is no such backend.
+    """
+    if _chosen(backend) == "numpy":
+        return f"numpy {np.__version__}"
+    import pinocchio
+
+    return f"Pinocchio {pinocchio.__version__}"
+
+
+def _chosen(backend: str | None) -> str:
+    chosen = backend or os.environ.get(VARIABLE) or _available()
+    if chosen not in BACKENDS:
+        raise InputError(f"{VARIABLE} is {chosen!r}; it should be one of {', '.join(BACKENDS)}.")
+    return chosen
 
 
 def _available() -> str:

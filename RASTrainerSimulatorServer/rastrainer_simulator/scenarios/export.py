@@ -11,11 +11,13 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.face_removal import without_face
 from rastrainer.head_mesh import HeadMesh, read_head_mesh
+from rastrainer.head_volume import read_head_volume
 from rastrainer.scenario import PREVIEW_NAME, Scenario
 from rastrainer.scenario_package import checked_scenario, pack
 from rastrainer.scenario_writer import scenario_name, write_scenario
 from rastrainer.surface_queries import nearest_on_mesh
 from rastrainer_simulator.planning.task_check import ON_SKIN_MM
+from rastrainer_simulator.scenarios.faceless_volume import without_face_in
 from rastrainer_simulator.scenarios.picture import draw_preview
 
 FACELESS = " The face was taken off."
@@ -30,8 +32,8 @@ def pack_for_others(
     Args:
         folder: of the scenario, which stays as it is.
         package: the new file.
-        keeps_face: leave the head, its picture and its skull as they are; else head and picture
-            have no face, and no skull is given on.
+        keeps_face: leave the head, its picture, its images and its skull as they are; else head,
+            picture and images have no face, and no skull is given on.
         keeps_names: leave title, name and source, which often are the patient's name, as they
             are; else the scenario is called by a number that is made of its head's surface.
 
@@ -41,8 +43,10 @@ def pack_for_others(
     scenario, taken = checked_scenario(folder), []
     head = read_head_mesh(scenario.head_mesh)
     skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    volume = read_head_volume(scenario.volume) if scenario.volume else None
     preview = scenario.preview
     if not keeps_face:
+        volume = without_face_in(volume, head) if volume else None
         scenario, head, skull = *_faceless(scenario, head), None
         taken += ["the face", "the skull"] if scenario.skull_mesh else ["the face"]
     if not keeps_names:
@@ -50,7 +54,7 @@ def pack_for_others(
         taken += ["its title", "its name", "its source"]
     with tempfile.TemporaryDirectory() as temporary:
         clean = Path(temporary)
-        write_scenario(clean, scenario, head, skull)
+        write_scenario(clean, scenario, head, skull, volume)
         if not keeps_face:
             draw_preview(clean / PREVIEW_NAME, scenario, head)
         elif preview:

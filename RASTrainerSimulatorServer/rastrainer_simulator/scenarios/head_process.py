@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import TextIO
 
 from rastrainer.errors import InputError
+from rastrainer.private_folder import python_words
 from rastrainer.progress import HEAD_MADE, Progress, Warn, tell_line
 from rastrainer.scenario_draft import HeadDraft, read_draft
 
@@ -68,12 +68,10 @@ def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "draft"
-        words = ["-m", "rastrainer.slicer.head", str(volume), "-o", str(folder), *options]
+        words = python_words("rastrainer.slicer.head", str(volume), "-o", str(folder), *options)
         with (
             tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors,
-            subprocess.Popen(
-                [sys.executable, *words], stdout=subprocess.PIPE, stderr=errors, text=True
-            ) as process,
+            subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True) as process,
         ):
             try:
                 yield HeadProcess(process, errors, folder)

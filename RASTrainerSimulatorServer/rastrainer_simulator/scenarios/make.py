@@ -91,7 +91,7 @@ def make_scenario(
             provenance=replace(scenario.provenance, method=draft.method),
             is_skull_approximate=draft.is_skull_approximate,
         )
-        write_scenario(made, scenario, draft.head, draft.skull)
+        write_scenario(made, scenario, draft.head, draft.skull, draft.volume)
         load_scenario(made)
         progress("Done", 1.0)
     return load_scenario(folder)

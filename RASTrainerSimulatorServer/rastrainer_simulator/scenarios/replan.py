@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_volume import read_head_volume
 from rastrainer.scenario import PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario_package import checked_scenario
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
@@ -47,6 +48,7 @@ def copy_with_plan(
     before = checked_scenario(folder)
     head = read_head_mesh(before.head_mesh)
     skull = read_head_mesh(before.skull_mesh) if before.skull_mesh else None
+    volume = read_head_volume(before.volume) if before.volume else None
     scenario = replace(
         before, name=scenario_name(title), title=title, trajectory=trajectory or before.trajectory
     )
@@ -60,7 +62,7 @@ def copy_with_plan(
     if wrong:
         raise InputError(" ".join(wrong))
     with new_folder(copy) as made:
-        write_scenario(made, scenario, head, skull)
+        write_scenario(made, scenario, head, skull, volume)
         draw_preview(made / PREVIEW_NAME, scenario, head)
         load_scenario(made)
     return load_scenario(copy)

@@ -7,12 +7,12 @@ import hashlib
 import json
 import struct
 import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.private_folder import python_words
 from rastrainer_simulator.child_process import BELOW_NORMAL, environment_without_secrets
 from rastrainer_simulator.scene.cache_folder import forget_oldest
 from rastrainer_simulator.scene.scene_key import scene_key, setup_digest
@@ -126,9 +126,7 @@ class SceneFiles:
 async def _start() -> asyncio.subprocess.Process:
     try:
         return await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "rastrainer_simulator.scene.build_process",
+            *python_words("rastrainer_simulator.scene.build_process"),
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,

@@ -25,6 +25,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # Touches that do not count.
         "too far": "Too far from point {point}: {distance:.1f} mm; a touch counts within "
         "{radius:g} mm.",
+        "above the skin": "{height:.1f} mm above the skin: lower the tip onto point {point}.",
         "wrong point": "Wrong point: that is point {label}, {nearest:.1f} mm away; point {point} "
         "is next.",
         # Commands in the wrong phase.
@@ -226,6 +227,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.axes help": "Whether right, forward and up are the camera's or the robot's.",
         "settings.axes.camera": "As the camera sees them",
         "settings.axes.robot": "As the robot stands",
+        "settings.touch": "A touch counts",
+        "settings.touch help": "On the skin only, or anywhere within 10 mm of the point, as in the "
+        "published study. The record says which.",
+        "settings.touch.on skin": "On the skin",
+        "settings.touch.within radius": "Within 10 mm",
         "settings.direction": "Direction of the tool",
         "settings.direction help": "Who decides where the tool points: the arm, you or the skin.",
         "settings.direction.free": "Free (position only)",

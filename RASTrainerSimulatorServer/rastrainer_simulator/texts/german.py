@@ -26,6 +26,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         # Touches that do not count.
         "too far": "Zu weit von Punkt {point}: {distance:.1f} mm; eine Berührung zählt bis "
         "{radius:g} mm.",
+        "above the skin": "{height:.1f} mm über der Haut: Senken Sie die Spitze auf Punkt {point}.",
         "wrong point": "Falscher Punkt: Das ist Punkt {label}, {nearest:.1f} mm entfernt; Punkt "
         "{point} ist an der Reihe.",
         # Commands in the wrong phase.
@@ -235,6 +236,11 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.axes help": "Ob rechts, vorn und oben die der Kamera oder des Roboters sind.",
         "settings.axes.camera": "Wie die Kamera sie sieht",
         "settings.axes.robot": "Wie der Roboter steht",
+        "settings.touch": "Eine Berührung zählt",
+        "settings.touch help": "Nur auf der Haut oder überall im Umkreis von 10 mm um den Punkt, "
+        "wie in der veröffentlichten Studie. Die Aufzeichnung hält fest, was galt.",
+        "settings.touch.on skin": "Auf der Haut",
+        "settings.touch.within radius": "Im Umkreis von 10 mm",
         "settings.direction": "Richtung des Werkzeugs",
         "settings.direction help": "Wer bestimmt, wohin das Werkzeug zeigt: der Arm, du oder die "
         "Haut.",

@@ -14,7 +14,7 @@ from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.state import Event, EventKind, Touch, TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED, refusal
-from rastrainer_simulator.training.touch_rule import MM, refused_touch
+from rastrainer_simulator.training.touch_rule import MM, Moment, TrainingSettings, refused_touch
 from rastrainer_simulator.training.trial_clock import TrialClock
 from rastrainer_simulator.training.trial_seed import trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
@@ -23,21 +23,6 @@ from rastrainer_simulator.vectors import Vector
 if TYPE_CHECKING:
     from rastrainer.scenario import Scenario
     from rastrainer.tasks import Task
-
-
-@dataclass(frozen=True)
-class TrainingSettings:
-    """What counts as a touch: `acceptance_radius` is its longest distance to its fiducial, m."""
-
-    acceptance_radius: float = 0.010
-
-
-@dataclass(frozen=True)
-class Moment:
-    """When and where a command is carried out: simulated time (s), the tip in World (m)."""
-
-    sim_time: float
-    tip: Vector
 
 
 @dataclass(frozen=True)
@@ -158,17 +143,19 @@ class Training:
     def _capture(self, _command: Command, now: Moment) -> Reply:
         state = self.state
         label = state.next_point
-        sentence = refused_touch(
-            now.tip, label, self._fiducials, self._settings.acceptance_radius, self._texts
-        )
-        position = [MM * value for value in now.tip]
+        sentence = refused_touch(now, label, self._fiducials, self._settings, self._texts)
+        place = {
+            "label": label,
+            "positionMm": [MM * value for value in now.tip],
+            "clearanceMm": MM * now.tip_clearance,
+        }
         if sentence is not None:
             self.state = replace(state, rejected=state.rejected + 1, instruction=sentence)
-            data = {"label": label, "positionMm": position, "message": sentence}
+            data = {**place, "message": sentence}
             return Reply(False, sentence, events=(Event(EventKind.REJECTED, now.sim_time, data),))
         touch = Touch(label, now.tip, now.sim_time, self._clock.elapsed(now.sim_time))
         touches = (*state.touches, touch)
-        data = {"label": label, "positionMm": position, "kept": len(touches)}
+        data = {**place, "kept": len(touches)}
         event = Event(EventKind.TOUCH, now.sim_time, data)
         if len(touches) == len(self._task.labels):
             complete = replace(state, phase=Phase.COMPLETE, touches=touches, next_point=None)

@@ -15,6 +15,7 @@ from pathlib import Path
 import trustme
 
 from rastrainer.errors import InputError
+from rastrainer.private_files import make_private_folder
 
 VALID_DAYS = 90
 RENEWED_BEFORE_DAYS = 14
@@ -33,7 +34,7 @@ def tls_context(folder: Path) -> ssl.SSLContext:
     file, names_file = folder / FILE_NAME, folder / NAMES_NAME
     names = own_names()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_private_folder(folder)
         if _is_usable(file, names_file, names):
             # Torn, as by a full disk, it is made anew.
             with contextlib.suppress(ssl.SSLError):
@@ -43,7 +44,7 @@ def tls_context(folder: Path) -> ssl.SSLContext:
     except OSError as error:
         raise InputError(
             f"The certificate for the local network cannot be kept in {folder}: {error.strerror}. "
-            "Allow writing to it, or choose another folder with --config."
+            "Allow writing to it, or choose another folder of settings."
         ) from None
 
 

@@ -98,5 +98,5 @@ async def _code(request: web.Request) -> str:
     try:
         body = await asyncio.wait_for(request.read(), BODY_S)
         return _code_text(decode_json_object(body.decode()).get("code"))
-    except (InputError, ValueError, asyncio.TimeoutError):
+    except (InputError, ValueError, asyncio.TimeoutError, ConnectionError):
         raise web.HTTPBadRequest(text=NOT_A_CODE) from None

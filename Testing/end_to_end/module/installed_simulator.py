@@ -1,15 +1,14 @@
-"""What starts the simulator of this checkout from Slicer: a wheel to set it up, or a program."""
+"""What starts the simulator of this checkout from Slicer: a package to set it up, or a program."""
 
 from __future__ import annotations
 
 import shlex
 import sys
-import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
-PACKAGE = "rastrainer"
-INFO = f"{PACKAGE}-0.dist-info"
+from rastrainer.slicer.simulator_package import SimulatorPackage
+from Testing.slicer.made_up_package import write_package
 
 CLI = """
 import os
@@ -33,27 +32,15 @@ if __name__ == "__main__":
 """
 
 
-def write_wheel(folder: Path, pid_file: Path, options: Sequence[str]) -> Path:
-    """Write the wheel into a folder and return the folder.
+def brought_along(folder: Path, pid_file: Path, options: Sequence[str]) -> SimulatorPackage:
+    """Return what a module brings along to set up the simulator of this checkout.
 
     Args:
         folder: that is made for it.
         pid_file: into which the simulator's process writes its number.
         options: further ones of `rastrainer simulator`.
     """
-    folder.mkdir(parents=True)
-    files = {
-        "rastrainer_simulator/__init__.py": "",
-        "rastrainer_simulator/cli.py": _cli(pid_file, options),
-        f"{INFO}/METADATA": f"Metadata-Version: 2.1\nName: {PACKAGE}\nVersion: 0\n",
-        f"{INFO}/WHEEL": "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\n"
-        "Tag: py3-none-any\n",
-    }
-    files[f"{INFO}/RECORD"] = "".join(f"{name},,\n" for name in [*files, f"{INFO}/RECORD"])
-    with zipfile.ZipFile(folder / f"{PACKAGE}-0-py3-none-any.whl", "w") as wheel:
-        for name, text in files.items():
-            wheel.writestr(name, text)
-    return folder
+    return write_package(folder, _cli(pid_file, options))
 
 
 def write_program(path: Path, pid_file: Path, options: Sequence[str]) -> Path:

@@ -15,6 +15,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.scenario import load_scenario
 from rastrainer.scripted_trial import say_hello
 from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.onto_skin import lower_onto_skin
 
 SPEED_MM_S = 400
 NEAR_ENOUGH_MM = 1.5
@@ -61,13 +62,13 @@ class Player:
         self._thread.start()
 
     def _touch(self, client: Client, first: int, last: int) -> None:
-        for above, fiducial in list(self._places())[first - 1 : last]:
-            for place in (above, fiducial):
-                _move_to(client, place)
+        for above, fiducial, center in list(self._places())[first - 1 : last]:
+            _move_to(client, above)
+            lower_onto_skin(client, fiducial, center)
             _do(client, "Capture")
             _move_to(client, above)
 
-    def _places(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    def _places(self) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         journal = max(self._records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
         with journal.open(encoding="utf-8") as lines:
             header = json.loads(lines.readline())
@@ -77,7 +78,7 @@ class Player:
         center = transforms.apply(head_to_world, scenario.target_position)
         for fiducial in transforms.apply(head_to_world, fiducials):
             outward = (fiducial - center) / np.linalg.norm(fiducial - center)
-            yield fiducial + ABOVE_MM * outward, fiducial
+            yield fiducial + ABOVE_MM * outward, fiducial, center
 
 
 def _do(client: Client, name: str, **arguments: object) -> None:

@@ -6,7 +6,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from Testing.end_to_end.module.story import Story
+from rastrainer.slicer.slice_views import jumpTo
+from Testing.end_to_end.module.story import PLAN_MM, Story
 from Testing.slicer.host.host import Host
 
 SECTIONS = ("simulator", "trainees", "scenario", "training", "registration", "plan", "score")
@@ -19,6 +20,8 @@ SHOWN_AFTER = {
     "plan_a_target": ("plan",),
     "look_at_score": ("score", "trainees"),
 }
+FOLDED = ("advancedGroupBox", "pointListsGroupBox")
+"""Groups that a user opens now and then."""
 AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
 NEAR = ("registration", "plan")
 HEAD, DISTANCE_MM = (0.0, -10.0, 30.0), 620.0
@@ -35,6 +38,8 @@ def save_all(folder: Path) -> None:
                 step(story)
                 for section in SHOWN_AFTER.get(step.__name__, ()):
                     show_only(host, section)
+                    if section == "plan":
+                        jumpTo(host.scene, PLAN_MM)
                     if section in NEAR:
                         host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
                     else:
@@ -49,6 +54,8 @@ def show_only(host: Host, shown: str) -> None:
     """Fold every section but one."""
     for section in SECTIONS:
         host.find(f"{section}CollapsibleButton").collapsed = section != shown
+    for group in FOLDED:
+        host.find(group).collapsed = True
     host.process_events()
 
 

@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.slicer.connection import CONNECTOR_NAME
-from Testing.end_to_end.module.installed_simulator import PACKAGE, write_program, write_wheel
+from Testing.end_to_end.module.installed_simulator import brought_along, write_program
 from Testing.end_to_end.module.player import Player
+from Testing.running_process import runs
 from Testing.slicer.host.host import Host
 
 TRAINEE = "T-007"
@@ -26,6 +27,7 @@ class Story:
         self.folder = folder
         # Where the module looks for the journals of its simulator.
         self.records = Path.home() / "RASTrainer" / "trials"
+        self.program = folder / "rastrainer"
         self._pid_file = folder / "simulator.pid"
         self._options = [*options, "--records", str(self.records)]
         self.player: Player | None = None
@@ -33,23 +35,23 @@ class Story:
 
     def set_up(self) -> None:
         host = self.host
-        wheels = write_wheel(self.folder / "wheels", self._pid_file, self._options)
-        host.open()
-        host.find("setupGroupBox").collapsed = False
-        host.type("packageLineEdit", PACKAGE)
-        host.type("wheelsPathLineEdit", str(wheels))
+        setup = host.open().logic.session.simulator.setup
+        setup.package = brought_along(self.folder / "module", self._pid_file, self._options)
         host.press("setupButton")
-        host.wait_until(lambda: host.find("startSimulatorButton").enabled, "it is set up")
-        host.find("setupGroupBox").collapsed = True
+        host.wait_until(lambda: "is set up in" in host.text("setupText"), "it is set up")
 
     def choose_own_program(self) -> None:
         """Take a simulator that is installed elsewhere; quicker than to set it up."""
         host = self.host
-        program = write_program(self.folder / "rastrainer", self._pid_file, self._options)
+        self.write_program()
         host.open()
         host.find("setupGroupBox").collapsed = False
-        host.type("programPathLineEdit", str(program))
+        host.type("programPathLineEdit", str(self.program))
         host.find("setupGroupBox").collapsed = True
+
+    def write_program(self) -> None:
+        """Install a simulator elsewhere."""
+        write_program(self.program, self._pid_file, self._options)
 
     def start_simulator(self) -> None:
         host = self.host
@@ -58,6 +60,8 @@ class Story:
             host.type("portSpinBox", str(self.port))
         host.press("startSimulatorButton")
         self.wait_until_connected()
+        wanted = "computes the robot's kinematics"
+        host.wait_until(lambda: wanted in host.text("programText"), "it is told by what")
 
     def create_trainee(self) -> None:
         host = self.host
@@ -156,7 +160,7 @@ class Story:
         host.press("showTablesButton")
         host.press("learningCurveButton")
         assert host.scene.GetFirstNodeByClass("vtkMRMLPlotChartNode") is not None
-        assert "LC-CUSUM" in host.text("feedbackText")
+        host.wait_until(lambda: "LC-CUSUM" in host.text("feedbackText"), "it is judged")
         host.press("replayButton")
         replay = host.scene.GetFirstNodeByName(f"Replay of {TRAINEE}, task-1")
         assert replay.GetNumberOfItems() > 100
@@ -194,7 +198,14 @@ class Story:
     def stop_simulator(self) -> None:
         host = self.host
         host.press("stopSimulatorButton")
+        # A quick one has ended by the time that one looks.
+        assert host.text("programText") in (
+            "The simulator is ending.",
+            "The simulator was stopped.",
+        )
         assert host.text("stateText") == "Not connected."
+        host.wait_until(lambda: "was stopped" in host.text("programText"), "it has ended")
+        assert not runs(int(self._pid_file.read_text()))
 
     STEPS = (
         set_up,

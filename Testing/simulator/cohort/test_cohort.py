@@ -128,6 +128,13 @@ def test_the_command_tells_power_without_playing(capsys):
     text = capsys.readouterr().out
     assert "50 studies of 12 trainees" in text
     assert "not played" in text
+    assert "order of the modes balanced: the effect of the period is separated" in text
+    assert [line.split()[0] for line in text.splitlines()[4:]] == [
+        "completion_time_s",
+        "rmse_mm",
+        "score",
+    ]
+    assert "p (Holm) < .05" in text
 
 
 def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
@@ -144,6 +151,16 @@ def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
     assert float(shares[1]) > float(shares[0]) + 15
 
 
+def test_what_is_true_of_drawn_trainees_can_be_said_by_options(capsys):
+    """Haste that costs accuracy makes errors scatter: the same effect is found less often."""
+    shares = []
+    for haste in ([], ["--tempo-spread", "0.5", "--trade-off", "1", "--interaction", "0.2"]):
+        words = ["simulate-cohort", "--trainees", "8", "--power", "200", "--hmd-aim", "1.2"]
+        assert main([*words, *haste, "--lapses", "0.1", "--accuracy-learning", "0.1"]) == 0
+        shares.append(float(re.search(r"rmse_mm +\S+ +([0-9.]+) %", capsys.readouterr().out)[1]))
+    assert shares[1] < shares[0] - 30
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -153,6 +170,10 @@ def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
         (["-o", "x", "--step", "5"], "from 0.002 to 0.1 s"),
         (["-o", "x", "--workers", "0"], "1 to 1024 workers"),
         (["-o", "x", "--hmd-aim", "0"], "factors from 0.1 to 10"),
+        (["-o", "x", "--lapses", "2"], "lapses must be from 0 to 1"),
+        (["-o", "x", "--hmd-bias", "0", "0", "9"], "at most 5 mm"),
+        (["--power", "20", "--trade-off", "9"], "from 0 to 2"),
+        (["--power", "20", "--hmd-aim", "0"], "factors from 0.1 to 10"),
         (["--power", "3"], "10 to 100000 studies"),
         (["-o", "x", "--protocol", "missing.json"], "missing.json"),
     ],

@@ -7,6 +7,7 @@ import os
 import socket
 import sys
 from datetime import datetime, timezone
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,22 @@ def test_python_and_its_packages_are_there():
     found = list(check_python())
     assert Verdict.PROBLEM not in verdicts(found)
     assert "numpy" in found[-1].sentence
+
+
+def test_what_computes_the_kinematics_is_named(monkeypatch):
+    def told():
+        (finding,) = (each for each in check_python() if each.check == "kinematics")
+        return finding.verdict, finding.sentence
+
+    pinocchio = f"Pinocchio {metadata.version('pin')} computes the robot's kinematics."
+    assert told() == (Verdict.OK, pinocchio)
+    monkeypatch.setenv("RASTRAINER_KINEMATICS", "numpy")
+    assert told() == (
+        Verdict.OK,
+        f"numpy {metadata.version('numpy')} computes the robot's kinematics.",
+    )
+    monkeypatch.setenv("RASTRAINER_KINEMATICS", "guess")
+    assert told()[0] is Verdict.PROBLEM
 
 
 def test_a_missing_package_is_a_problem_with_the_command_that_mends_it(monkeypatch):
@@ -238,7 +255,7 @@ def test_the_doctor_tells_a_line_a_check_and_ends_with_1_where_there_is_a_proble
     lines = capsys.readouterr().out.splitlines()
     checks = {line[9:19].strip() for line in lines if line[:8].strip()}
     assert checks == {
-        *("python", "packages", "graphics", "gamepad", "ports"),
+        *("python", "packages", "kinematics", "graphics", "gamepad", "ports"),
         *("page", "slicer", "real time", "folders", "journals", "clock"),
     }
     assert main([*words(tmp_path, held), "--json"]) == 1

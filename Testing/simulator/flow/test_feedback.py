@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rastrainer.protocol import TouchRule
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.feedback import SENSATIONS, Happening, happening
 from rastrainer_simulator.simulation import Simulation
@@ -17,7 +18,9 @@ from rastrainer_simulator.state import Event, EventKind
 @pytest.fixture(scope="module")
 def shared(setup):
     """Return a simulation in which every touch counts, wherever the tip is."""
-    training = replace(setup.settings.training, acceptance_radius=10.0)
+    training = replace(
+        setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
+    )
     return Simulation(replace(setup, settings=replace(setup.settings, training=training)), 3)
 
 

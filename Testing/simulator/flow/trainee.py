@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rastrainer.protocol import Phase, check_arguments
+from rastrainer.protocol import Phase, Proximity, check_arguments
 from rastrainer_simulator.flow.screen import Screen
 from rastrainer_simulator.teleoperation.axes import camera_axes
 from rastrainer_simulator.vectors import dot
@@ -20,6 +20,8 @@ TICKS_A_STEP = 2
 STEP_S = 0.004 * TICKS_A_STEP
 MOST_STEPS = 2000
 MM = 1000.0
+SINK_M = 0.003
+"""How far below the skin the sticks push for, so that the tip comes to rest on it."""
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
 
@@ -165,6 +167,7 @@ class Trainee:
             self.steer_to(center + lifted * between / np.linalg.norm(between), 0.02)
         self.steer_to(point + 0.01 * outward, 0.005)
         self.steer_to(point, 0.004, fine=True)
+        self.steer_to(point - SINK_M * outward, 0.0, fine=True, ends_in_contact=True)
         self.hands.push(0.0, 0.0, 0.0, False)
         self.step(2)
         kept = len(self.state.training.touches)
@@ -175,8 +178,10 @@ class Trainee:
     def tip(self):
         return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
 
-    def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
-        """Push the sticks toward a place (3,) World, m, until the tip is near it."""
+    def steer_to(
+        self, place: np.ndarray, near: float, fine: bool = False, ends_in_contact: bool = False
+    ) -> None:
+        """Push the sticks toward a place (3,) World, m, until the tip is near it, or in contact."""
         view = self.loop.setup.scenario.cameras[self.state.camera]
         line = tuple((view.focal_point - view.position).tolist())
         axes = camera_axes(line, tuple(view.view_up.tolist()))
@@ -185,6 +190,8 @@ class Trainee:
         while True:
             away = np.asarray(place) - self.tip
             if np.linalg.norm(away) < near or self.state.sim_time > give_up:
+                return
+            if ends_in_contact and self.state.proximity is Proximity.CONTACT:
                 return
             wanted = away / max(full, float(np.linalg.norm(away)))
             # Sticks hardly answer near their middle.

@@ -13,8 +13,9 @@ import pytest
 from rastrainer.igtl.content import String
 from rastrainer.igtl.message import HEADER_BYTES, read_header, unpack
 from rastrainer.igtl.points import Points
-from rastrainer.protocol import Phase, Proximity
+from rastrainer.protocol import Device, Phase, Proximity
 from rastrainer_simulator.igtl.pacer import Pacer
+from rastrainer_simulator.igtl.pose_subscription import PoseSubscription
 from rastrainer_simulator.igtl.publisher import Publisher
 from rastrainer_simulator.state import Touch, TrainingState
 from Testing.simulator.igtl.servers import at_rest
@@ -48,7 +49,7 @@ def receiver() -> Receiver:
 def publisher(receiver) -> Publisher:
     """A publisher whose one subscriber knows how things stand."""
     publisher = Publisher(at_rest)
-    publisher.subscribe(receiver)
+    publisher.subscribe(receiver, PoseSubscription())
     publisher.publish(at_rest())
     receiver.messages.clear()
     return publisher
@@ -61,8 +62,14 @@ def run(publisher, seconds, state_at=lambda t: at_rest(sim_time=t), start=1.0):
             publisher.publish(state)
 
 
+def moving(sim_time):
+    pose = np.eye(4)
+    pose[0, 3] = sim_time
+    return at_rest(sim_time=sim_time, tool_tip_to_world=pose, link_to_world=(pose,) * 8)
+
+
 def test_tip_comes_60_times_and_each_link_30_times_a_simulated_second(publisher, receiver):
-    run(publisher, 10)
+    run(publisher, 10, moving)
     counts = Counter(message.device for message in receiver.messages)
     assert counts["ToolTipToWorld"] == pytest.approx(600, abs=1)
     for link in range(8):
@@ -71,13 +78,59 @@ def test_tip_comes_60_times_and_each_link_30_times_a_simulated_second(publisher,
 
 def test_each_client_has_the_rates_that_it_asked_for(publisher, receiver):
     fast, silent = Receiver(), Receiver()
-    publisher.subscribe(fast, 250, 10)
-    publisher.subscribe(silent, 0, 0)
-    run(publisher, 4)
+    publisher.subscribe(fast, PoseSubscription(250, 10))
+    publisher.subscribe(silent, PoseSubscription(0, 0))
+    run(publisher, 4, moving)
     assert len(fast.of("ToolTipToWorld")) == pytest.approx(1000, abs=1)
     assert len(fast.of("Link3ToWorld")) == pytest.approx(40, abs=1)
     assert len(receiver.of("ToolTipToWorld")) == pytest.approx(240, abs=1)
     assert not silent.of("ToolTipToWorld") + silent.of("Link0ToWorld")
+
+
+def test_at_rest_nothing_is_sent(publisher, receiver):
+    run(publisher, 10)
+    assert receiver.messages == []
+
+
+def test_a_link_that_stands_is_not_sent_with_one_that_moves(publisher, receiver):
+    def elbow(sim_time):
+        return replace(moving(sim_time), link_to_world=(*[np.eye(4)] * 7, np.eye(4) * sim_time))
+
+    run(publisher, 2, elbow)
+    assert len(receiver.of("Link7ToWorld")) == pytest.approx(60, abs=1)
+    assert not any(receiver.of(f"Link{link}ToWorld") for link in range(7))
+
+
+def test_what_32_bits_do_not_tell_apart_has_not_changed(publisher, receiver):
+    pose = np.eye(4) * (1 + 1e-12)
+    run(publisher, 1, lambda t: at_rest(sim_time=t, link_to_world=(pose,) * 8))
+    assert receiver.messages == []
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_who_has_just_subscribed_gets_every_pose_once(publisher, times):
+    late = Receiver()
+    for _ in range(times):
+        publisher.subscribe(late, PoseSubscription())
+        run(publisher, 1)
+    counts = Counter(message.device for message in late.messages)
+    assert counts.pop("CapturedPoints") == counts.pop("SimState") == times
+    assert counts == dict.fromkeys([*Device.LINK_TO_WORLD, Device.TOOL_TIP_TO_WORLD], times)
+
+
+def test_a_steady_client_gets_its_poses_at_rest_too(publisher, receiver):
+    steady = Receiver()
+    publisher.subscribe(steady, PoseSubscription(is_steady=True))
+    run(publisher, 2)
+    assert len(steady.of("ToolTipToWorld")) == pytest.approx(120, abs=1)
+    assert receiver.of("ToolTipToWorld") == []
+
+
+def test_a_gap_in_the_numbers_is_never_left_by_what_was_not_new(publisher, receiver):
+    run(publisher, 1)
+    run(publisher, 1, moving, start=3.0)
+    numbers = [int(m.metadata["seq"]) for m in receiver.messages]
+    assert set(np.diff(numbers)) == {0, 1}
 
 
 def test_state_comes_only_when_it_changes(publisher, receiver):
@@ -93,7 +146,8 @@ def test_state_that_changes_at_every_tick_comes_at_most_30_times_a_second(publis
 def test_tip_travels_in_millimeters_with_its_number_and_time(publisher, receiver):
     pose = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.125], [0, 0, 0, 1]])
     publisher.publish(at_rest(sim_time=2.5, tool_tip_to_world=pose))
-    publisher.publish(at_rest(sim_time=2.6, tool_tip_to_world=pose))
+    moved = pose + np.array([0, 0, 0, 1e-3]) * np.array([[1], [1], [1], [0]])
+    publisher.publish(at_rest(sim_time=2.6, tool_tip_to_world=moved))
     first, second = receiver.of("ToolTipToWorld")
     expected = ((0, -1, 0, 500), (1, 0, 0, -250), (0, 0, 1, 125), (0, 0, 0, 1))
     assert first.content.matrix == expected
@@ -162,7 +216,7 @@ def test_late_client_is_told_how_things_stand(publisher):
     state = at_rest(training=replace(RUNNING, touches=(FIRST, SECOND)))
     late = Receiver()
     publisher = Publisher(lambda: state)
-    publisher.subscribe(late)
+    publisher.subscribe(late, PoseSubscription())
     assert len(late.of("CapturedPoints")[0].content.points) == 2
     assert type(late.of("SimState")[0].content) is String
 

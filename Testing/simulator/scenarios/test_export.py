@@ -8,14 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rastrainer import transforms
 from rastrainer.face_removal import face_vertices
 from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head_volume import read_head_volume
 from rastrainer.scenario import load_scenario
 from rastrainer.scenario_package import unpack
 from rastrainer.scenario_writer import write_scenario
 from rastrainer.surface_queries import nearest_on_mesh
 from rastrainer_simulator.cli import main
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
+from Testing.domain.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
 from Testing.simulator.scenarios.heads import egg
 
 
@@ -26,7 +28,7 @@ def written(folder, spots):
     points = head.vertices[spots].astype(float).round(4)
     tasks = tuple(replace(task, fiducials=points) for task in scenario.tasks)
     folder.mkdir()
-    write_scenario(folder, replace(scenario, tasks=tasks), head, ball_head(60.0))
+    write_scenario(folder, replace(scenario, tasks=tasks), head, ball_head(60.0), ball_volume(95.0))
     (folder / "preview.png").write_bytes(png())
     return folder
 
@@ -50,6 +52,11 @@ def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(
     assert head.vertices[:, 1].max() < nose - 3.0
     assert given.skull_mesh is None
     assert "The face was taken off." in given.provenance.method
+    images = read_head_volume(given.volume)
+    in_front = transforms.apply(transforms.inverse(images.ijk_to_ras), [0.0, 84.0, -36.0])
+    i, j, k = np.rint(in_front).astype(int)
+    assert read_head_volume(load_scenario(folder).volume).values[i, j, k] == 100
+    assert not images.values[i, j:, k].any()
     assert given.preview.read_bytes() != png()
     away = [nearest_on_mesh(head, point).distance for point in given.tasks[0].fiducials]
     assert max(away) < 0.05
@@ -62,6 +69,7 @@ def test_face_and_names_are_kept_where_that_is_wanted(folder, tmp_path, capsys):
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
     assert given.head_mesh.read_bytes() == (folder / "head.ply").read_bytes()
     assert given.skull_mesh is not None
+    assert given.volume.path.read_bytes() == (folder / "volume.nrrd").read_bytes()
     assert given.preview.read_bytes() == png()
     before = load_scenario(folder)
     assert (given.name, given.title) == (before.name, before.title)

@@ -23,6 +23,8 @@ def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_pat
     assert (copy.name, copy.title) == ("with-a-biopsy", "With a biopsy")
     assert (copy.trajectory.name, copy.trajectory.entry.tolist()) == ("Biopsy", [0, -20, 100])
     assert copy.head_mesh.read_bytes() == before.head_mesh.read_bytes()
+    assert copy.volume.path.read_bytes() == before.volume.path.read_bytes()
+    assert (copy.volume.window, copy.volume.level) == (before.volume.window, before.volume.level)
     assert copy.target_position.tolist() == before.target_position.tolist()
     assert copy.provenance == before.provenance
     for task, same in zip(copy.tasks, before.tasks, strict=True):

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.protocol import CommandName, Phase, TouchRule, check_arguments
 from rastrainer_simulator.operator_input import Command
 from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.texts.english import ENGLISH
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, REFUSALS
-from rastrainer_simulator.training.training import Moment, Training, TrainingSettings
+from rastrainer_simulator.training.touch_rule import Moment, TrainingSettings
+from rastrainer_simulator.training.training import Training
 
 ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())
 SCORE = {
@@ -33,12 +34,12 @@ class Trial:
         self.training = Training(scenario, seed, **others)
         self.now = 10.0
 
-    def do(self, name, tip=(0.0, 0.0, 0.0), **arguments):
+    def do(self, name, tip=(0.0, 0.0, 0.0), above_mm=0.0, **arguments):
         command = Command(name, arguments)
         if name in (CommandName.TRIAL_SCORED, CommandName.GET_TRIAL):
             trial_id = self.state.trial_id
             command = Command(name, {"trialId": trial_id, **arguments})
-        return self.training.handle(command, Moment(self.now, tip))
+        return self.training.handle(command, Moment(self.now, tip, above_mm / 1000.0))
 
     def start(self, task="task-1", **others):
         return self.do(CommandName.START_TASK, task=task, trainee="P01", mode="desktop", **others)
@@ -148,6 +149,30 @@ def test_a_touch_counts_within_the_acceptance_radius(scenario, away_mm, counts):
     trial.start()
     x, y, z = trial.fiducial("1")
     assert trial.do(CommandName.CAPTURE, (x + away_mm / 1000.0, y, z)).ok is counts
+
+
+@pytest.mark.parametrize(("above_mm", "counts"), [(-1.0, True), (0.49, True), (0.51, False)])
+def test_a_touch_counts_on_the_skin(scenario, above_mm, counts):
+    trial = Trial(scenario)
+    trial.start()
+    assert trial.do(CommandName.CAPTURE, trial.fiducial("1"), above_mm).ok is counts
+
+
+def test_a_touch_above_the_skin_is_refused_with_its_height_and_the_way_to_go(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    reply = trial.do(CommandName.CAPTURE, trial.fiducial("1"), above_mm=3.2)
+    assert reply.message == "3.2 mm above the skin: lower the tip onto point 1."
+    assert (trial.state.instruction, trial.state.rejected) == (reply.message, 1)
+    assert reply.events[0].data["clearanceMm"] == pytest.approx(3.2)
+
+
+def test_by_the_rule_of_the_paper_a_touch_counts_at_any_height_within_the_radius(scenario):
+    anywhere = TrainingSettings(touch_rule=TouchRule.WITHIN_RADIUS)
+    trial = Trial(scenario, settings=anywhere)
+    trial.start()
+    x, y, z = trial.fiducial("1")
+    assert trial.do(CommandName.CAPTURE, (x, y, z + 0.009), above_mm=9.0).ok
 
 
 def test_a_touch_too_far_away_is_refused_with_the_distance_and_the_point(scenario):

@@ -105,4 +105,4 @@ def test_a_folder_that_cannot_be_written_to_is_told():
         Path(folder).chmod(0o755)
     assert said.startswith("The certificate for the local network cannot be kept in ")
     assert "Permission denied" in said
-    assert "--config" in said
+    assert "choose another folder of settings" in said

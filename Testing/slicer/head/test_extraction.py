@@ -5,7 +5,8 @@ import pytest
 from scipy import ndimage
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.extraction import HeadSettings, extract_head
+from rastrainer.slicer.head.extraction import extract_head
+from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.volume import Volume, on_ras_grid
 from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rastrainer.slicer.head.extraction import HeadSettings, find_head
+from rastrainer.slicer.head.extraction import find_head
+from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.head_draft import make_draft
 from rastrainer.slicer.head.volume import Volume
 from Testing.slicer.head.phantoms import CT, NOSE, SCALP_MM, depth_mm, phantom

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer.slicer.head.extraction import HeadSettings
+from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.head_draft import make_draft
 from rastrainer.slicer.head.skull import SCALP_MM
 from rastrainer.surface_queries import nearest_on_mesh

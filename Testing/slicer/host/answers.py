@@ -31,10 +31,12 @@ class Answers:
 
     Attributes:
         messages: all message boxes so far.
+        are_given_by_hand: whether dialogs stay open until somebody presses their buttons.
     """
 
     def __init__(self) -> None:
         self.messages: list[Message] = []
+        self.are_given_by_hand = False
         self._prepared: list[tuple[str, Any]] = []
 
     def clear(self) -> None:

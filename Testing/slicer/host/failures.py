@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import traceback
+from collections.abc import Callable
 
 from rastrainer.errors import InputError
 
@@ -13,15 +14,19 @@ class Failures:
 
     Attributes:
         texts: one traceback or sentence a failure.
+        heard: is told each of them; None where nobody is.
     """
 
     def __init__(self) -> None:
         self.texts: list[str] = []
+        self.heard: Callable[[str], None] | None = None
         self._told: list[BaseException] = []
 
     def add(self, text: str) -> None:
         """Remember a failure that is no exception."""
         self.texts.append(text)
+        if self.heard is not None:
+            self.heard(text)
 
     def tell(self, exception: BaseException | None) -> None:
         """Remember that the user was shown this exception."""
@@ -34,7 +39,7 @@ class Failures:
         if not (isTold and isinstance(exception, InputError)):
             text = "".join(traceback.format_exception(exception))
             if text not in self.texts:  # A timer would repeat it ten times a second.
-                self.texts.append(text)
+                self.add(text)
                 print(text, file=sys.stderr)
 
 

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import slicer
@@ -14,7 +15,7 @@ from PySide6 import QtCore, QtGui, QtTest, QtWidgets
 
 from rastrainer.slicer.headless_command import HeadlessCommand
 from rastrainer.slicer.headless_connector import HeadlessConnector
-from Testing.slicer.host import appearance, pictures
+from Testing.slicer.host import appearance, event_loop, pictures
 from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application
 from Testing.slicer.host.failures import FAILURES
@@ -24,11 +25,15 @@ from Testing.slicer.host.lasting_none import lend_references_to_none
 from Testing.slicer.host.layout import LayoutManager
 from Testing.slicer.host.proxy import wrap
 from Testing.slicer.host.qt_module import class_named
+from Testing.slicer.host.renders import RenderCounter
 from Testing.slicer.host.scene import ApplicationScene
 from Testing.slicer.host.scripted_module import ModuleDescription
+from Testing.slicer.host.stand_ins import ctkCollapsibleButton, ctkCollapsibleGroupBox
+from Testing.slicer.host.vtk_messages import VtkMessages
 
 MODULE_FILE = Path(__file__).parents[3] / "RASTrainer" / "RASTrainer.py"
 CONNECTOR_PERIOD_MS = 5
+DOCK_WIDTH = 470
 
 
 class Host:
@@ -37,6 +42,9 @@ class Host:
     Attributes:
         scene: `slicer.mrmlScene`.
         widget: the module's widget, once it is opened.
+        clicks: names of the buttons and headers that were clicked, in their order.
+        keeps_lock: whether the main thread keeps Python's lock while it waits for events, as in
+            Slicer; the threads of a test's own peers then run only now and then.
     """
 
     def __init__(
@@ -55,12 +63,15 @@ class Host:
             window: False is Slicer without a main window, as in its generic tests.
         """
         lend_references_to_none()
+        self.keeps_lock = False
         appearance.application()
         ANSWERS.clear()
         FAILURES.texts.clear()
+        self._vtk_messages = VtkMessages()
         self._home = Home(folder / "home")
         self._application_scene = ApplicationScene()
         self.scene = self._application_scene.scene
+        self._renders = RenderCounter(self.scene)
         self._module_file = module_file
         self._installation = Installation()
         self._installation.add_modules()
@@ -73,6 +84,10 @@ class Host:
             self._installation.set("vtkMRMLIGTLConnectorNode", HeadlessConnector)
             self._installation.set("vtkSlicerOpenIGTLinkCommand", HeadlessCommand)
         self._main_window = class_named("qSlicerMainWindow")() if window else None
+        if window:
+            self._layout.show_views()
+            self._main_window._qt.setModuleSelector(self)
+            self._main_window._qt.setPicture(self._window_picture)
         self._excepthook, sys.excepthook = sys.excepthook, self._note
         # As the module OpenIGTLinkIF does.
         self._timer = QtCore.QTimer()
@@ -80,6 +95,7 @@ class Host:
         self._timer.timeout.connect(self._process_connectors)
         self._timer.start()
         self.widget: Any = None
+        self.clicks: list[str] = []
         self._frame: Any = None
         self._module_name = module_file.stem
         self._load_module()
@@ -94,21 +110,26 @@ class Host:
         """What went wrong where Slicer would have printed it and gone on; empty in a good test."""
         return FAILURES.texts
 
+    @property
+    def renders(self) -> int:
+        """How often Slicer would have rendered its views so far."""
+        return self._renders.count
+
     # The module's life
 
     def open(self) -> Any:
         """Open the module, as choosing it in the list of modules does; return its widget."""
-        if self.widget is None:
-            self._frame = class_named("qSlicerScriptedLoadableModuleWidget")()
-            self._frame.setMRMLScene(self.scene)
-            module = sys.modules[self._module_name]
-            self.widget = getattr(module, f"{self._module_name}Widget")(self._frame)
-            self.widget.setup()
-            self._frame._qt.resize(430, 900)
-            self._frame._qt.show()
+        self.made_widget()
         if not self._frame.isEntered:
             self.enter()
         return self.widget
+
+    def selectModule(self, name: str) -> None:
+        """Choose a module by its name, as `slicer.util.selectModule` does."""
+        if name == self._module_name:
+            self.open()
+        elif self._frame is not None and self._frame.isEntered:
+            self.leave()
 
     def enter(self) -> None:
         """Come back to the module."""
@@ -120,9 +141,25 @@ class Host:
         self.widget.exit()
         self._frame._qt.exit()
 
+    def minimize(self, is_minimized: bool = True) -> None:
+        """Minimize Slicer's main window, or bring it back."""
+        window = self._main_window._qt
+        window.showMinimized() if is_minimized else window.showNormal()
+        self.process_events()
+
     def clear_scene(self) -> None:
         """Close the scene, by Slicer's menu."""
         self.scene.Clear(0)
+        self.process_events()
+
+    def save_scene(self, path: Path) -> None:
+        """Save the scene as a bundle (.mrb), by Slicer's menu."""
+        if not slicer.util.saveScene(str(path)):
+            raise AssertionError(f"{path} was not written.")
+
+    def load_scene(self, path: Path) -> None:
+        """Close the scene and open that of a bundle (.mrb), by Slicer's menu."""
+        slicer.util.loadScene(str(path), {"clear": True})
         self.process_events()
 
     def delete_nodes(self) -> None:
@@ -134,10 +171,49 @@ class Host:
                 self.scene.RemoveNode(node)
                 self.let_pass(0.12)
 
+    def reload(self) -> Any:
+        """Press Reload; return the new widget.
+
+        As `slicer.util.reloadScriptedModule` does: the module's own file is read anew, but nothing
+        that it imports; what is in the frame is hidden, not deleted, and a new widget is laid in.
+        """
+        self.made_widget()
+        self._execute_module()
+        frame = self._frame._qt
+        for child in frame.children():
+            if isinstance(child, QtWidgets.QWidget):
+                child.hide()
+        self.widget.cleanup()
+        while frame.layout().count():
+            frame.layout().takeAt(0)
+        self._set_up_widget()
+        self.process_events()
+        return self.widget
+
     def run_self_tests(self) -> None:
         """Run the module's self tests, as the button Reload and Test does."""
         module = sys.modules[self._module_name]
         getattr(module, f"{self._module_name}Test")().runTest()
+
+    def run_script(self, path: Path, *arguments: str) -> int | None:
+        """Run a script as `Slicer --python-script` does; return with which status it ends Slicer.
+
+        A dialog stays open until the script presses one of its buttons.
+        """
+        ANSWERS.are_given_by_hand = True
+        former = sys.argv
+        sys.argv = [str(path), *arguments]
+        sys.path.insert(0, str(path.parent))
+        # As in Slicer, the event loop of the application is around it.
+        loop = QtCore.QEventLoop()
+        QtCore.QTimer.singleShot(0, lambda: (_execute(path), loop.quit()))
+        try:
+            loop.exec()
+        finally:
+            sys.argv = former
+            sys.path.remove(str(path.parent))
+            ANSWERS.are_given_by_hand = False
+        return slicer.app.exit_status_of_host()
 
     def close(self) -> None:
         """Quit Slicer."""
@@ -152,6 +228,7 @@ class Host:
                 self.process_events()
         finally:
             self._timer.stop()
+            slicer.app.settings().sync()
             self._layout.close()
             if self._main_window is not None:
                 self._main_window._qt.deleteLater()
@@ -159,7 +236,9 @@ class Host:
             sys.excepthook = self._excepthook
             self._home.leave()
             sys.modules.pop(self._module_name, None)
+            slicer.app.close_of_host()
             self._installation.remove()
+            self._vtk_messages.close()
 
     # What a user does
 
@@ -172,11 +251,7 @@ class Host:
 
     def press(self, name: str) -> None:
         """Press a button; one that is disabled or hidden cannot be pressed."""
-        button = self._usable(name)
-        QtTest.QTest.mouseClick(
-            button, QtCore.Qt.MouseButton.LeftButton, pos=_where_to_press(button)
-        )
-        self.process_events()
+        self._click(self._usable(name))
 
     def choose(self, name: str, choice: Any) -> None:
         """Choose an entry by its text, or a node, in a combo box, list or table row."""
@@ -187,6 +262,7 @@ class Host:
             texts = [widget.itemText(index) for index in range(widget.count())]
             index = next((i for i, text in enumerate(texts) if choice in (text, i)), None)
             index = _containing(texts, choice, name) if index is None else index
+            widget.hidePopup()
             widget.setCurrentIndex(index)
             widget.activated.emit(index)
         elif isinstance(widget, QtWidgets.QListWidget):
@@ -257,19 +333,42 @@ class Host:
                 raise AssertionError(f"While waiting until {what}: {self.errors[0]}")
             if time.monotonic() > deadline:
                 raise AssertionError(f"In {timeout_s} s it did not happen: {what}.")
-            time.sleep(0.002)
+            self._wait()
 
     def let_pass(self, seconds: float) -> None:
         """Let some time pass, as a user does who waits."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.process_events()
-            time.sleep(0.005)
+            self._wait()
 
     def process_events(self) -> None:
         """Let Qt do what is due."""
-        QtWidgets.QApplication.processEvents()
+        if self.keeps_lock:
+            event_loop.process_events_keeping_lock()
+        else:
+            QtWidgets.QApplication.processEvents()
         QtWidgets.QApplication.sendPostedEvents(None, QtCore.QEvent.Type.DeferredDelete)
+
+    def _wait(self) -> None:
+        """Wait for the next event."""
+        if self.keeps_lock:
+            event_loop.wait_keeping_lock()
+        else:
+            time.sleep(0.002)
+
+    def sees(self, model: Any) -> bool:
+        """Tell whether the whole of a model is within the 3D view."""
+        return self._layout.three_d_view_of_host().sees(model)
+
+    def shown_tables(self) -> list[str]:
+        """Return the names of the tables that are seen in the layout's views."""
+        return self._layout.shown_tables_of_host()
+
+    def legends(self) -> dict[str, list[tuple[str, float]]]:
+        """Return, by view, the title of each color legend that is drawn, and its share of it."""
+        views = [self._layout.three_d_view_of_host(), *self._layout.slice_views_of_host()]
+        return {view.node.GetName(): view.legends(self.scene) for view in views}
 
     def screenshot(self, path: Path, name: str | None = None, width: int = 430) -> None:
         """Save a picture of the whole panel, or of one widget in it."""
@@ -279,8 +378,11 @@ class Host:
 
     def window_screenshot(self, path: Path, width: int = 430) -> None:
         """Save a picture of Slicer's window: the panel, the 3D view and the slices."""
+        _save(self._window_picture(width), path)
+
+    def _window_picture(self, width: int = DOCK_WIDTH) -> QtGui.QPixmap:
         self._fit(width)
-        _save(pictures.window(self._frame._qt, self._layout), path)
+        return pictures.window(self._frame._qt, self._layout)
 
     def look_from(self, azimuth: float, elevation: float, zoom: float = 1.0) -> None:
         """Turn the 3D view, degrees from the front, to all that is visible."""
@@ -296,11 +398,44 @@ class Host:
         while heights[-1] != heights[-2]:
             heights.append(max(frame.layout().totalHeightForWidth(width), 100))
             frame.resize(width, heights[-1])
-            for _round in range(5):
-                self.process_events()
+            self._settle()
+
+    def unfold(self, name: str) -> None:
+        """Open the folded sections and groups around a widget, by clicks on their headers."""
+        self.process_events()
+        folds, inner = [], self.find(name)._qt
+        while inner is not None:
+            if isinstance(inner, (ctkCollapsibleButton, ctkCollapsibleGroupBox)):
+                folds.append(inner)
+            inner = inner.parentWidget()
+        for fold in reversed(folds):
+            if fold.collapsed:
+                self._click(fold)
+                self._settle()
+
+    def minimum_width(self) -> int:
+        """Return the width, pixels, below which Slicer cannot make the dock of the module."""
+        self._settle()
+        return self._frame._qt.minimumSizeHint().width()
+
+    def _settle(self) -> None:
+        """Let layouts within layouts settle one by one."""
+        for _round in range(5):
+            self.process_events()
+
+    def _click(self, widget: Any) -> None:
+        self.clicks.append(widget.objectName())
+        QtTest.QTest.mouseClick(
+            widget, QtCore.Qt.MouseButton.LeftButton, pos=_where_to_press(widget)
+        )
+        self.process_events()
 
     def _usable(self, name: str) -> Any:
-        self.process_events()  # A widget that has just been added is shown by an event.
+        """Return a widget, in a section that is open: a user opens the one that is needed."""
+        self.unfold(name)
+        if not self.find(name)._qt.isVisible():
+            # One that has just been made anew is shown by an event.
+            self._settle()
         widget = self.find(name)._qt
         if not widget.isEnabled():
             raise AssertionError(f"{name} is disabled: {widget.toolTip()}")
@@ -308,15 +443,41 @@ class Host:
             raise AssertionError(f"{name} is hidden.")
         return widget
 
-    def _load_module(self) -> None:
+    def made_widget(self) -> Any:
+        """Return the module's widget; where its `setup` raises, Slicer prints that and goes on."""
+        if self.widget is None:
+            self._frame = class_named("qSlicerScriptedLoadableModuleWidget")()
+            self._frame.setMRMLScene(self.scene)
+            self._set_up_widget()
+            self._frame._qt.resize(430, 900)
+            self._frame._qt.show()
+        return self.widget
+
+    def _set_up_widget(self) -> None:
+        module = sys.modules[self._module_name]
+        self.widget = getattr(module, f"{self._module_name}Widget")(self._frame)
+        setattr(slicer.modules, f"{self._module_name}Widget", self.widget)
+        try:
+            self.widget.setup()
+        except Exception as exception:
+            FAILURES.catch(exception)
+
+    def _execute_module(self) -> ModuleType:
+        """Read the module's file, as if for the first time."""
         name = self._module_name
         spec = importlib.util.spec_from_file_location(name, self._module_file)
         module = importlib.util.module_from_spec(spec)
         sys.modules[name] = module
         spec.loader.exec_module(module)
-        description = ModuleDescription(name, self._module_file)
+        return module
+
+    def _load_module(self) -> None:
+        name, module = self._module_name, self._execute_module()
+        description = ModuleDescription(name, self._module_file, self.made_widget)
+        slicer.app.moduleManager().add(description)
         setattr(slicer.modules, name.lower(), description)
         setattr(slicer.modules, f"{name}Instance", getattr(module, name)(description))
+        slicer.app._complete_startup()
 
     def _process_connectors(self) -> None:
         for node in slicer.util.getNodesByClass("vtkMRMLScriptedModuleNode"):
@@ -328,6 +489,14 @@ class Host:
         FAILURES.catch(exception.with_traceback(trace))
 
 
+def _execute(script: Path) -> None:
+    code = compile(script.read_text(encoding="utf-8"), str(script), "exec")
+    try:
+        exec(code, {"__name__": "__main__", "__file__": str(script)})
+    except Exception as exception:  # Slicer prints it, and goes on.
+        FAILURES.catch(exception)
+
+
 def _save(picture: QtGui.QPixmap, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     if not picture.save(str(path)):
@@ -335,6 +504,12 @@ def _save(picture: QtGui.QPixmap, path: Path) -> None:
 
 
 def _where_to_press(button: QtWidgets.QWidget) -> QtCore.QPoint:
+    if isinstance(button, QtWidgets.QGroupBox):
+        option = QtWidgets.QStyleOptionGroupBox()
+        button.initStyleOption(option)
+        kinds = QtWidgets.QStyle
+        kind, part = kinds.ComplexControl.CC_GroupBox, kinds.SubControl.SC_GroupBoxCheckBox
+        return button.style().subControlRect(kind, option, part, button).center()
     return QtCore.QPoint(min(12, button.width() // 2), min(10, button.height() // 2))
 
 

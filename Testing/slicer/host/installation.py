@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import slicer
 
-from Testing.slicer.host import parameter_node, scripted_module
+from Testing.slicer.host import parameter_node, sample_data, scripted_module
 from Testing.slicer.host.offered import OFFERED
 from Testing.slicer.host.other_modules import qSlicerScriptedLoadableModule
 from Testing.slicer.host.qt_module import class_named, ctk, qt
@@ -28,9 +29,11 @@ class Installation:
         translation = ModuleType("slicer.i18n")
         translation.tr = lambda text: text
         translation.translate = lambda _context, text: text
+        translation.getContext = lambda file: Path(file).stem
         modules = {
             "qt": qt,
             "ctk": ctk,
+            "SampleData": sample_data.make_module(),
             "slicer.i18n": translation,
             "slicer.ScriptedLoadableModule": scripted_module.make_module(),
             "slicer.parameterNodeWrapper": parameter_node.make_module(),
@@ -42,6 +45,7 @@ class Installation:
                 self.set(name.removeprefix("slicer."), module)
         self.set("modules", SimpleNamespace())
         self.set("qSlicerScriptedLoadableModule", qSlicerScriptedLoadableModule)
+        self.set("qSlicerScriptedLoadableModuleWidget", scripted_module.WidgetRepresentation)
         for name in OFFERED["qMRML"]:
             try:
                 self.set(name, class_named(name))

@@ -1,4 +1,4 @@
-"""`slicer.app.layoutManager()`: a 3D view and three slice views; made when they are asked for."""
+"""`slicer.app.layoutManager()`: a 3D view and three slice views; drawn when they are asked for."""
 
 from __future__ import annotations
 
@@ -11,12 +11,17 @@ import vtk
 from Testing.slicer.host.checked import Checked
 from Testing.slicer.host.members import FACTS, members_of
 from Testing.slicer.host.qt_module import class_named
-from Testing.slicer.host.views import SLICES, SliceView, ThreeDView
+from Testing.slicer.host.views import SLICES, SliceView, ThreeDView, slice_logic
 
-PLOT_LAYOUTS = (
-    slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView,
-    slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpPlotView,
-    slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpPlotTableView,
+LAYOUTS_WITHOUT_3D = (
+    slicer.vtkMRMLLayoutNode.SlicerLayoutOneUpRedSliceView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutOneUpYellowSliceView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutOneUpGreenSliceView,
+    slicer.vtkMRMLLayoutNode.SlicerLayoutOneUpPlotView,
+)
+
+LAYOUTS_WITHOUT_SLICES = (
+    slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView,
     slicer.vtkMRMLLayoutNode.SlicerLayoutOneUpPlotView,
 )
 
@@ -30,9 +35,10 @@ class LayoutManager(Checked):
     """Stands in for `qSlicerLayoutManager`.
 
     Attributes:
-        layout: the layout that was chosen; but for the plot the views stay the same here.
-        threeDViewCount: number of 3D views.
-        plotViewCount: number of plot views.
+        layout: number of the layout that is shown, whoever has chosen it.
+        threeDViewCount: number of 3D views in it.
+        plotViewCount: number of plot views in it.
+        tableViewCount: number of table views in it.
     """
 
     measured = frozenset(FACTS["slicer.app.layoutManager()"])
@@ -41,10 +47,13 @@ class LayoutManager(Checked):
     def __init__(self, scene: Any, application_logic: Any) -> None:
         self._scene = scene
         self._logic = application_logic
-        self.layout = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpView
-        self.threeDViewCount = 1
-        self.plotViewCount = 0
-        self._plots: list[Any] = []
+        self._layouts = slicer.vtkMRMLLayoutLogic()
+        self._layouts.SetMRMLApplicationLogic(application_logic)
+        self._layouts.SetMRMLScene(scene)
+        self.setLayout(slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpView)
+        self._plots: dict[str, Any] = {}
+        # Slicer has the nodes of its slice views from its start.
+        self._slice_logics = {name: slice_logic(scene, application_logic, name) for name in SLICES}
 
     @functools.cached_property
     def _three_d(self) -> ThreeDView:
@@ -52,47 +61,86 @@ class LayoutManager(Checked):
 
     @functools.cached_property
     def _slices(self) -> dict[str, SliceView]:
-        return {name: SliceView(self._scene, self._logic, name) for name in SLICES}
+        return {name: SliceView(self._logic, each) for name, each in self._slice_logics.items()}
+
+    def show_views(self) -> None:
+        """Make the views, which follow the scene from then on, as Slicer's do from its start."""
+        self.three_d_view_of_host()
+        self.slice_views_of_host()
+
+    @property
+    def layout(self) -> int:
+        return self._layouts.GetLayoutNode().GetViewArrangement()
+
+    @property
+    def threeDViewCount(self) -> int:
+        return len(self._views("vtkMRMLViewNode"))
+
+    @property
+    def plotViewCount(self) -> int:
+        return len(self._views("vtkMRMLPlotViewNode"))
+
+    @property
+    def tableViewCount(self) -> int:
+        return len(self._views("vtkMRMLTableViewNode"))
 
     def setLayout(self, layout: int) -> None:
-        self.layout = layout
-        if layout in PLOT_LAYOUTS and not self._plots:
-            plot = class_named("qMRMLPlotWidget")()
-            plot.setMRMLScene(self._scene)
-            plot.setMRMLPlotViewNode(self._plot_view_node())
-            self._plots.append(plot)
-        self.plotViewCount = len(self._plots) if layout in PLOT_LAYOUTS else 0
+        self._layouts.GetLayoutNode().SetViewArrangement(layout)
 
     def plotWidget(self, index: int) -> Any:
-        return self._plots[index] if index < self.plotViewCount else None
+        if index >= self.plotViewCount:
+            return None
+        node = self._views("vtkMRMLPlotViewNode")[index]
+        if node.GetID() not in self._plots:
+            plot = class_named("qMRMLPlotWidget")()
+            plot.setMRMLScene(self._scene)
+            plot.setMRMLPlotViewNode(node)
+            self._plots[node.GetID()] = plot
+        return self._plots[node.GetID()]
+
+    def shown_tables_of_host(self) -> list[str]:
+        """Return the names of the tables that are seen in the layout."""
+        tables = [view.GetTableNode() for view in self._views("vtkMRMLTableViewNode")]
+        return [table.GetName() for table in tables if table is not None]
+
+    def _views(self, class_name: str) -> list[Any]:
+        """Return the view nodes of a class that the layout shows."""
+        nodes = self._layouts.GetViewNodes()
+        shown = [nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems())]
+        return [node for node in shown if node.IsA(class_name)]
 
     def threeDWidget(self, index: int) -> ThreeDWidget | None:
-        return ThreeDWidget(self._three_d) if index == 0 else None
+        return ThreeDWidget(self) if index == 0 else None
+
+    @property
+    def _has_slices(self) -> bool:
+        return self.layout not in LAYOUTS_WITHOUT_SLICES
+
+    @property
+    def is_3d_shown(self) -> bool:
+        """Whether the layout has a 3D view."""
+        return self.layout not in LAYOUTS_WITHOUT_3D
 
     def sliceViewNames(self) -> tuple[str, ...]:
         return tuple(SLICES)
 
     def sliceWidget(self, name: str) -> SliceWidget | None:
-        return SliceWidget(self._slices[name]) if name in SLICES else None
+        return SliceWidget(self._slices[name], self._has_slices) if name in SLICES else None
 
     def mrmlSliceLogics(self) -> vtk.vtkCollection:
         logics = vtk.vtkCollection()
-        for view in self._slices.values():
-            logics.AddItem(view.logic)
+        for logic in self._slice_logics.values():
+            logics.AddItem(logic)
         return logics
 
     def resetThreeDViews(self) -> None:
         self._three_d.look_at_everything()
 
     def resetSliceViews(self) -> None:
-        """Pictures of the slices are always fitted here."""
-
-    def _plot_view_node(self) -> Any:
-        node = slicer.vtkMRMLPlotViewNode()
-        node.SetSingletonTag("PlotView1")
-        node.SetLayoutName("PlotView1")
-        node.SetName("PlotView1")
-        return self._scene.AddNode(node)
+        """Center each slice view on what it shows, which moves its slice."""
+        for logic in self._slice_logics.values():
+            width, height, _ = logic.GetSliceNode().GetDimensions()
+            logic.FitSliceToAll(width, height)
 
     def three_d_view_of_host(self) -> ThreeDView:
         """Return the 3D view, to draw it."""
@@ -111,19 +159,24 @@ class LayoutManager(Checked):
 
 
 class ThreeDWidget(Checked):
-    """Stands in for `qMRMLThreeDWidget`."""
+    """Stands in for `qMRMLThreeDWidget`.
+
+    Attributes:
+        visible: the layout has it; also where the window is minimized.
+    """
 
     measured = _all_members("qMRMLThreeDWidget")
     title = "qMRMLThreeDWidget"
 
-    def __init__(self, view: ThreeDView) -> None:
-        self._view = view
+    def __init__(self, layout: LayoutManager) -> None:
+        self.visible = layout.is_3d_shown
+        self._layout = layout
 
     def mrmlViewNode(self) -> Any:
-        return self._view.node
+        return self._layout.three_d_view_of_host().node
 
     def threeDView(self) -> ThreeDViewWidget:
-        return ThreeDViewWidget(self._view)
+        return ThreeDViewWidget(self._layout.three_d_view_of_host())
 
 
 class ThreeDViewWidget(Checked):
@@ -158,13 +211,18 @@ class ThreeDViewWidget(Checked):
 
 
 class SliceWidget(Checked):
-    """Stands in for `qMRMLSliceWidget`."""
+    """Stands in for `qMRMLSliceWidget`.
+
+    Attributes:
+        visible: the layout has slice views; also where the window is minimized.
+    """
 
     measured = _all_members("qMRMLSliceWidget")
     title = "qMRMLSliceWidget"
 
-    def __init__(self, view: SliceView) -> None:
+    def __init__(self, view: SliceView, is_visible: bool) -> None:
         self._view = view
+        self.visible = is_visible
 
     def sliceLogic(self) -> Any:
         return self._view.logic

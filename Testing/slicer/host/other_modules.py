@@ -4,20 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-import slicer
+from Testing.slicer.host.sample_data import SampleDataLogic
 
 
 class qSlicerScriptedLoadableModule:
     """`slicer.util` asks for this class; the modules here are of another one."""
-
-
-class SampleDataLogic:
-    """Stands in for the logic of Sample Data, which downloads: the volume is made here."""
-
-    def downloadSample(self, name: str) -> Any:
-        values = np.full((8, 8, 8), 100, dtype=np.int16)
-        return slicer.util.addVolumeFromArray(values, name=name)
 
 
 class Module:
@@ -36,8 +27,12 @@ class ModuleManager:
 
     def __init__(self, application_logic: Any) -> None:
         self._application_logic = application_logic
-        self._modules = {"SampleData": Module("SampleData", SampleDataLogic())}
+        self._modules: dict[str, Any] = {"SampleData": Module("SampleData", SampleDataLogic())}
 
-    def module(self, name: str) -> Module | None:
+    def add(self, module: Any) -> None:
+        """Add a scripted module under its name."""
+        self._modules[module.name] = module
+
+    def module(self, name: str) -> Any | None:
         logic = self._application_logic.GetModuleLogic(name)
         return Module(name, logic) if logic is not None else self._modules.get(name)

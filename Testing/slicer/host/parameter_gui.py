@@ -36,6 +36,9 @@ class Binding:
                 continue
             if name not in wrapper.allParameters:
                 raise ValueError(f"No parameter is called {name}.")
+            parameter = wrapper.allParameters[name]
+            if parameter.isNode:
+                widget.nodeTypes = parameter.node_class_names()
             self._widgets[name] = widget
         self._isShowing = False
         self._show()

@@ -1,7 +1,9 @@
 """`slicer.parameterNodeWrapper`: typed parameters over a node of the scene.
 
-Only what is documented and used: str, int, float, bool, Path, Enum and nodes, `Annotated` with a
-default or a check, and widgets bound by their property `SlicerParameterName`.
+Only what is documented and used: str, int, float, bool, Path, Enum and nodes (one class, or an
+`Optional[Union[...]]` of several), `Annotated` with a default or a check, and widgets bound by
+their property `SlicerParameterName`. It refuses what Slicer refuses (measured in 5.13): a node
+class that is abstract, as soon as a widget is bound to it, and a `Union` without room for None.
 """
 
 from __future__ import annotations
@@ -37,11 +39,11 @@ class Parameter:
             self.kind, *extras = typing.get_args(hint)
             self.checks = [extra for extra in extras if not isinstance(extra, Default)]
             default = next((item.value for item in extras if isinstance(item, Default)), default)
-        arguments = [item for item in typing.get_args(self.kind) if item is not type(None)]
-        self.isOptional = bool(arguments)
-        if arguments:
-            (self.kind,) = arguments
-        self.isNode = isinstance(self.kind, type) and self.kind.__name__.startswith("vtkMRML")
+        arguments = typing.get_args(self.kind)
+        self.kinds = tuple(item for item in arguments if item is not type(None)) or (self.kind,)
+        self.kind = self.kinds[0]
+        self.isNode = self.kind.__name__.startswith("vtkMRML")
+        self.isOptional = type(None) in arguments or (self.isNode and not arguments)
         self.default = self._first_value() if default is None else default
 
     def __get__(self, owner: ParameterNode | None, _kind: type) -> Any:
@@ -55,8 +57,9 @@ class Parameter:
     def __set__(self, owner: ParameterNode, value: Any) -> None:
         node = owner.parameterNode
         if self.isNode:
-            if value is not None and not isinstance(value, self.kind):
-                raise ValueError(f"{self.name} is no {self.kind.__name__}: {value!r}")
+            if value is not None and not isinstance(value, self.kinds):
+                names = " or ".join(kind.__name__ for kind in self.kinds)
+                raise ValueError(f"{self.name} is no {names}: {value!r}")
             node.SetNodeReferenceID(self.name, value.GetID() if value is not None else None)
             return
         if self.kind is float and type(value) is int:
@@ -68,10 +71,24 @@ class Parameter:
         node.SetParameter(self.name, value.name if isinstance(value, enum.Enum) else str(value))
 
     def write_default(self, node: Any) -> None:
-        """Write the default, where the node has no value yet."""
+        """Write the default, where the node has no value yet.
+
+        Raises:
+            ValueError: a `Union` of nodes leaves no room for None.
+        """
+        if self.default is None and not self.isOptional:
+            raise ValueError("Unable to write value 'None'")
         if not self.isNode and not node.GetParameter(self.name):
             value = self.default
             node.SetParameter(self.name, value.name if isinstance(value, enum.Enum) else str(value))
+
+    def node_class_names(self) -> list[str]:
+        """Return the classes' names as Slicer does: it makes a node of each and asks it.
+
+        Raises:
+            TypeError: one of the classes is abstract.
+        """
+        return [kind().GetClassName() for kind in self.kinds]
 
     def _first_value(self) -> Any:
         if self.isNode:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import tempfile
 from typing import Any
 
+import numpy as np
 import slicer
 
+VIRIDIS = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
+COLORS = 256
 MODULE_LOGICS = {
     "Markups": "vtkSlicerMarkupsLogic",
     "Models": "vtkSlicerModelsLogic",
@@ -15,6 +19,7 @@ MODULE_LOGICS = {
     "Plots": "vtkSlicerPlotsLogic",
     "Texts": "vtkSlicerTextsLogic",
     "Sequences": "vtkSlicerSequencesLogic",
+    "Segmentations": "vtkSlicerSegmentationsModuleLogic",
     "SubjectHierarchy": "vtkSlicerSubjectHierarchyModuleLogic",
 }
 
@@ -34,6 +39,12 @@ class ApplicationScene:
         # Without its colors a scene has no tables of them; Slicer's own module reads files, too.
         self._colorLogic = slicer.vtkMRMLColorLogic()
         self._colorLogic.SetMRMLScene(self.scene)
+        self._cache_folder = tempfile.TemporaryDirectory(prefix="slicer-cache-")
+        cache = slicer.vtkCacheManager()
+        cache.SetRemoteCacheDirectory(self._cache_folder.name)
+        self.scene.SetCacheManager(cache)
+        self.scene.RegisterNodeClass(slicer.vtkMRMLColorLegendDisplayNode())
+        self.scene.AddNode(_viridis())
         self._logics: list[Any] = [self._prepared(*item) for item in MODULE_LOGICS.items()]
 
     def _prepared(self, module: str, class_name: str) -> Any:
@@ -42,3 +53,19 @@ class ApplicationScene:
         self.applicationLogic.SetModuleLogic(module, logic)
         logic.SetMRMLScene(self.scene)
         return logic
+
+
+def _viridis() -> Any:
+    """Return the color table that Slicer's module Colors reads from a file, as near as need be."""
+    node = slicer.vtkMRMLColorTableNode()
+    node.SetSingletonTag("FileViridis.txt")
+    node.SetName("Viridis")
+    node.SetTypeToUser()
+    node.SetNumberOfColors(COLORS)
+    shares = np.linspace(0.0, 1.0, len(VIRIDIS))
+    for index, share in enumerate(np.linspace(0.0, 1.0, COLORS)):
+        color = [
+            np.interp(share, shares, channel) / 255.0 for channel in zip(*VIRIDIS, strict=True)
+        ]
+        node.SetColor(index, f"{index}", *color, 1.0)
+    return node

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unittest
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -17,14 +18,29 @@ _PROPERTIES = """
 """
 
 
+class WidgetRepresentation:
+    """Stands in for `qSlicerScriptedLoadableModuleWidget`, as `slicer.util` asks for it."""
+
+    def __init__(self, widget: Any) -> None:
+        self._widget = widget
+
+    def self(self) -> Any:
+        return self._widget
+
+
 class ModuleDescription:
     """What Slicer hands to a module as its parent; an unknown attribute raises, as there."""
 
-    __slots__ = tuple(_PROPERTIES.split())
+    __slots__ = (*_PROPERTIES.split(), "_make_widget")
 
-    def __init__(self, name: str, path: Path) -> None:
+    def __init__(self, name: str, path: Path, make_widget: Callable[[], Any]) -> None:
+        """`make_widget` returns the module's widget, made and set up by the first call."""
         self.name = name
         self.path = str(path)
+        self._make_widget = make_widget
+
+    def widgetRepresentation(self) -> WidgetRepresentation:
+        return WidgetRepresentation(self._make_widget())
 
 
 class ScriptedLoadableModule:

@@ -66,9 +66,29 @@ def connect(proxy: Any, signature: str, function: Callable[..., Any]) -> bool:
             raise NotImplementedError(f"The host does not offer the signal {signature} of Qt 5.")
         signal.connect(slot)
         undo = (signal, slot)
-    connections = source.__dict__.setdefault(CONNECTIONS, [])
-    connections.append((signature, function, undo))
+    if CONNECTIONS not in source.__dict__:
+        source.__dict__[CONNECTIONS] = []
+        source.destroyed.connect(_releasing(source.__dict__[CONNECTIONS]))
+    source.__dict__[CONNECTIONS].append((signature, function, undo))
     return True
+
+
+def _releasing(connections: list[tuple]) -> Callable[[], None]:
+    """Return what lets go of the functions, as PythonQt does when their object is deleted.
+
+    PySide6 would keep the slots of an object that is gone.
+    """
+
+    def release() -> None:
+        for _signature, _function, (_signal, slot) in connections:
+            slot.function = _nothing
+        connections.clear()
+
+    return release
+
+
+def _nothing(*_arguments: Any) -> None:
+    """Stands where a function was."""
 
 
 def disconnect(proxy: Any, signature: str, function: Callable[..., Any] | None = None) -> bool:

@@ -23,7 +23,7 @@ UNMEASURED: dict[str, tuple[str, str]] = {
     "QFont": ("", "setBold bold setItalic setPointSize pointSize setFamily Monospace setStyleHint"),
     "QBrush": ("", "color setColor style"),
     "QCursor": ("", "shape pos"),
-    "qSlicerMainWindow": ("QWidget", "statusBar"),
+    "qSlicerMainWindow": ("QWidget", "statusBar moduleSelector"),
     "QPoint": ("", "x y"),
     "QRect": ("", "x y width height"),
     "QSizePolicy": ("", "Expanding Preferred Fixed Minimum MinimumExpanding Ignored Maximum"),

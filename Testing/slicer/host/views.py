@@ -5,6 +5,7 @@ They are drawn by Slicer's own displayable managers, so that a picture shows wha
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,27 @@ THREE_D_MANAGERS = (
     "vtkMRMLCameraDisplayableManager",
     "vtkMRMLViewDisplayableManager",
     "vtkMRMLModelDisplayableManager",
+    "vtkMRMLThreeDReformatDisplayableManager",
+    "vtkMRMLOrientationMarkerDisplayableManager",
+    "vtkMRMLRulerDisplayableManager",
     "vtkMRMLMarkupsDisplayableManager",
+    "vtkMRMLColorLegendDisplayableManager",
+    "vtkMRMLLinearTransformsDisplayableManager",
+    "vtkMRMLSegmentationsDisplayableManager3D",
 )
-SLICE_MANAGERS = ("vtkMRMLModelSliceDisplayableManager", "vtkMRMLMarkupsDisplayableManager")
+SLICE_MANAGERS = (
+    "vtkMRMLVolumeGlyphSliceDisplayableManager",
+    "vtkMRMLModelSliceDisplayableManager",
+    "vtkMRMLCrosshairDisplayableManager",
+    "vtkMRMLOrientationMarkerDisplayableManager",
+    "vtkMRMLRulerDisplayableManager",
+    "vtkMRMLScalarBarDisplayableManager",
+    "vtkMRMLMarkupsDisplayableManager",
+    "vtkMRMLColorLegendDisplayableManager",
+    "vtkMRMLLinearTransformsDisplayableManager",
+    "vtkMRMLSegmentationsDisplayableManager2D",
+)
+"""Those of Slicer's own views, and of its modules whose nodes ours has to do with."""
 SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 SLICE_COLORS = {
     "Red": (0.95, 0.29, 0.20),
@@ -60,6 +79,18 @@ class View:
         rows = np.ascontiguousarray(colors.reshape(height, width, -1)[::-1, :, :3])
         image = QtGui.QImage(rows.data, width, height, 3 * width, QtGui.QImage.Format.Format_RGB888)
         return image.copy()
+
+    def legends(self, scene: Any) -> list[tuple[str, float]]:
+        """Return the title of each color legend that is drawn, and its share of the view."""
+        manager = self._group.GetDisplayableManagerByClassName(
+            "vtkMRMLColorLegendDisplayableManager"
+        )
+        drawn = []
+        for node in slicer.util.getNodesByClass("vtkMRMLColorLegendDisplayNode", scene):
+            actor = manager.GetColorLegendActor(node)
+            if actor is not None and actor.GetVisibility():
+                drawn.append((actor.GetTitle(), actor.GetWidth() * actor.GetHeight()))
+        return drawn
 
     def close(self) -> None:
         """Let go of the scene."""
@@ -110,24 +141,42 @@ class ThreeDView(View):
         camera.Elevation(elevation)
         return camera
 
+    def sees(self, model: Any) -> bool:
+        """Tell whether the whole of a model is within the picture."""
+        bounds = [0.0] * 6
+        model.GetRASBounds(bounds)
+        for corner in itertools.product(bounds[:2], bounds[2:4], bounds[4:]):
+            self.renderer.SetWorldPoint(*corner, 1.0)
+            self.renderer.WorldToView()
+            if max(abs(share) for share in self.renderer.GetViewPoint()[:2]) > 1.0:
+                return False
+        return True
+
     def look_at_everything(self) -> None:
         """Move the camera so that all visible models are in the picture."""
         self.renderer.ResetCamera()
         self.renderer.ResetCameraClippingRange()
 
 
+def slice_logic(scene: Any, application_logic: Any, name: str) -> Any:
+    """Return the logic of a slice view, with its nodes in the scene."""
+    logic = slicer.vtkMRMLSliceLogic()
+    logic.SetMRMLApplicationLogic(application_logic)
+    logic.SetMRMLScene(scene)
+    node = scene.GetSingletonNode(name, "vtkMRMLSliceNode")
+    logic.SetSliceNode(node)
+    node.SetOrientation(SLICES[name])
+    node.SetLayoutColor(*SLICE_COLORS[name])
+    return logic
+
+
 class SliceView(View):
     """One of the slice views."""
 
-    def __init__(self, scene: Any, logic: Any, name: str) -> None:
-        self.logic = slicer.vtkMRMLSliceLogic()
-        self.logic.SetMRMLApplicationLogic(logic)
-        self.logic.SetMRMLScene(scene)
-        node = self.logic.AddSliceNode(name)
-        node.SetOrientation(SLICES[name])
-        node.SetLayoutColor(*SLICE_COLORS[name])
+    def __init__(self, application_logic: Any, logic: Any) -> None:
+        self.logic = logic
         factory = slicer.vtkMRMLSliceViewDisplayableManagerFactory.GetInstance()
-        super().__init__(factory, SLICE_MANAGERS, logic, node)
+        super().__init__(factory, SLICE_MANAGERS, application_logic, logic.GetSliceNode())
         self._mapper = vtk.vtkImageMapper()
         self._mapper.SetColorWindow(255)
         self._mapper.SetColorLevel(127.5)
@@ -136,11 +185,13 @@ class SliceView(View):
         self._actor.GetProperty().SetDisplayLocationToBackground()
 
     def picture(self, width: int, height: int) -> QtGui.QImage:
-        """Return what the view shows: the slice, and what lies in it."""
+        """Return what the view shows: the slice, as large as fits, and what lies in it."""
         # Markups place their labels by the window's size.
         self.window.SetSize(width, height)
         self.logic.ResizeSliceNode(width, height)
+        offset = self.node.GetSliceOffset()
         self.logic.FitSliceToAll(width, height)
+        self.node.SetSliceOffset(offset)
         self.logic.UpdatePipeline()
         connection = self.logic.GetImageDataConnection()
         if connection is None:

@@ -1,32 +1,23 @@
-"""k-means, silhouettes and how stable clusters are, on numpy alone."""
+"""k-means, silhouettes and how stable clusters are."""
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
-STARTS = 10
-MOST_ROUNDS = 100
+from rastrainer.scipy_modules import scipy_module
+
+STARTS, STARTS_OF_SAMPLE = 10, 3
+MOST_ROUNDS = 30
 
 
-def k_means(points: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Return the cluster of each of (n, m) points, (n,) int (Lloyd 1982).
-
-    The best of several starts, which run side by side; a cluster that loses its last point keeps
-    its center.
-    """
-    centers = _spread_out(points, count, random)
-    labels = np.full((STARTS, len(points)), -1)
-    for _ in range(MOST_ROUNDS):
-        squared = ((points[None, :, None] - centers[:, None]) ** 2).sum(axis=3)
-        new = squared.argmin(axis=2)
-        if np.array_equal(new, labels):
-            break
-        labels = new
-        belongs = (labels[:, :, None] == np.arange(count)).astype(float)
-        sizes = belongs.sum(axis=1)[:, :, None]
-        sums = np.einsum("snk,nm->skm", belongs, points)
-        centers = np.where(sizes > 0, sums / np.maximum(sizes, 1), centers)
-    return labels[squared.min(axis=2).sum(axis=1).argmin()]
+def k_means(
+    points: np.ndarray, count: int, random: np.random.Generator, starts: int = STARTS
+) -> np.ndarray:
+    """Return the cluster of each of (n, m) points, (n,) int: the best of several starts (scipy)."""
+    found = [_once(points, count, random) for _ in range(starts)]
+    return min(found, key=lambda one: one[0])[1]
 
 
 def silhouettes(points: np.ndarray, labels: np.ndarray) -> np.ndarray:
@@ -58,7 +49,7 @@ def stability(
         chosen = np.unique(random.integers(0, len(points), len(points)))
         if len(chosen) <= len(clusters):
             continue
-        again = k_means(points[chosen], len(clusters), random)
+        again = k_means(points[chosen], len(clusters), random, STARTS_OF_SAMPLE)
         for column, cluster in enumerate(clusters):
             is_old = labels[chosen] == cluster
             found[row, column] = max(
@@ -68,17 +59,12 @@ def stability(
     return found.mean(axis=0)
 
 
-def _spread_out(points: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Return starting centers far from each other (k-means++, Arthur and Vassilvitskii 2007).
-
-    Shape (starts, count, m).
-    """
-    centers = points[random.integers(0, len(points), (STARTS, 1))]
-    while centers.shape[1] < count:
-        squared = ((points[None, :, None] - centers[:, None]) ** 2).sum(axis=3).min(axis=2)
-        # Points that lie on a center already have no chance, unless all do.
-        chances = np.cumsum(squared + 1e-300, axis=1)
-        drawn = random.random(STARTS)[:, None] * chances[:, -1:]
-        chosen = (chances < drawn).sum(axis=1)
-        centers = np.concatenate([centers, points[chosen][:, None]], axis=1)
-    return centers
+def _once(points: np.ndarray, count: int, random: np.random.Generator) -> tuple[float, np.ndarray]:
+    """Return the sum of squares and the labels of one start (k-means++)."""
+    with warnings.catch_warnings():
+        # A start that loses a cluster is not the best one.
+        warnings.simplefilter("ignore", UserWarning)
+        centers, labels = scipy_module("cluster.vq").kmeans2(
+            points, count, iter=MOST_ROUNDS, minit="++", seed=random
+        )
+    return float(((points - centers[labels]) ** 2).sum()), labels

@@ -7,15 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rastrainer.clusters.dip import dip_p
 from rastrainer.clusters.k_means import k_means, silhouettes, stability
 from rastrainer.errors import RASTrainerError
+from rastrainer.number_text import p_phrase
 
 FEWEST_TRAINEES = 12
 TRAINEES_A_CLUSTER = 5
 MOST_CLUSTERS = 5
 STABLE = 0.75
 """Hennig 2007: below it, a cluster should not be trusted."""
-REFERENCE_ROUNDS = 100
+ALPHA = 0.05
 STABILITY_ROUNDS = 100
 
 
@@ -32,7 +34,7 @@ class TraineeClusters:
         members: Pseudonyms of each cluster, the largest cluster first.
         centers: Mean of each cluster in the metrics' own units.
         silhouette: Mean silhouette, -1 to 1.
-        chance_silhouette: What 95 of 100 samples without any groups stay below.
+        dip_p: How often a population with a single peak looks at least as parted as this.
         stability: Mean Jaccard similarity of each cluster under resampling, 0 to 1.
     """
 
@@ -40,7 +42,7 @@ class TraineeClusters:
     members: tuple[tuple[str, ...], ...]
     centers: tuple[tuple[float, ...], ...]
     silhouette: float
-    chance_silhouette: float
+    dip_p: float
     stability: tuple[float, ...]
 
 
@@ -49,9 +51,11 @@ def cluster_trainees(
 ) -> TraineeClusters:
     """Group trainees by z-scored metrics with k-means.
 
-    The number of clusters is the one with the best mean silhouette. Groups are told only if that
-    is better than in samples of one normal distribution with the same correlations, and if every
-    cluster comes back when trainees are resampled.
+    Any population can be cut, and a skewed one is cut better than a normal one. So groups are told
+    only if there is more than one peak: Hartigans' dip test on the first principal component, which
+    is chosen without looking for groups, at 5 % for every population with a single peak. The number
+    of clusters is the one with the best mean silhouette, and every cluster must come back when
+    trainees are resampled.
 
     Args:
         trainees: Pseudonym → metric → mean of the trainee.
@@ -59,7 +63,7 @@ def cluster_trainees(
         seed: Of the starts and the resampling.
 
     Raises:
-        NoClustersError: too few trainees, metrics that do not vary, or groups that chance makes.
+        NoClustersError: too few trainees, metrics that do not vary, or no groups are shown.
     """
     names = sorted(name for name, values in trainees.items() if set(metrics) <= set(values))
     if len(names) < FEWEST_TRAINEES:
@@ -69,17 +73,17 @@ def cluster_trainees(
         )
     values = np.array([[trainees[name][metric] for metric in metrics] for name in names])
     spread = values.std(axis=0, ddof=1)
-    if not np.all(spread > 0):
+    if not metrics or not np.all(spread > 0):
         raise NoClustersError("Groups of trainees need metrics that vary between trainees.")
     points = (values - values.mean(axis=0)) / spread
     random = np.random.default_rng(seed)
-    labels, silhouette = _best(points, random)
-    chance = _by_chance(points, random)
-    if silhouette <= chance:
+    p = one_peak_p(points)
+    if p > ALPHA:
         raise NoClustersError(
-            f"The trainees form no groups: the best grouping (silhouette {silhouette:.2f}) is no "
-            f"better than what chance makes of one group ({chance:.2f})."
+            f"No groups are shown: {len(names)} trainees of one group would often look as parted "
+            f"as these (dip test, {p_phrase(p)}). That is not evidence that there are none."
         )
+    labels, silhouette = _best(points, random)
     stable = stability(points, labels, random, STABILITY_ROUNDS)
     if stable.min() < STABLE:
         raise NoClustersError(
@@ -92,9 +96,17 @@ def cluster_trainees(
         members=tuple(tuple(np.array(names)[labels == c].tolist()) for c in order),
         centers=tuple(tuple(values[labels == c].mean(axis=0).tolist()) for c in order),
         silhouette=silhouette,
-        chance_silhouette=chance,
+        dip_p=p,
         stability=tuple(stable[order].tolist()),
     )
+
+
+def one_peak_p(points: np.ndarray) -> float:
+    """Return how often a population with a single peak looks as parted as (n, m) z-scores.
+
+    The points are looked at along the direction in which they vary most.
+    """
+    return dip_p(points @ np.linalg.svd(points, full_matrices=False)[2][0])
 
 
 def _best(points: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, float]:
@@ -105,12 +117,3 @@ def _best(points: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, 
         labels = np.unique(k_means(points, count, random), return_inverse=True)[1]
         found.append((labels, float(silhouettes(points, labels).mean())))
     return max(found, key=lambda one: one[1])
-
-
-def _by_chance(points: np.ndarray, random: np.random.Generator) -> float:
-    covariance = np.atleast_2d(np.cov(points.T))
-    samples = [
-        random.multivariate_normal(np.zeros(points.shape[1]), covariance, len(points))
-        for _ in range(REFERENCE_ROUNDS)
-    ]
-    return float(np.quantile([_best(sample, random)[1] for sample in samples], 0.95))

@@ -1,26 +1,47 @@
-"""Virtual trainees: what is true of them, so that a study's estimates can be checked."""
+"""Virtual trainees: what is true of them, so that a study's estimates can be checked.
+
+The hands of each trial follow from the typical trainee, the trainee, the mode, practice and chance.
+Practice is the power law of Newell and Rosenbloom (1981), though single learners may follow an
+exponential (Heathcote, Brown and Mewhort 2000). A hurried trial is the less exact one, as where the
+scatter is in proportion to the speed (Schmidt et al. 1979: exponent 1).
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import SPEED_LIMIT_MM_S
+from rastrainer.protocol import SPEED_LIMIT_MM_S, Mode
 from rastrainer.scripted_trainee import Skill
 
 SLOWEST_MM_S = 15.0
+GAIN_PER_S = (0.5, 9.0)
 STEADIEST_MM = 0.02
+LARGEST_BIAS_MM = 5.0
+
+_MODES = [mode.value for mode in Mode]
+_INTERACTION, _TRIAL = 1, 2
+"""Streams of chance beside that of the trainee, so that what one adds changes no other."""
 
 
 @dataclass(frozen=True)
 class ModeEffect:
-    """What a mode does to everyone's hands: factors on speed and on the scatter of the aim."""
+    """What a mode does to everyone's hands.
+
+    Attributes:
+        speed: Factor on the speed.
+        aim: Factor on the scatter of the aim.
+        bias_mm: What the view misleads the aim by: x, y, z in `World`, mm; of it the part along the
+            skin is what counts, since the tip stands on the skin.
+    """
 
     speed: float = 1.0
     aim: float = 1.0
+    bias_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -31,8 +52,17 @@ class Population:
         skill: Of the typical trainee at the first trial.
         speed_spread: Standard deviation, between trainees, of the logarithm of the speed.
         aim_spread: The same of the scatter of the aim.
-        learning: b; with the n-th trial, speed and pauses improve by the factor n^b.
+        learning: b; the n-th trial of all takes n^−b of the first one's time. Speed, gain and
+            pauses all improve by n^b, as far as the robot's limit of speed allows.
         modes: Effect of each mode; none for those left out.
+        accuracy_learning: The same exponent of the scatter of the aim.
+        interaction: Standard deviation, between trainees and modes, of the logarithms of speed and
+            scatter: how differently a mode suits different trainees.
+        tempo_spread: Standard deviation, between trials of a trainee, of the logarithm of the
+            speed: haste and patience.
+        trade_off: k; a trial played x times as fast as usual has a scatter x^k times as large.
+        lapses: Share of trials in which one touch slips by 4 mm, is noticed and taken back; None
+            for what `skill.slip_at` says.
     """
 
     skill: Skill = field(default_factory=Skill)
@@ -40,14 +70,25 @@ class Population:
     aim_spread: float = 0.15
     learning: float = 0.15
     modes: Mapping[str, ModeEffect] = field(default_factory=dict)
+    accuracy_learning: float = 0.0
+    interaction: float = 0.0
+    tempo_spread: float = 0.0
+    trade_off: float = 0.0
+    lapses: float | None = None
 
     def __post_init__(self) -> None:
         effects = [f for effect in self.modes.values() for f in (effect.speed, effect.aim)]
         if not all(0.1 <= factor <= 10 for factor in effects):
             raise InputError("The effects of a mode must be factors from 0.1 to 10.")
-        spreads = (self.speed_spread, self.aim_spread, self.learning)
-        if not all(0 <= value <= 1 for value in spreads):
-            raise InputError("Spreads and the learning exponent must be from 0 to 1.")
+        biases = [part for effect in self.modes.values() for part in effect.bias_mm]
+        if not all(abs(part) <= LARGEST_BIAS_MM for part in biases):
+            raise InputError(f"The bias of a view must be at most {LARGEST_BIAS_MM:g} mm an axis.")
+        spreads = (self.speed_spread, self.aim_spread, self.interaction, self.tempo_spread)
+        exponents = (self.learning, self.accuracy_learning, self.lapses or 0.0)
+        if not all(0 <= value <= 1 for value in (*spreads, *exponents)):
+            raise InputError("Spreads, learning exponents and lapses must be from 0 to 1.")
+        if not 0 <= self.trade_off <= 2:
+            raise InputError("The exponent of speed and accuracy must be from 0 to 2.")
 
     def skill_of(self, trainee: int, mode: str, trial: int, seed: int) -> Skill:
         """Return the hands of a trainee in his or her n-th trial of all, the first is 1.
@@ -56,15 +97,26 @@ class Population:
         """
         random = np.random.default_rng([seed, trainee])
         own_speed, own_aim = np.exp(random.normal(0.0, [self.speed_spread, self.aim_spread]))
+        of_mode = np.random.default_rng([seed, trainee, _INTERACTION, _MODES.index(mode)])
+        suits_speed, suits_aim = np.exp(of_mode.normal(0.0, self.interaction, 2))
+        of_trial = np.random.default_rng([seed, trainee, _TRIAL, trial])
+        tempo = math.exp(of_trial.normal(0.0, self.tempo_spread))
         effect = self.modes.get(mode, ModeEffect())
-        practice = trial**self.learning
-        speed = self.skill.speed_mm_s * own_speed * effect.speed * practice
-        brisk = own_speed * practice
+        brisk = own_speed * suits_speed * tempo * trial**self.learning
+        aim = own_aim * suits_aim * effect.aim * tempo**self.trade_off
+        aim *= self.skill.aim_sd_mm * trial**-self.accuracy_learning
+        speed = self.skill.speed_mm_s * brisk * effect.speed
+        slip_at = self.skill.slip_at
+        if self.lapses is not None:
+            # Which fiducial it is, the trial's own seed says.
+            slip_at = 2 if of_trial.random() < self.lapses else None
         return replace(
             self.skill,
             speed_mm_s=float(np.clip(speed, SLOWEST_MM_S, 0.9 * SPEED_LIMIT_MM_S)),
-            gain_per_s=float(np.clip(self.skill.gain_per_s * own_speed * effect.speed, 0.5, 9.0)),
-            aim_sd_mm=float(max(self.skill.aim_sd_mm * own_aim * effect.aim, STEADIEST_MM)),
+            gain_per_s=float(np.clip(self.skill.gain_per_s * brisk * effect.speed, *GAIN_PER_S)),
+            aim_sd_mm=float(max(aim, STEADIEST_MM)),
+            aim_bias_mm=effect.bias_mm,
             reaction_s=self.skill.reaction_s / brisk,
             dwell_s=self.skill.dwell_s / brisk,
+            slip_at=slip_at,
         )

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
+from rastrainer.commands.incomplete import add_incomplete, read_known_study
 from rastrainer.errors import InputError
 from rastrainer.export.motion_bids import write_motion_bids
 from rastrainer.export.slicer_files import write_slicer_files
@@ -14,7 +15,7 @@ from rastrainer.export.xapi import HOME_PAGE, statements_text
 from rastrainer.files import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.report.published_scores import with_ctps
-from rastrainer.report.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.report.study_data import StudyData, TrialRow
 from rastrainer.study import Study
 from rastrainer.study_values import StoredTrial
 
@@ -45,6 +46,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="URL",
         help="of the lab's system, for xAPI (default: %(default)s)",
     )
+    add_incomplete(parser)
     parser.set_defaults(run=run)
 
 
@@ -57,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
     if "bids" in formats and arguments.records is None:
         raise InputError("Motion-BIDS needs the journals: give their folder with --records.")
-    data = with_ctps(read_study_data(arguments.study))
+    data = with_ctps(read_known_study(arguments))
     make_empty_folder(arguments.output)
     for name in formats:
         print(f"{arguments.output / name}: {_write(name, data, arguments)}")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from rastrainer.commands.incomplete import add_incomplete, read_known_study
 from rastrainer.commands.score_command import mean_times
 from rastrainer.report.report import write_report
-from rastrainer.report.study_data import read_study_data
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -34,6 +34,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="[MODE=]SECONDS",
         help="a mean completion time for CTPS instead of the trials' own; see rastrainer score",
     )
+    add_incomplete(parser)
     parser.set_defaults(run=run)
 
 
@@ -43,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: the study cannot be read, or the folder not be written.
     """
-    data = read_study_data(arguments.study)
+    data = read_known_study(arguments)
     means = mean_times(arguments.mean_ct, list(data.modes))
     written = write_report(data.with_mean_times(means), arguments.output)
     print(f"{written.page}: {len(data.trainees)} trainees, {len(data.trials)} trials")

@@ -39,8 +39,8 @@ class _NumberedText:
         return _COMMAND.pack(self.command_id, name, encoding, len(body)) + body
 
     @classmethod
-    def unpack(cls, data: bytes):
-        """Return the command that `data` holds.
+    def unpack(cls, data: bytes, keep_bytes: bool = False):
+        """Return the command that `data` holds; `keep_bytes` as of `decode_text`.
 
         Raises:
             InputError: cut short, or not UTF-8.
@@ -51,7 +51,7 @@ class _NumberedText:
         if length > len(data) - _COMMAND.size:
             raise InputError("A COMMAND must be as long as it says.")
         body = data[_COMMAND.size : _COMMAND.size + length]
-        return cls(command_id, unpack_name(name), decode_text(body))
+        return cls(command_id, unpack_name(name, keep_bytes), decode_text(body, keep_bytes))
 
 
 @dataclass(frozen=True)

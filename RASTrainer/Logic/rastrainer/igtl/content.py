@@ -55,8 +55,8 @@ class Transform:
         return _TRANSFORM.pack(*self.columns)
 
     @classmethod
-    def unpack(cls, data: bytes) -> Transform:
-        """Return the transform that `data` holds.
+    def unpack(cls, data: bytes, keep_bytes: bool = False) -> Transform:  # noqa: ARG003
+        """Return the transform that `data` holds; it has no text.
 
         Raises:
             InputError: a wrong length, or a number that is not finite.
@@ -85,8 +85,8 @@ class String:
         return _STRING.pack(encoding, len(data)) + data
 
     @classmethod
-    def unpack(cls, data: bytes) -> String:
-        """Return the text that `data` holds.
+    def unpack(cls, data: bytes, keep_bytes: bool = False) -> String:
+        """Return the text that `data` holds; `keep_bytes` as of `decode_text`.
 
         Raises:
             InputError: cut short, or not UTF-8.
@@ -96,7 +96,7 @@ class String:
         _encoding, length = _STRING.unpack_from(data)
         if length > len(data) - _STRING.size:
             raise InputError("A STRING must be as long as it says.")
-        return cls(decode_text(data[_STRING.size : _STRING.size + length]))
+        return cls(decode_text(data[_STRING.size : _STRING.size + length], keep_bytes))
 
 
 @dataclass(frozen=True)
@@ -130,8 +130,8 @@ class Status:
         return _STATUS.pack(self.code, self.subcode, name) + message + b"\0"
 
     @classmethod
-    def unpack(cls, data: bytes) -> Status:
-        """Return the status that `data` holds.
+    def unpack(cls, data: bytes, keep_bytes: bool = False) -> Status:
+        """Return the status that `data` holds; `keep_bytes` as of `decode_text`.
 
         Raises:
             InputError: cut short, or a message that is not UTF-8.
@@ -140,4 +140,4 @@ class Status:
             raise InputError(f"A STATUS must have at least {_STATUS.size} bytes, not {len(data)}.")
         code, subcode, name = _STATUS.unpack_from(data)
         message = data[_STATUS.size :].partition(b"\0")[0]
-        return cls(code, subcode, unpack_name(name), decode_text(message))
+        return cls(code, subcode, unpack_name(name), decode_text(message, keep_bytes))

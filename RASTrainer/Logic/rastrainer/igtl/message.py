@@ -144,8 +144,10 @@ def read_header(data: bytes) -> Header | None:
     return Header(version, name, unpack_name(device), timestamp, size, checksum)
 
 
-def unpack(header: Header, body: bytes) -> Message:
+def unpack(header: Header, body: bytes, keep_bytes: bool = False) -> Message:
     """Return the message of a header and the body that belongs to it; its checksum is not asked.
+
+    `keep_bytes` keeps texts that are not UTF-8, as `decode_text` says.
 
     Raises:
         InputError: the type is none of ours, or the body does not hold what it says.
@@ -154,7 +156,8 @@ def unpack(header: Header, body: bytes) -> Message:
     if kind is None:
         raise InputError(f"The type of a message must be one of {', '.join(CONTENTS)}.")
     if header.version == 1:
-        return Message(header.device, kind.unpack(body), {}, 0, header.timestamp, 1)
+        content = kind.unpack(body, keep_bytes)
+        return Message(header.device, content, {}, 0, header.timestamp, 1)
     if len(body) < _EXTENDED.size:
         raise InputError("A message of header version 2 must have an extended header.")
     extended_size, index_size, entries_size, message_id = _EXTENDED.unpack_from(body)
@@ -162,12 +165,12 @@ def unpack(header: Header, body: bytes) -> Message:
     if extended_size < _EXTENDED.size or content_end < extended_size:
         raise InputError("The sizes in an extended header must fit the message.")
     index = body[content_end : content_end + index_size]
-    metadata = _unpack_metadata(index, body[content_end + index_size :])
-    content = kind.unpack(body[extended_size:content_end])
+    metadata = _unpack_metadata(index, body[content_end + index_size :], keep_bytes)
+    content = kind.unpack(body[extended_size:content_end], keep_bytes)
     return Message(header.device, content, metadata, message_id, header.timestamp, 2)
 
 
-def _unpack_metadata(index: bytes, entries: bytes) -> dict[str, str]:
+def _unpack_metadata(index: bytes, entries: bytes, keep_bytes: bool) -> dict[str, str]:
     if not index:
         return {}
     if len(index) < _COUNT.size:
@@ -181,6 +184,7 @@ def _unpack_metadata(index: bytes, entries: bytes) -> dict[str, str]:
         value_start, end = start + key_size, start + key_size + value_size
         if end > len(entries):
             raise InputError("The metadata of a message must be as long as they say.")
-        metadata[decode_text(entries[start:value_start])] = decode_text(entries[value_start:end])
+        key = decode_text(entries[start:value_start], keep_bytes)
+        metadata[key] = decode_text(entries[value_start:end], keep_bytes)
         start = end
     return metadata

@@ -60,15 +60,16 @@ class Points:
         return b"".join(_pack_point(point) for point in self.points)
 
     @classmethod
-    def unpack(cls, data: bytes) -> Points:
-        """Return the points that `data` holds.
+    def unpack(cls, data: bytes, keep_bytes: bool = False) -> Points:
+        """Return the points that `data` holds; `keep_bytes` as of `unpack_name`.
 
         Raises:
             InputError: not a whole number of points, or a number that is not finite.
         """
         if len(data) % _POINT.size:
             raise InputError(f"A POINT message must have {_POINT.size} bytes for each point.")
-        return cls(tuple(_unpack_point(fields) for fields in _POINT.iter_unpack(data)))
+        points = (_unpack_point(fields, keep_bytes) for fields in _POINT.iter_unpack(data))
+        return cls(tuple(points))
 
 
 def _pack_point(point: Point) -> bytes:
@@ -82,10 +83,10 @@ def _pack_point(point: Point) -> bytes:
     )
 
 
-def _unpack_point(fields: tuple) -> Point:
+def _unpack_point(fields: tuple, keep_bytes: bool) -> Point:
     label, group, red, green, blue, alpha, x, y, z, diameter, owner = fields
     return Point(
-        label=unpack_name(label),
+        label=unpack_name(label, keep_bytes),
         position=(x, y, z),
         color=(red, green, blue, alpha),
         group=unpack_name(group),

@@ -24,9 +24,14 @@ def pack_name(name: str, size: int, what: str) -> bytes:
     return name.encode("ascii")
 
 
-def unpack_name(field: bytes) -> str:
-    """Return the text before the first NUL; what is not ASCII is replaced, as names are shown."""
-    return field.partition(b"\0")[0].decode("ascii", "replace").rstrip()
+def unpack_name(field: bytes, keep_bytes: bool = False) -> str:
+    """Return the text before the first NUL; what is not ASCII is replaced, as names are shown.
+
+    With `keep_bytes` it is read as UTF-8, as `decode_text` does.
+    """
+    name = field.partition(b"\0")[0]
+    text = decode_text(name, True) if keep_bytes else name.decode("ascii", "replace")
+    return text.rstrip()
 
 
 def encode_text(text: str) -> tuple[int, bytes]:
@@ -45,16 +50,17 @@ def encode_text(text: str) -> tuple[int, bytes]:
         raise InputError("A text must be valid Unicode.") from None
 
 
-def decode_text(data: bytes) -> str:
+def decode_text(data: bytes, keep_bytes: bool = False) -> str:
     """Return the text that `data` holds in UTF-8, without the NULs that some peers append.
 
-    The announced encoding is not asked: Slicer announces ASCII for UTF-8.
+    The announced encoding is not asked: Slicer announces ASCII for UTF-8. With `keep_bytes` each
+    byte that is not UTF-8 becomes a lone surrogate, from which it can be had back.
 
     Raises:
-        InputError: not UTF-8.
+        InputError: not UTF-8, unless `keep_bytes`.
     """
     try:
-        return data.decode("utf-8").rstrip("\0")
+        return data.decode("utf-8", "surrogateescape" if keep_bytes else "strict").rstrip("\0")
     except UnicodeDecodeError:
         raise InputError("A text must be encoded in UTF-8.") from None
 

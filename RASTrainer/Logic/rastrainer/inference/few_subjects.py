@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rastrainer.inference.paired import PairedComparison
 from rastrainer.inference.power import ALPHA, TARGET_POWER, detectable_effect, subjects_needed
-from rastrainer.number_text import percent, significant
+from rastrainer.number_text import p_text, percent, significant
 
 FEW = 20
 """Below this many subjects the limits are said even where nobody asks."""
@@ -45,32 +45,63 @@ def what_it_shows(
     )
 
 
-def what_cannot_be_concluded(n: int) -> list[str]:
-    """Return what a paired comparison of n subjects cannot tell, in sentences."""
+def what_cannot_be_concluded(
+    n: int, comparison: PairedComparison | None = None, order_known: bool = True
+) -> list[str]:
+    """Return what a paired comparison of n subjects cannot tell, in sentences.
+
+    Args:
+        n: Subjects who did both conditions.
+        comparison: Of theirs; None where none could be computed.
+        order_known: Whether it is known which condition each subject did first.
+    """
     if n < 2:
         return ["One subject allows no comparison: nothing can be said of anyone else."]
-    effect = detectable_effect(n)
+    with_period = comparison is not None and comparison.sequences is not None
+    effect = detectable_effect(n, with_period=with_period)
+    test = "a t-test with the period" if with_period else "a paired t-test"
     sentences = [
-        f"With {n} subjects, a paired t-test at the {percent(ALPHA)} level finds a true difference "
+        f"With {n} subjects, {test} at the {percent(ALPHA)} level finds a true difference "
         f"in {percent(TARGET_POWER)} of studies only if it is at least {effect:.1f} times the "
         "standard deviation of the subjects' differences. Smaller ones are mostly missed, and "
         "those found are mostly exaggerated."
     ]
-    smallest = 2.0 ** (1 - n)
-    if smallest > ALPHA:
+    smallest = None
+    if comparison is not None and comparison.ranks is not None:
+        smallest = comparison.ranks.smallest_p
+    if smallest is not None and smallest > ALPHA:
+        name = "rank-sum" if with_period else "signed-rank"
         sentences.append(
-            f"Wilcoxon's signed-rank test cannot reach the {percent(ALPHA)} level with {n} "
-            f"subjects at all: its smallest possible p is {smallest:.3g}."
+            f"Wilcoxon's {name} test cannot reach the {percent(ALPHA)} level with {n} "
+            f"subjects at all: its smallest possible p is {p_text(smallest)}."
         )
     if n < FEW:
-        needed = {size: subjects_needed(size) for size in (0.2, 0.5, 0.8)}
+        small, medium, large = (
+            subjects_needed(size, with_period=with_period) for size in (0.2, 0.5, 0.8)
+        )
         sentences += [
             f"To find a small, medium or large effect (d_z of 0.2, 0.5 or 0.8) as reliably, "
-            f"{needed[0.2]}, {needed[0.5]} or {needed[0.8]} subjects are needed.",
+            f"{small}, {medium} or {large} subjects are needed.",
             "Whether the differences are normally distributed cannot be checked with so few.",
         ]
-    sentences.append(
-        "Subjects who all did the conditions in the same order show practice and fatigue together "
-        "with the difference of the conditions; only a balanced order tells them apart."
+    return [*sentences, _about_order(with_period, order_known)]
+
+
+def _about_order(with_period: bool, order_known: bool) -> str:
+    if with_period:
+        return (
+            "What one condition leaves behind for the next one (carry-over) cannot be told from "
+            "the conditions' difference where it is not alike both ways. The analysis takes it as "
+            "alike; the difference between the sequences shows only a large one, so that not "
+            "finding any is no proof."
+        )
+    if not order_known:
+        return (
+            "Which condition the subjects did first is not in the data: practice and fatigue "
+            "cannot be told from the difference of the conditions, whatever the tests say."
+        )
+    return (
+        "The subjects' orders of the conditions do not allow to separate the effect of the period: "
+        "practice and fatigue show together with the difference of the conditions. Only a balanced "
+        "order of at least four subjects tells them apart."
     )
-    return sentences

@@ -4,35 +4,54 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from rastrainer.errors import InputError
-from rastrainer.inference.student import noncentral_cdf, t_quantile
+from rastrainer.scipy_modules import scipy_module
 
 ALPHA = 0.05
 TARGET_POWER = 0.8
 MOST_SUBJECTS = 10_000
 
 
-def paired_power(effect_dz: float, n: int, alpha: float = ALPHA) -> float:
+def paired_power(
+    effect_dz: float, n: int, alpha: float = ALPHA, with_period: bool = False
+) -> float:
     """Return the probability that n subjects show an effect (two-sided paired t-test).
 
     Args:
-        effect_dz: True mean difference over the true standard deviation of the differences.
-        n: Subjects, at least 2.
+        effect_dz: True mean difference over the true standard deviation of the differences (of
+            subjects with the same order, where the period is separated).
+        n: Subjects, at least 2; 3 with the period.
         alpha: Level of the test.
+        with_period: Whether the effect of the period is separated, which takes a degree of
+            freedom; the orders are taken as balanced.
     """
-    critical = t_quantile(1 - alpha / 2, n - 1)
-    shift = effect_dz * math.sqrt(n)
-    return 1 - noncentral_cdf(critical, n - 1, shift) + noncentral_cdf(-critical, n - 1, shift)
+    stats = scipy_module("stats")
+    dof = n - 1 - with_period
+    critical, shift = stats.t.ppf(1 - alpha / 2, dof), effect_dz * math.sqrt(n)
+    if shift == 0:
+        return alpha
+    shift = abs(shift)
+    above, below = stats.nct.sf(critical, dof, shift), stats.nct.cdf(-critical, dof, shift)
+    # Far out in a tail, scipy gives no number: there, all or nothing lies beyond.
+    return float(np.nan_to_num(above, nan=1.0) + np.nan_to_num(below, nan=0.0))
 
 
-def subjects_needed(effect_dz: float, power: float = TARGET_POWER, alpha: float = ALPHA) -> int:
-    """Return the least number of subjects with this power.
+def subjects_needed(
+    effect_dz: float,
+    power: float = TARGET_POWER,
+    alpha: float = ALPHA,
+    with_period: bool = False,
+) -> int:
+    """Return the least number of subjects with this power; arguments as of `paired_power`.
 
     Raises:
         InputError: the effect is so small that more than 10 000 were needed.
     """
-    low, high = 1, 2
-    while paired_power(effect_dz, high, alpha) < power:
+    low = 1 + with_period
+    high = low + 1
+    while paired_power(effect_dz, high, alpha, with_period) < power:
         low, high = high, 2 * high
         if high > MOST_SUBJECTS:
             raise InputError(
@@ -41,22 +60,22 @@ def subjects_needed(effect_dz: float, power: float = TARGET_POWER, alpha: float 
             )
     while high - low > 1:
         middle = (low + high) // 2
-        if paired_power(effect_dz, middle, alpha) < power:
+        if paired_power(effect_dz, middle, alpha, with_period) < power:
             low = middle
         else:
             high = middle
     return high
 
 
-def detectable_effect(n: int, power: float = TARGET_POWER, alpha: float = ALPHA) -> float:
-    """Return the effect d_z that n subjects show with this power."""
-    low, high = 0.0, 1.0
-    while paired_power(high, n, alpha) < power:
-        low, high = high, 2 * high
-    while high - low > 1e-6 * high:
-        middle = (low + high) / 2
-        if paired_power(middle, n, alpha) < power:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
+def detectable_effect(
+    n: int, power: float = TARGET_POWER, alpha: float = ALPHA, with_period: bool = False
+) -> float:
+    """Return the effect d_z that n subjects show with this power; others as of `paired_power`."""
+
+    def missing(effect: float) -> float:
+        return paired_power(effect, n, alpha, with_period) - power
+
+    high = 1.0
+    while missing(high) < 0:
+        high *= 2
+    return float(scipy_module("optimize").brentq(missing, 0.0, high))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.scipy_modules import scipy_module
 
 MOST_EXACT = 400
 
@@ -51,7 +52,7 @@ def signed_rank_test(differences: np.ndarray, confidence: float = 0.95) -> Signe
             f"The signed-rank test needs 1 to {MOST_EXACT} differences that are not 0."
         )
     # Twice the ranks, since tied ones are halves: whole numbers can be counted.
-    doubled = np.rint(2 * mean_ranks(np.abs(values))).astype(int)
+    doubled = np.rint(2 * scipy_module("stats").rankdata(np.abs(values))).astype(int)
     counts = _distribution(doubled)
     observed = int(doubled[values > 0].sum())
     lower, upper = counts[: observed + 1].sum(), counts[observed:].sum()
@@ -66,13 +67,6 @@ def signed_rank_test(differences: np.ndarray, confidence: float = 0.95) -> Signe
         interval=interval,
         coverage=coverage,
     )
-
-
-def mean_ranks(values: np.ndarray) -> np.ndarray:
-    """Return the ranks from 1, tied values sharing their mean rank, (n,) float."""
-    _, index, counts = np.unique(values, return_inverse=True, return_counts=True)
-    last = np.cumsum(counts)
-    return ((last - counts + 1 + last) / 2)[index]
 
 
 def _distribution(doubled_ranks: np.ndarray) -> np.ndarray:

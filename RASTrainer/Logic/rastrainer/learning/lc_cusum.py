@@ -90,6 +90,12 @@ def lc_cusum_limit(
     return high
 
 
+def fewest_trials(adequate: float, inadequate: float, limit: float) -> int:
+    """Return how many trials show competence at the earliest: successes without a failure."""
+    success, _ = _steps(adequate, inadequate)
+    return math.ceil(limit / success - 1e-12)
+
+
 def signal_probability(
     failure_rate: float, trials: int, adequate: float, inadequate: float, limit: float
 ) -> float:

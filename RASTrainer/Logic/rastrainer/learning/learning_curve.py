@@ -1,4 +1,7 @@
-"""The power law of practice: y = a·n^−b + c over the trials n = 1, 2, …"""
+"""The power law of practice: y = a·n^−b + c over the trials n = 1, 2, …
+
+The curve describes; whether there is learning at all is tested in `rastrainer.learning.trend`.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +21,14 @@ RATES = np.geomspace(0.02, 4.0, 200)
 class LearningCurve:
     """A fitted power law (Newell and Rosenbloom 1981), in the unit of what was measured.
 
+    Of few trials the plateau is a guess: it lies beyond them.
+
     Attributes:
         gain: a, how much the first trial is above the plateau.
         rate: b, how fast it falls.
         plateau: c, where it leads.
         residual_sd: Standard deviation of the trials about the curve, divided by n − 3.
         r_squared: Share of the variance that the curve explains.
-        has_learned: Whether the curve is better supported than no change at all (AICc).
     """
 
     gain: float
@@ -32,7 +36,6 @@ class LearningCurve:
     plateau: float
     residual_sd: float
     r_squared: float
-    has_learned: bool
 
     def at(self, trial: float) -> float:
         """Return the value of the curve at a trial, the first is 1."""
@@ -65,7 +68,6 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
         plateau=plateau,
         residual_sd=math.sqrt(squares / (len(y) - 3)),
         r_squared=1 - squares / total if total > 0 else 0.0,
-        has_learned=gain > 0 and _aicc(squares, len(y), 4) < _aicc(total, len(y), 2),
     )
 
 
@@ -83,11 +85,3 @@ def _linear_fits(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, 
     plateau = np.where(without, 0.0, plateau)
     squares = ((y - gain[:, None] * x - plateau[:, None]) ** 2).sum(axis=1)
     return gain, plateau, squares
-
-
-def _aicc(squares: float, n: int, parameters: int) -> float:
-    """Return Akaike's criterion for few data; `parameters` counts the variance too."""
-    if n - parameters - 1 <= 0:
-        return math.inf
-    correction = 2 * parameters * (parameters + 1) / (n - parameters - 1)
-    return n * math.log(max(squares, 1e-300) / n) + 2 * parameters + correction

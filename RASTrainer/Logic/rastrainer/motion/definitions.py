@@ -146,17 +146,19 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             "throughput_bit_s",
             "Throughput",
             "bit/s",
-            "Mean of log2(De/We + 1) over movement time, We = 4.133 SD of the end points along the "
-            "task axes.",
-            "ISO 9241-411; MacKenzie 1992",
+            "Mean over the movements of log2(De/We + 1) over movement time, We = 4.133 times the "
+            "RMS distance of the end points from their targets along the task axes (ISO: SD about "
+            "their own mean, which a constant offset leaves at 0).",
+            "after ISO 9241-411; MacKenzie 1992",
             1,
         ),
         MetricDefinition(
             "effective_width_mm",
             "Effective width of the targets",
             "mm",
-            "We = 4.133 SD of the end points along the task axes.",
-            "ISO 9241-411",
+            "We = 4.133 times the RMS distance of the end points from their targets along the task "
+            "axes.",
+            "after ISO 9241-411",
             -1,
         ),
         MetricDefinition(
@@ -214,7 +216,8 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             "refused_touches",
             "Refused touches",
             "",
-            f"Touches farther than {ACCEPTANCE_MM:g} mm from the fiducial that was due.",
+            f"Touches farther than {ACCEPTANCE_MM:g} mm from the fiducial that was due, or above "
+            "the skin where a touch has to be on it.",
             OWN,
             -1,
         ),

@@ -6,11 +6,12 @@ from typing import Any
 
 import slicer
 
-from rastrainer.errors import InputError
 from rastrainer.panels.cancelable_work import CancelableWork
+from rastrainer.panels.fitted_views import fitThreeDViews
 from rastrainer.panels.setup_form import SetUpForm
 from rastrainer.panels.widgets import setSentence, setUsable
 from rastrainer.scenario import Scenario
+from rastrainer.slicer.sample_download import downloadSample
 from rastrainer.slicer.scenario_maker import ScenarioWishes
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
@@ -42,13 +43,13 @@ class NewScenarioPanel:
 
     def loadSampleData(self) -> None:
         """Download an MRI through Slicer's Sample Data, and choose it."""
-        with slicer.util.tryWithErrorDisplay(
-            _("The sample could not be downloaded; check the network."), waitCursor=True
-        ):
+        with slicer.util.tryWithErrorDisplay(_("There is no sample."), waitCursor=True):
             logic = slicer.util.getModuleLogic("SampleData")
-            volume = logic.downloadSample(SAMPLE)
+            volume = self._work.run(
+                lambda tell: downloadSample(slicer.mrmlScene, logic, SAMPLE, tell)
+            )
             if volume is None:
-                raise InputError(_("Sample Data has brought no volume."))
+                return
             application = slicer.app.applicationLogic()
             application.GetSelectionNode().SetActiveVolumeID(volume.GetID())
             application.PropagateVolumeSelection()
@@ -71,7 +72,7 @@ class NewScenarioPanel:
                     "change its segment in the Segment Editor; then make the scenario."
                 )
                 self._tell(" ".join([told, *warnings]))
-                slicer.util.resetThreeDViews()
+                fitThreeDViews()
 
     def check(self) -> None:
         """Tell at once whether set-up, plan and fiducials can be used."""
@@ -108,6 +109,7 @@ class NewScenarioPanel:
             threshold=_chosen(ui.thresholdSpinBox),
             cutMm=_chosen(ui.cutSpinBox),
             hasSkull=ui.skullCheckBox.checked,
+            hasVolume=ui.volumeCheckBox.checked,
             setUp=self._setUp.setUp(),
             targets=ui.plannedTargetsComboBox.currentNode(),
             trajectory=ui.plannedTrajectoryComboBox.currentNode(),

@@ -7,18 +7,19 @@ from pathlib import Path
 import qt
 import slicer
 
-from rastrainer.panels.trainees_panel import STUDY_SETTING
 from rastrainer.scenario_library import user_library
 from rastrainer.slicer.session import Places
-from rastrainer.slicer.simulator_place import defaultPackage, pythonSlicer
+from rastrainer.slicer.settings import STUDY, Settings
+from rastrainer.slicer.simulator_package import SimulatorPackage
+from rastrainer.slicer.simulator_place import pythonSlicer
 
 
-def findPlaces(moduleFile: Path) -> Places:
+def findPlaces(moduleFile: Path, settings: Settings) -> Places:
     """Return the places for a module whose Python file this is."""
     paths = qt.QStandardPaths
     documents = Path(paths.writableLocation(paths.DocumentsLocation))
     data = Path(paths.writableLocation(paths.GenericDataLocation))
-    study = slicer.util.settingsValue(STUDY_SETTING, "")
+    study = settings.get(STUDY)
     return Places(
         assets=assetsFolder(moduleFile),
         python=pythonSlicer(Path(slicer.app.slicerHome)),
@@ -26,7 +27,7 @@ def findPlaces(moduleFile: Path) -> Places:
         study=Path(study) if study else documents / "RASTrainer" / "study.db",
         records=Path.home() / "RASTrainer" / "trials",
         library=user_library(),
-        package=defaultPackage(moduleFile.parent),
+        package=SimulatorPackage.of(moduleFile.parent),
     )
 
 

@@ -7,19 +7,22 @@ from typing import Any
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
     RED,
     chosenData,
     fillComboBox,
-    light,
     millimeters,
+    setLight,
+    setText,
     setUsable,
 )
 from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.placing import startPlacing
 from rastrainer.slicer.plan_desk import Plan, targetsOf
+from rastrainer.slicer.plan_points import whyNotRemoved
 from rastrainer.slicer.registration_input import snapshot
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
@@ -35,10 +38,15 @@ class PlanPanel:
         self._offered: tuple = ()
         self._seen: tuple = ()
         self._known: tuple[Plan | None, str] = (None, "")
+        self._keeping = CancelableWork(
+            lambda _sentence: None, lambda _step, _share: None, self.showState
+        )
         ui.placeTargetButton.connect("clicked()", self.placeTarget)
         ui.placeTrajectoryButton.connect("clicked()", self.placeTrajectory)
+        ui.removePlanPointButton.connect("clicked()", self.removePoint)
+        ui.undoPlanButton.connect("clicked()", self.undo)
         ui.sendPlanButton.connect("clicked()", self.send)
-        ui.keepPlanButton.connect("clicked()", self.keep)
+        ui.keepPlanButton.connect("clicked()", self.keepOrCancel)
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
         ui.planTargetComboBox.connect("activated(int)", self.showState)
         self._listening = (
@@ -51,43 +59,65 @@ class PlanPanel:
         self.showState()
 
     def close(self) -> None:
-        """Listen to the session no more."""
+        """Break off what is under way, and listen to the session no more."""
+        self._keeping.cancel()
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
     def placeTarget(self) -> None:
-        """Let the next click in a view place the target."""
+        """Let the next click in a view place a target, beside those that are placed."""
         with slicer.util.tryWithErrorDisplay(_("No target can be placed.")):
-            self._place(self._desk.newTarget())
+            self._place(self._desk.points.newTarget())
 
     def placeTrajectory(self) -> None:
         """Let the next two clicks place a trajectory, from its entry to the target."""
         with slicer.util.tryWithErrorDisplay(_("No trajectory can be placed.")):
-            self._place(self._desk.newTrajectory())
+            self._place(self._desk.points.newTrajectory())
+
+    def removePoint(self) -> None:
+        """Remove the chosen target, or the last point of a trajectory."""
+        with slicer.util.tryWithErrorDisplay(_("The point was not removed.")):
+            self._desk.points.remove(self._ui.planComboBox.currentNode(), self._row())
+            self.showState()
+
+    def undo(self) -> None:
+        """Take the last placing or removal back."""
+        with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
+            self._desk.points.undo()
+            self.showState()
 
     def send(self) -> None:
         """Show the plan in the simulator and ask whether the robot can carry it out."""
         with slicer.util.tryWithErrorDisplay(_("The plan was not sent.")):
             self._desk.send(self._ui.planComboBox.currentNode(), self._row())
 
-    def keep(self) -> None:
-        """Copy the scenario that is chosen above with this plan, and go on with the copy."""
-        with slicer.util.tryWithErrorDisplay(_("The plan was not kept."), waitCursor=True):
+    def keepOrCancel(self) -> None:
+        """Copy the scenario chosen above with this plan and go on with the copy, or break off."""
+        if self._keeping.isUnderWay:
+            self._keeping.cancel()
+            return
+        with slicer.util.tryWithErrorDisplay(_("The plan was not kept.")):
             ui = self._ui
-            scenario = self._session.scenarioFiles.keepPlan(
-                chosenData(ui.scenarioComboBox),
-                ui.planTitleLineEdit.text.strip(),
-                ui.planComboBox.currentNode(),
-                ui.programPathLineEdit.currentPath,
+            scenario = self._keeping.run(
+                lambda tell: self._session.scenarioFiles.keepPlan(
+                    chosenData(ui.scenarioComboBox),
+                    ui.planTitleLineEdit.text.strip(),
+                    ui.planComboBox.currentNode(),
+                    ui.programPathLineEdit.currentPath,
+                    tell,
+                )
             )
-            self._session.scenarioMade.emit(scenario.name)
+            if scenario is not None:
+                self._session.scenarioMade.emit(scenario.name)
 
     def showState(self, *_arguments: Any) -> None:
         """Show the plan as it stands; called about ten times a second."""
         plan, problem = self._read()
+        self._desk.follow(plan)
         ui = self._ui
-        ui.planWorldText.text = problem if plan is None else _place(plan)
-        ui.planTreText.text = "–" if plan is None else _expected(plan)
+        self._showPointButtons()
+        setText(ui.planWorldText, problem if plan is None else _place(plan))
+        setText(ui.planTreText, "–" if plan is None else _expected(plan))
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setUsable(
             ui.sendPlanButton,
@@ -95,20 +125,36 @@ class PlanPanel:
             _("Show the plan to the trainee, and ask whether the robot can carry it out."),
             problem or _("Connect to the simulator first."),
         )
+        isKeeping = self._keeping.isUnderWay
+        ui.keepPlanButton.text = _("Cancel") if isKeeping else _("Keep in a new scenario")
         setUsable(
             ui.keepPlanButton,
-            ui.planComboBox.currentNode() is not None,
+            isKeeping or ui.planComboBox.currentNode() is not None,
             _("Copy the scenario above with this plan in the place of its targets or trajectory."),
             _("Place a target or a trajectory, or choose one."),
         )
         color = {None: GRAY, True: GREEN, False: RED}[self._desk.isReachable]
         sentence = self._desk.sentence
-        ui.reachableText.text = f"{light(color)} {sentence}" if sentence else "–"
-        isTold = self._desk.trueErrorMm is not None
-        ui.planTrueText.text = (
-            millimeters(self._desk.trueErrorMm)
-            if isTold
-            else _("told once the trial is scored and the plan is shown")
+        setLight(ui.reachableLight, color)
+        setText(ui.reachableText, sentence or "–")
+        true = self._desk.trueErrorMm
+        untold = _("told once the trial is scored and the plan is shown")
+        setText(ui.planTrueText, untold if true is None else millimeters(true))
+
+    def _showPointButtons(self) -> None:
+        ui = self._ui
+        problem = whyNotRemoved(ui.planComboBox.currentNode())
+        setUsable(
+            ui.removePlanPointButton,
+            not problem,
+            _("Remove the chosen target, or the last point of a trajectory."),
+            problem,
+        )
+        setUsable(
+            ui.undoPlanButton,
+            self._desk.points.canUndo,
+            _("Take back the last point that was placed or removed."),
+            _("Nothing was placed or removed."),
         )
 
     def _read(self) -> tuple[Plan | None, str]:

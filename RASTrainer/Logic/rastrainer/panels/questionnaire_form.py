@@ -7,7 +7,7 @@ from typing import Any
 import qt
 
 from rastrainer.errors import InputError
-from rastrainer.panels.widgets import chosenData
+from rastrainer.panels.widgets import chosenData, textLabel
 from rastrainer.questionnaires.questionnaire import Questionnaire
 from rastrainer.slicer.translation import _
 
@@ -31,7 +31,7 @@ class QuestionnaireForm:
         self._clear()
         if questionnaire is None:
             return
-        head = qt.QLabel(
+        head = textLabel(
             _(
                 "{title}: {lowest} is {low}, {highest} is {high}. Read the wording from its form."
             ).format(
@@ -42,13 +42,11 @@ class QuestionnaireForm:
                 high=questionnaire.anchors[1],
             )
         )
-        head.wordWrap = True
         layout = self._widget.layout()
         layout.addRow(head)
         self._parts.append(head)
         for number, item in enumerate(questionnaire.items, start=1):
-            label, box = qt.QLabel(f"{number}. {item.topic}"), qt.QComboBox()
-            label.wordWrap = True
+            label, box = textLabel(f"{number}. {item.topic}"), qt.QComboBox()
             box.setObjectName(f"{item.name}ComboBox")
             box.addItem("–", "")
             for mark in questionnaire.marks:

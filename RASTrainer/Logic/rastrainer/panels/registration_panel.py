@@ -8,20 +8,23 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.panels.kept_choices import keepChecked, keepChosen
+from rastrainer.panels.plain_text import buttonTitle
 from rastrainer.panels.widgets import (
     chosenData,
-    fillComboBox,
     fillTable,
     setChecked,
     setSentence,
     setUsable,
+    textLabel,
 )
 from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration
-from rastrainer.slicer.placing import jumpTo
 from rastrainer.slicer.registration_desk import Comparison
 from rastrainer.slicer.registration_nodes import isApplied, setApplied
 from rastrainer.slicer.registration_remedies import Remedy
 from rastrainer.slicer.session import Session
+from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
+from rastrainer.slicer.slice_views import jumpTo
 from rastrainer.slicer.translation import _
 
 TITLES = {RIGID: _("Rigid"), SIMILARITY: _("Similarity"), AFFINE: _("Affine")}
@@ -35,7 +38,8 @@ class RegistrationPanel:
         self._desk = session.registration
         self._remedyWidgets: list[Any] = []
         entries = [(title, kind) for kind, title in TITLES.items()]
-        fillComboBox(ui.kindComboBox, entries, RIGID)
+        keepChosen(ui.kindComboBox, entries, session.settings, FIT)
+        self._desk.kind = chosenData(ui.kindComboBox)
         ui.kindComboBox.connect("activated(int)", self._chooseKind)
         for combo in (ui.movingComboBox, ui.fixedComboBox):
             combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
@@ -45,6 +49,7 @@ class RegistrationPanel:
         ui.undoButton.connect("clicked()", self.undo)
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
         ui.headColoredCheckBox.connect("toggled(bool)", self._desk.setHeadColored)
+        keepChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
         self._desk.changed.connect(self._show)
         self._show()
 
@@ -141,13 +146,13 @@ class RegistrationPanel:
             widget.deleteLater()
         self._remedyWidgets = []
         for number, remedy in enumerate(remedies):
-            text = qt.QLabel("⚠ " + remedy.warning.message)
+            text = textLabel("⚠ " + remedy.warning.message)
             text.setObjectName(f"warning{number}Text")
-            text.wordWrap = True
             self._add(layout, text)
             if remedy.title:
-                button = qt.QPushButton(remedy.title)
+                button = qt.QPushButton(buttonTitle(remedy.title))
                 button.setObjectName(f"remedy{number}Button")
+                button.minimumWidth = 1
                 button.toolTip = _("Change the pairs so and register again; Undo takes it back.")
                 button.connect("clicked()", self._applying(remedy))
                 self._add(layout, button)

@@ -9,12 +9,14 @@ import qt
 import slicer
 
 from rastrainer.panels.cancelable_work import CancelableWork
-from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setUsable
+from rastrainer.panels.fitted_views import fitSliceViews, fitThreeDViews
+from rastrainer.panels.save_dialog import askWhereToSave
+from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setText, setUsable
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario_library import ListedScenario
 from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.placing import jumpTo
 from rastrainer.slicer.session import Session
+from rastrainer.slicer.settings import SCENARIO, TASK
 from rastrainer.slicer.translation import _
 
 PICTURE_HEIGHT = 180
@@ -28,34 +30,44 @@ class ScenarioPanel:
         self._session = session
         self._desk = session.scenario
         self._work = CancelableWork(self._tellOfHead, self._showProgress, self._showUsable)
+        self._writing = CancelableWork(self._tell, lambda _step, _share: None, self._showUsable)
+        self._adding = CancelableWork(self._tell, self._showAdding, self._showUsable)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)
+        for combo in (ui.scenarioComboBox, ui.taskComboBox):
+            combo.connect("activated(int)", self._keepChoice)
         ui.showScenarioButton.connect("clicked()", self.show)
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self.showRobot)
         ui.useHeadButton.connect("clicked()", self.useHeadOrCancel)
-        ui.exportScenarioButton.connect("clicked()", self.give)
-        ui.importScenarioButton.connect("clicked()", self.takeIn)
+        ui.exportScenarioButton.connect("clicked()", self.giveOrCancel)
+        ui.importScenarioButton.connect("clicked()", self.takeInOrCancel)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         session.link.statusChanged.connect(self._showUsable)
         session.training.answered.connect(self._tell)
         session.scenarioMade.connect(self.goOnWith)
-        self._fill()
+        session.images.shown.connect(self._frameImages)
+        session.images.problemFound.connect(self._tell)
+        self._fill(session.settings.get(SCENARIO))
 
     def close(self) -> None:
         """Break off what is under way, and listen to the session no more."""
         self._work.cancel()
+        self._writing.cancel()
+        self._adding.cancel()
         self._session.link.statusChanged.disconnect(self._showUsable)
         self._session.training.answered.disconnect(self._tell)
         self._session.scenarioMade.disconnect(self.goOnWith)
+        self._session.images.shown.disconnect(self._frameImages)
+        self._session.images.problemFound.disconnect(self._tell)
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
         with slicer.util.tryWithErrorDisplay(_("The scenario cannot be shown."), waitCursor=True):
             name = chosenData(self._ui.scenarioComboBox)
             self._desk.show(name, self._session.task)
-            jumpTo(slicer.mrmlScene, self._desk.find(name).target_position)
-            slicer.util.resetThreeDViews()
+            self._session.slices.show(self._desk.find(name).target_position)
+            fitThreeDViews()
 
     def loadIntoSimulator(self) -> None:
         """Let the simulator go on with the chosen head."""
@@ -68,6 +80,8 @@ class ScenarioPanel:
         """Show the robot in the 3D view, or hide it."""
         with slicer.util.tryWithErrorDisplay(_("The robot cannot be shown.")):
             self._desk.setRobotShown(shown)
+            if shown:
+                fitThreeDViews()
 
     def useHeadOrCancel(self) -> None:
         """Look at a model, or at the skin of a volume, as the head, or break off."""
@@ -79,51 +93,70 @@ class ScenarioPanel:
             used = self._work.run(lambda tell: self._desk.useHead(node, tell))
             if used is not None:
                 model, warnings = used
+                fitThreeDViews()
                 told = _("{name} is the head now; the simulator keeps its own.")
                 self._tellOfHead(" ".join([told.format(name=model.GetName()), *warnings]))
 
-    def takeIn(self) -> None:
-        """Take a scenario in that comes as a zip file, and choose it."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not added."), waitCursor=True):
+    def takeInOrCancel(self) -> None:
+        """Take a scenario in that comes as a zip file, and choose it, or break off."""
+        if self._adding.isUnderWay:
+            self._adding.cancel()
+            return
+        with slicer.util.tryWithErrorDisplay(_("The scenario was not added.")):
             path = qt.QFileDialog.getOpenFileName(
                 slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
             )
-            if path:
-                scenario = self._session.scenarioFiles.takeIn(Path(path))
-                self._fill(scenario.name)
-                self._tell(_("{title} is added.").format(title=scenario.title))
+            files = self._session.scenarioFiles
+            added = self._adding.run(lambda tell: files.takeIn(Path(path), tell)) if path else None
+            if added is not None:
+                self._fill(added.name)
+                self._tell(_("{title} is added.").format(title=added.title))
 
-    def give(self) -> None:
-        """Write the chosen scenario as a zip file."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not saved."), waitCursor=True):
+    def giveOrCancel(self) -> None:
+        """Write the chosen scenario as a zip file, or break off."""
+        if self._writing.isUnderWay:
+            self._writing.cancel()
+            return
+        with slicer.util.tryWithErrorDisplay(_("The scenario was not saved.")):
             name = chosenData(self._ui.scenarioComboBox)
             keepsFace = not self._ui.removeFaceCheckBox.checked
             keepsNames = not self._ui.removeNamesCheckBox.checked
             # A file that is called as the patient would tell the name, too.
             proposed = f"{name}.zip" if keepsNames else "head.zip"
-            path = qt.QFileDialog.getSaveFileName(
-                slicer.util.mainWindow(), _("Save the scenario"), proposed, "Zip (*.zip)"
-            )
-            if path:
+            path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
+            if path is not None:
                 own = self._ui.programPathLineEdit.currentPath
-                taken = self._session.scenarioFiles.give(
-                    name, Path(path), keepsFace, keepsNames, own
+                taken = self._writing.run(
+                    lambda tell: self._session.scenarioFiles.give(
+                        name, path, keepsFace, keepsNames, own, tell
+                    )
                 )
-                self._tell(_("{path} is written.").format(path=path) + f" {taken}")
+                if taken is not None:
+                    self._tell(_("{path} is written.").format(path=path) + f" {taken}")
 
     def goOnWith(self, name: str) -> None:
         """Choose a scenario that has just been made, show it, and have the simulator take it."""
+        self._ui.scenarioCollapsibleButton.collapsed = False
         self._fill(name)
+        self._keepChoice()
         self.show()
         if self._session.link.status.state is LinkState.CONNECTED:
             self.loadIntoSimulator()
+
+    def _frameImages(self, _node: Any) -> None:
+        """Let the slice views show the whole images that have come, where they were before."""
+        fitSliceViews()
+        self._session.slices.showAgain()
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:
             self._tellOfHead(f"{step}: {100 * share:.0f} %")
 
+    def _showAdding(self, step: str, _share: float) -> None:
+        self._tell(step)
+
     def _tellOfHead(self, sentence: str) -> None:
-        self._ui.otherHeadText.text = sentence
+        setText(self._ui.otherHeadText, sentence)
 
     def showState(self) -> None:
         """Show what may have changed in the scene meanwhile."""
@@ -156,7 +189,8 @@ class ScenarioPanel:
         tasks = [(task.title, task.name) for task in scenario.tasks]
         known = [task for _title, task in tasks]
         first = next((task for task in known if task != TRIAL_RUN), known[0])
-        chosen = self._session.task if self._session.task in known else first
+        last = self._session.task or self._session.settings.get(TASK)
+        chosen = last if last in known else first
         fillComboBox(self._ui.taskComboBox, tasks, chosen)
         self._chooseTask()
 
@@ -177,11 +211,20 @@ class ScenarioPanel:
             )
         )
 
+    def _keepChoice(self, _index: int = 0) -> None:
+        settings, ui = self._session.settings, self._ui
+        settings.set(SCENARIO, chosenData(ui.scenarioComboBox))
+        settings.set(TASK, chosenData(ui.taskComboBox))
+
     def _showUsable(self, *_arguments: Any) -> None:
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         isUsable = self._ui.taskComboBox.enabled
         broken = _("Choose a scenario that can be used.")
         self._ui.showScenarioButton.enabled = self._ui.exportScenarioButton.enabled = isUsable
+        isWriting = self._writing.isUnderWay
+        self._ui.exportScenarioButton.text = _("Cancel") if isWriting else _("Save as a zip file")
+        isAdding = self._adding.isUnderWay
+        self._ui.importScenarioButton.text = _("Cancel") if isAdding else _("Add from a zip file")
         setUsable(
             self._ui.loadScenarioButton,
             isConnected and isUsable,
@@ -200,4 +243,4 @@ class ScenarioPanel:
 
     def _tell(self, sentence: str) -> None:
         if sentence:
-            self._ui.scenarioText.text = sentence
+            setText(self._ui.scenarioText, sentence)

@@ -10,11 +10,25 @@ import slicer
 
 from rastrainer.ctps import CTPS_WARNING
 from rastrainer.errors import InputError
-from rastrainer.panels.widgets import chosenData, fillComboBox, fillTable, setSentence, setUsable
+from rastrainer.panels.cancelable_work import CancelableWork
+from rastrainer.panels.fitted_views import fitThreeDViews
+from rastrainer.panels.save_dialog import askWhereToSave
+from rastrainer.panels.shown_results import TABLES, showTable
+from rastrainer.panels.widgets import (
+    chosenData,
+    fillComboBox,
+    fillTable,
+    setChecked,
+    setSentence,
+    setText,
+    setUsable,
+)
 from rastrainer.report.report import write_report
 from rastrainer.report.study_data import read_study_data
+from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.score_board import (
     Standing,
+    ctpsRows,
     motionRows,
     scoreRows,
     showMotion,
@@ -35,89 +49,113 @@ class ScorePanel:
         self._ui = ui
         self._session = session
         self._trainees = session.trainees
+        self._work = CancelableWork(self._tell, self._showProgress, self._showUsable)
+        self._newTrial = ""
+        self._worst = ""
         ui.trialComboBox.connect("activated(int)", self._showTrial)
         ui.showTablesButton.connect("clicked()", self.showTables)
         ui.exportScoresButton.connect("clicked()", self.exportScores)
         ui.reportButton.connect("clicked()", self.writeReport)
-        ui.replayButton.connect("clicked()", self.replay)
+        ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
+        ui.replayButton.connect("clicked()", self.replayOrCancel)
         ui.worstTouchButton.connect("clicked()", self.replayWorstTouch)
         self._trainees.changed.connect(self._show)
-        session.trials.trialScored.connect(self._showNewTrial)
+        session.trials.trialScored.connect(self._noteNewTrial)
+        session.replay.feedbackFound.connect(self._showFeedback)
         self._show()
 
     def close(self) -> None:
-        """Listen to the session no more."""
+        """Break off what is under way, and listen to the session no more."""
+        self._work.cancel()
         self._trainees.changed.disconnect(self._show)
-        self._session.trials.trialScored.disconnect(self._showNewTrial)
+        self._session.trials.trialScored.disconnect(self._noteNewTrial)
+        self._session.replay.feedbackFound.disconnect(self._showFeedback)
 
     def showTables(self) -> None:
-        """Put what is shown here into table nodes of the scene."""
+        """Show what stands here as tables of the scene, or give the user's layout back."""
+        if not self._ui.showTablesButton.checked:
+            self._session.layout.giveBack(TABLES)
+            return
         with slicer.util.tryWithErrorDisplay(_("The tables cannot be shown.")):
             trial = self._trial()
             if trial is None:
                 return
-            showScore(slicer.mrmlScene, scoreRows(trial, self._session.cohort))
+            rows = [*scoreRows(trial), *ctpsRows(trial, self._session.cohort)]
             showStandings(slicer.mrmlScene, self._standings(trial))
             showMotion(slicer.mrmlScene, motionRows(trial))
-            self._ui.scoreMessageText.text = _(
-                "Score, Comparison and Motion metrics are tables of the scene now."
-            )
+            showTable(self._session.layout, showScore(slicer.mrmlScene, rows))
+            self._tell(_("Score, Comparison and Motion metrics are tables of the scene now."))
 
     def exportScores(self) -> None:
         """Write all trials of the study as a table."""
-        caption = _("Export all trials")
-        path = qt.QFileDialog.getSaveFileName(
-            slicer.util.mainWindow(), caption, "trials.csv", "CSV (*.csv)"
-        )
-        if path:
+        path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
+        if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The trials were not exported.")):
-                count, leftOut = self._trainees.exportHistories(Path(path))
-                self._ui.scoreMessageText.text = _(
-                    "{count} trials are written to {path}. Trainees left out because they did not "
-                    "agree to research: {leftOut}."
-                ).format(count=count, path=path, leftOut=leftOut)
+                written = self._work.run(lambda tell: self._trainees.exportHistories(path, tell))
+                if written is not None:
+                    told = _(
+                        "{count} trials are written to {path}. Trainees left out because they did "
+                        "not agree to research: {leftOut}."
+                    )
+                    self._tell(told.format(count=written[0], path=path, leftOut=written[1]))
 
     def writeReport(self) -> None:
         """Write the report of the whole study into a folder, and open it."""
         caption = _("Folder for the report")
         folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
         if folder:
-            with slicer.util.tryWithErrorDisplay(_("The report was not written."), waitCursor=True):
-                data = read_study_data(self._session.studyPath)
-                page = write_report(data, Path(folder)).page
-                self._ui.scoreMessageText.text = _("The report is {path}.").format(path=page)
-                qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
+            with slicer.util.tryWithErrorDisplay(_("The report was not written.")):
+                study = self._session.studyPath
+                page = self._work.run(
+                    lambda tell: inBackground(lambda _tell: _reportOn(study, Path(folder)), tell)
+                )
+                if page is not None:
+                    self._tell(_("The report is {path}.").format(path=page))
+                    qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
 
-    def replay(self) -> None:
-        """Show the trial again in the 3D view."""
-        with slicer.util.tryWithErrorDisplay(_("The trial is not shown."), waitCursor=True):
-            self._session.replay.show(self._trial())
+    def replayOrCancel(self) -> None:
+        """Show the trial again in the 3D view, or break off."""
+        if self._work.isUnderWay:
+            self._work.cancel()
+            return
+        with slicer.util.tryWithErrorDisplay(_("The trial is not shown.")):
+            trial = self._trial()
+            self._work.run(lambda tell: self._session.replay.show(trial, tell))
+            fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
         """Show again how the worst touch came about."""
-        with slicer.util.tryWithErrorDisplay(_("The touch is not shown."), waitCursor=True):
-            self._session.replay.showWorstTouch(self._trial())
+        with slicer.util.tryWithErrorDisplay(_("The touch is not shown.")):
+            trial = self._trial()
+            self._work.run(lambda tell: self._session.replay.showWorstTouch(trial, tell))
 
     def showState(self) -> None:
-        """Show where the replay stands, which plays by itself."""
-        setSentence(self._ui.replayText, self._session.replay.sentence)
+        """Show where the replay stands, which plays by itself, and whether tables are shown."""
+        setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
+        if not self._work.isUnderWay:
+            setSentence(self._ui.replayText, self._session.replay.sentence)
 
-    def _showNewTrial(self, trial: ScoredTrial) -> None:
-        """Show a trial that has just been scored, if its trainee is the chosen one."""
+    def _fold(self, isFolded: bool) -> None:
+        if isFolded:
+            self._session.layout.giveBack(TABLES)
+
+    def _noteNewTrial(self, trial: ScoredTrial) -> None:
+        """Note a trial of the chosen trainee that has just been scored: it is shown next."""
         record = trial.analysis.record
         if record.trainee == self._trainees.chosen:
-            self._show(record.trial_id)
+            self._newTrial = record.trial_id
 
-    def _show(self, chosen: str = "") -> None:
+    def _show(self) -> None:
         try:
             history = self._trainees.history()
         except InputError as error:
-            self._ui.scoreMessageText.text = str(error)
+            self._tell(str(error))
             return
         entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
         entries.reverse()
         known = [trialId for _title, trialId in entries]
-        wanted = chosen or chosenData(self._ui.trialComboBox)
+        wanted = self._newTrial or chosenData(self._ui.trialComboBox)
+        self._newTrial = ""
         fillComboBox(
             self._ui.trialComboBox,
             entries,
@@ -131,61 +169,85 @@ class ScorePanel:
             trial = self._trial()
             beside = [] if trial is None else self._standings(trial)
         except InputError as error:
-            ui.scoreMessageText.text = str(error)
+            self._tell(str(error))
             return
-        scores = [] if trial is None else scoreRows(trial, self._session.cohort)
+        scores = [] if trial is None else scoreRows(trial)
+        ctps = [] if trial is None else ctpsRows(trial, self._session.cohort)
         motion = [] if trial is None else motionRows(trial)
         fillTable(
             ui.scoreTable,
-            ((row.title, row.text, _shortened(row.note)) for row in scores),
+            ((row.title, row.text, row.note) for row in scores),
             [row.note for row in scores],
         )
+        fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
+        setSentence(ui.ctpsText, CTPS_WARNING if ctps else "")
         fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
         fillTable(
             ui.motionTable,
             ((row.title, row.text) for row in motion),
             [row.note for row in motion],
         )
-        hasCtps = any(row.note == CTPS_WARNING for row in scores)
-        setSentence(ui.ctpsText, CTPS_WARNING if hasCtps else "")
-        ui.scoreMessageText.text = (
+        self._tell(
             _("Choose a trainee with a scored trial.")
             if trial is None
             else _("{trainee}, {task}, {mode}").format(
                 trainee=trial.record.trainee, task=trial.record.task, mode=trial.record.mode
             )
         )
+        self._showFeedback()
+
+    def _showFeedback(self) -> None:
+        """Show what there is to say about the trial, as soon as that is known."""
+        sentences, self._worst = [], ""
+        try:
+            trial = self._trial()
+            feedback = None if trial is None else self._session.replay.feedback(trial)
+        except InputError as error:
+            sentences = [str(error)]
+        else:
+            if feedback is not None:
+                sentences, self._worst = feedback.sentences, feedback.worst.label
+            elif trial is not None:
+                sentences = [_("What there is to say about the trial is being worked out.")]
+        setSentence(self._ui.feedbackText, "\n".join(sentences))
+        self._showUsable()
+
+    def _showUsable(self) -> None:
+        ui, isAtWork = self._ui, self._work.isUnderWay
+        hasTrial = bool(chosenData(ui.trialComboBox))
+        reason = _("Choose a trial first.")
+        busy = _("Wait until what was begun is done.")
         setUsable(
             ui.showTablesButton,
-            trial is not None,
+            hasTrial,
             _("Put score, comparison and motion metrics into table nodes of the scene."),
-            _("Choose a trial first."),
+            reason,
         )
-        self._showFeedback(trial)
-
-    def _showFeedback(self, trial: StoredTrial | None) -> None:
-        ui, sentences, worst = self._ui, [], ""
-        if trial is not None:
-            try:
-                feedback = self._session.replay.feedback(trial)
-            except InputError as error:
-                sentences = [str(error)]
-            else:
-                sentences, worst = feedback.sentences, feedback.worst.label
-        setSentence(ui.feedbackText, "\n".join(sentences))
-        hasTrial, reason = trial is not None, _("Choose a trial first.")
+        ui.replayButton.text = _("Cancel") if isAtWork else _("Show the trial again")
         setUsable(
             ui.replayButton,
-            hasTrial,
+            hasTrial or isAtWork,
             _("Show the tool, the touches and the clearance over time, as a Sequence."),
             reason,
         )
+        unjudged = reason if not hasTrial else _("The trial cannot be judged.")
         setUsable(
             ui.worstTouchButton,
-            bool(worst),
-            _("Show how point {label} was touched.").format(label=worst),
-            reason if not hasTrial else _("The trial cannot be judged."),
+            bool(self._worst) and not isAtWork,
+            _("Show how point {label} was touched.").format(label=self._worst),
+            busy if isAtWork else unjudged,
         )
+        allTrials = _("Write all trials of all trainees of the study into a CSV file.")
+        report = _("Write the report of the whole study as a page to be printed, and open it.")
+        setUsable(ui.exportScoresButton, not isAtWork, allTrials, busy)
+        setUsable(ui.reportButton, not isAtWork, report, busy)
+
+    def _showProgress(self, step: str, share: float) -> None:
+        if step:
+            setSentence(self._ui.replayText, f"{step}: {100 * share:.0f} %")
+
+    def _tell(self, sentence: str) -> None:
+        setText(self._ui.scoreMessageText, sentence)
 
     def _trial(self) -> StoredTrial | None:
         trialId = chosenData(self._ui.trialComboBox)
@@ -195,16 +257,17 @@ class ScorePanel:
         return standings(self._trainees.study, trial, self._session.cohort)
 
 
+def _reportOn(study: Path, folder: Path) -> Path:
+    """Write the report on a study into a folder and return its page."""
+    return write_report(read_study_data(study), folder).page
+
+
 def _entry(number: int, trial: StoredTrial) -> str:
     return _("{number}: {task}, {day}").format(
         number=number,
         task=trial.record.task,
         day=trial.record.started_utc[:16].replace("T", " "),
     )
-
-
-def _shortened(note: str) -> str:
-    return _("see below") if note == CTPS_WARNING else note
 
 
 def _standingRow(standing: Standing) -> tuple[str, ...]:

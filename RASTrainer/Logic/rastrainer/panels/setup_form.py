@@ -12,6 +12,7 @@ from rastrainer.scenario import STAND_DIAMETERS_MM
 from rastrainer.scenario_setup import SetUp
 from rastrainer.slicer.translation import _
 
+NARROWEST = 60
 _USUAL = SetUp()
 _MOVED = _USUAL.perturbation
 _PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
@@ -72,5 +73,7 @@ def _spinBox(name: str, limits: tuple[float, float], value: float) -> Any:
     box.objectName = name
     box.minimum, box.maximum = limits
     box.decimals = 1
+    # Three stand in a row: they are not to be as wide as the widest number they could show.
+    box.minimumWidth = NARROWEST
     box.value = value
     return box

@@ -1,4 +1,4 @@
-"""The section Simulator: set up, start, connect, and how the link is, in words and color."""
+"""The section Simulator: start, connect, and how the link is, in words and color."""
 
 from __future__ import annotations
 
@@ -7,24 +7,22 @@ from typing import Any
 
 import slicer
 
-from rastrainer.panels.widgets import GRAY, GREEN, RED, YELLOW, light, setSentence, setUsable
+from rastrainer.panels.kept_choices import keepChecked, keepNumber, keepText
+from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.setup_panel import costSentence
+from rastrainer.panels.widgets import (
+    LINK_COLORS,
+    setLight,
+    setSentence,
+    setText,
+    setUsable,
+)
+from rastrainer.slicer.free_port import freePort
 from rastrainer.slicer.heartbeat import LinkState, LinkStatus
-from rastrainer.slicer.probe import probe
 from rastrainer.slicer.session import Session
+from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, PORT
 from rastrainer.slicer.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
-
-COLORS = {
-    LinkState.OFF: GRAY,
-    LinkState.NOT_INSTALLED: RED,
-    LinkState.ABSENT: RED,
-    LinkState.GREETING: YELLOW,
-    LinkState.CONNECTED: GREEN,
-    LinkState.STALE: YELLOW,
-    LinkState.WRONG_VERSION: RED,
-}
-PROGRAM_SETTING = "RASTrainer/Program"
-WHEELS_SETTING = "RASTrainer/Wheels"
 
 
 class SimulatorPanel:
@@ -34,22 +32,21 @@ class SimulatorPanel:
         self._ui = ui
         self._link = session.link
         self._simulator = session.simulator
-        settings = slicer.app.settings()
-        ui.packageLineEdit.text = session.places.package
-        ui.programPathLineEdit.currentPath = settings.value(PROGRAM_SETTING, "")
-        ui.wheelsPathLineEdit.currentPath = settings.value(WHEELS_SETTING, "")
-        ui.setupButton.connect("clicked()", self.setUpOrCancel)
-        ui.startSimulatorButton.connect("clicked()", self.startSimulator)
+        keepText(ui.hostLineEdit, session.settings, HOST)
+        keepNumber(ui.portSpinBox, session.settings, PORT)
+        keepChecked(ui.windowCheckBox, session.settings, HAS_WINDOW)
+        keepChecked(ui.networkCheckBox, session.settings, HAS_NETWORK)
+        self._startsAfterSetup = False
+        ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
         ui.stopSimulatorButton.connect("clicked()", self.stopSimulator)
-        ui.programPathLineEdit.connect("currentPathChanged(QString)", self._keepPaths)
-        ui.wheelsPathLineEdit.connect("currentPathChanged(QString)", self._keepPaths)
+        ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
         ui.connectButton.connect("clicked()", self.toggleConnection)
         ui.probeButton.connect("clicked()", self.testConnection)
         self._listening = (
             (self._link.statusChanged, self._showStatus),
             (self._link.stateChanged, self._showTraining),
-            (self._simulator.setup.progressed, self._log),
-            (self._simulator.setup.finished, self._finishSetup),
+            (self._simulator.setup.changed, self._showProgram),
+            (self._simulator.setup.finished, self._startAfterSetup),
             (self._simulator.program.wroteLine, self._log),
             (self._simulator.program.changed, self._showProgram),
             (self._simulator.program.pairingChanged, self._showPairing),
@@ -65,35 +62,24 @@ class SimulatorPanel:
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
-    def setUpOrCancel(self) -> None:
-        """Begin the set-up, or break it off."""
-        with slicer.util.tryWithErrorDisplay(_("The simulator could not be set up.")):
-            if self._simulator.setup.isRunning:
-                self._simulator.setup.cancel()
-                return
-            self._ui.simulatorLogEdit.clear()
-            self._simulator.beginSetup(
-                self._ui.packageLineEdit.text, self._ui.wheelsPathLineEdit.currentPath
-            )
-            self._ui.setupGroupBox.collapsed = False
-            self._showProgram()
-
-    def startSimulator(self) -> None:
-        """Start the simulator on this computer."""
-        with slicer.util.tryWithErrorDisplay(_("The simulator could not be started.")):
-            program = self._ui.programPathLineEdit.currentPath
-            self._simulator.start(
-                self._ui.portSpinBox.value,
-                program,
-                hasWindow=self._ui.windowCheckBox.checked,
-                hasNetwork=self._ui.networkCheckBox.checked,
-            )
+    def startAndConnect(self) -> None:
+        """Start the simulator on this computer and connect; set it up first, after asking."""
+        if not self._needsSetup():
+            self._start()
+            return
+        question = _(
+            "The simulator is not set up on this computer yet. Set it up now, and start it then? "
+            "{cost} Slicer itself stays as it is. This takes some minutes."
+        ).format(cost=costSentence(self._ui, self._simulator.setup))
+        self._startsAfterSetup = slicer.util.confirmOkCancelDisplay(
+            toolTip(question), _("Set up the simulator")
+        )
+        if self._startsAfterSetup:
+            self._ui.setupButton.click()
 
     def stopSimulator(self) -> None:
         """End the simulator that was started here."""
-        with slicer.util.tryWithErrorDisplay(
-            _("The simulator could not be stopped."), waitCursor=True
-        ):
+        with slicer.util.tryWithErrorDisplay(_("The simulator could not be stopped.")):
             self._simulator.stop()
 
     def toggleConnection(self) -> None:
@@ -105,69 +91,63 @@ class SimulatorPanel:
                 self._link.disconnect()
 
     def testConnection(self) -> None:
-        """Look once whether a simulator answers, and say so."""
-        with slicer.util.tryWithErrorDisplay(
-            _("The connection could not be tested."), waitCursor=True
-        ):
-            self._showWords(probe(self._ui.hostLineEdit.text, self._ui.portSpinBox.value))
+        """Look once whether a simulator answers, and say so when it is known."""
+        with slicer.util.tryWithErrorDisplay(_("The connection could not be tested.")):
+            host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
+            self._showWords(self._link.testConnection(host, port, self._showTest))
 
-    def _showProgram(self) -> None:
-        ui, setup, program = self._ui, self._simulator.setup, self._simulator.program
-        hasOwn = bool(ui.programPathLineEdit.currentPath)
-        needsSetup = self._simulator.needsSetup and not hasOwn
-        if setup.isRunning:
-            ui.programText.text = _("The simulator is being set up. This takes some minutes.")
-        elif needsSetup and program.state is ProgramState.STOPPED:
-            old = setup.installedVersion
-            ui.programText.text = (
-                _("The simulator that is set up is of version {old}: set it up anew.").format(
-                    old=old
-                )
-                if old
-                else _("The simulator is not set up on this computer yet: press Set up, once.")
+    def _needsSetup(self) -> bool:
+        return self._simulator.needsSetup and not self._ui.programPathLineEdit.currentPath
+
+    def _startAfterSetup(self, error: str) -> None:
+        startsNow, self._startsAfterSetup = self._startsAfterSetup and not error, False
+        if startsNow:
+            self._start()
+
+    def _start(self) -> None:
+        ui = self._ui
+        with slicer.util.tryWithErrorDisplay(_("The simulator could not be started.")):
+            self._simulator.start(
+                freePort(ui.portSpinBox.value),
+                ui.programPathLineEdit.currentPath,
+                hasWindow=ui.windowCheckBox.checked,
+                hasNetwork=ui.networkCheckBox.checked,
             )
+
+    def _showProgram(self, _path: str = "") -> None:
+        ui, setup, program = self._ui, self._simulator.setup, self._simulator.program
+        if setup.isRunning:
+            told = _("The simulator is being set up.")
+        elif self._needsSetup() and program.state is ProgramState.STOPPED:
+            told = _("The simulator is not set up yet: see Set-up.")
         else:
-            ui.programText.text = program.sentence
-        ui.setupProgressBar.visible = setup.isRunning
-        ui.setupButton.text = _("Cancel") if setup.isRunning else _("Set up")
-        setUsable(
-            ui.setupButton,
-            not program.isRunning,
-            _("Install the simulator into a folder of its own, by Slicer's own Python."),
-            _("Stop the simulator first."),
-        )
-        reason = _("Set it up first.") if needsSetup else _("It is being set up.")
-        if program.isRunning:
-            reason = _("It runs already.")
+            told = program.sentence
+        setText(ui.programText, told)
+        isEnding = program.state is ProgramState.STOPPING
         setUsable(
             ui.startSimulatorButton,
-            not (program.isRunning or setup.isRunning or needsSetup),
+            not ((program.isRunning and not isEnding) or setup.isRunning),
             _("Start the simulator on this computer and connect to it."),
-            reason,
+            _("It runs already.") if program.isRunning else _("It is being set up."),
         )
         setUsable(
             ui.stopSimulatorButton,
-            program.isRunning,
+            program.isRunning and not isEnding,
             _("End the simulator that was started here. Recorded trials stay."),
-            _("No simulator was started from here."),
+            _("It is ending.") if isEnding else _("No simulator was started from here."),
         )
         if program.state is ProgramState.READY:
-            ui.portSpinBox.value = program.port
+            self._showPort(program.port)
 
     def _showPairing(self) -> None:
         setSentence(self._ui.pairingText, self._simulator.program.pairingSentence)
 
-    def _finishSetup(self, error: str) -> None:
-        self._log(error or _("The simulator is set up."))
-        self._showProgram()
-        if error:
-            self._ui.programText.text = error
-
-    def _keepPaths(self, _path: str = "") -> None:
-        settings = slicer.app.settings()
-        settings.setValue(PROGRAM_SETTING, self._ui.programPathLineEdit.currentPath)
-        settings.setValue(WHEELS_SETTING, self._ui.wheelsPathLineEdit.currentPath)
-        self._showProgram()
+    def _showPort(self, port: int) -> None:
+        """Show where the simulator listens, which is not the user's choice and is not kept."""
+        box = self._ui.portSpinBox
+        wasBlocked = box.blockSignals(True)
+        box.value = port
+        box.blockSignals(wasBlocked)
 
     def _log(self, line: str) -> None:
         self._ui.simulatorLogEdit.appendPlainText(line)
@@ -188,9 +168,13 @@ class SimulatorPanel:
         if status.state is not LinkState.CONNECTED:
             setSentence(ui.trainingText, "")
 
+    def _showTest(self, status: LinkStatus) -> None:
+        if self._link.status.state is LinkState.OFF:
+            self._showWords(status)
+
     def _showWords(self, status: LinkStatus) -> None:
-        self._ui.stateLight.text = light(COLORS[status.state])
-        self._ui.stateText.text = status.sentence
+        setLight(self._ui.stateLight, LINK_COLORS[status.state])
+        setText(self._ui.stateText, status.sentence)
         setSentence(self._ui.remedyText, status.remedy)
 
     def _showTraining(self, state: Mapping[str, Any]) -> None:

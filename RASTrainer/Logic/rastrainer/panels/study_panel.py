@@ -12,8 +12,9 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.experiment.progress import SKIPPED, Progress, StepEntry
 from rastrainer.experiment.steps import Step, StepKind
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.questionnaire_form import QuestionnaireForm
-from rastrainer.panels.widgets import fillTable, setSentence, setUsable
+from rastrainer.panels.widgets import fillTable, setSentence, setText, setUsable
 from rastrainer.questionnaires.catalog import find_questionnaire
 from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.session import Session
@@ -72,15 +73,27 @@ class StudyPanel:
             self._desk.answer(self._form.answers())
 
     def skipStep(self) -> None:
-        """Leave the step out, for a reason."""
-        reason = qt.QInputDialog.getText(
+        """Leave the step out, for a reason; one that does not do can be completed."""
+        reason = self._askWhy("", "")
+        with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
+            while reason:
+                try:
+                    self._desk.skipStep(reason)
+                except InputError as error:
+                    reason = self._askWhy(reason, str(error))
+                else:
+                    return
+
+    def _askWhy(self, reason: str, problem: str) -> str:
+        """Return why the step is left out, beginning with what was typed; empty if canceled."""
+        question = _("Why is it left out? The reason goes into the report.")
+        return qt.QInputDialog.getText(
             slicer.util.mainWindow(),
             _("Skip the step"),
-            _("Why is it left out? The reason goes into the report."),
+            toolTip(f"{problem} {question}".strip()),
+            qt.QLineEdit.Normal,
+            reason,
         )
-        if reason:
-            with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
-                self._desk.skipStep(reason)
 
     def showState(self) -> None:
         """Show what goes on by itself: the time of a trial run or a break, and the connection."""
@@ -125,7 +138,7 @@ class StudyPanel:
         ui.enrollButton.visible = protocol is not None and progress is None
         ui.stepGroupBox.visible = progress is not None
         if progress is not None:
-            ui.stepText.text = progress.sentence
+            setText(ui.stepText, progress.sentence)
             ui.stepsProgressBar.maximum = len(progress.steps)
             ui.stepsProgressBar.value = len(progress.entries)
             fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])

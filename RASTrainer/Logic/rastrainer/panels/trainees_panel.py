@@ -5,26 +5,27 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import qt
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.panels.plot_view import showChart
+from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.save_dialog import askWhereToSave
+from rastrainer.panels.shown_results import CURVE, showChart
 from rastrainer.panels.widgets import (
     chosenData,
     fillComboBox,
     fillTable,
     millimeters,
     setChecked,
+    setText,
     setUsable,
 )
 from rastrainer.protocol import Mode
 from rastrainer.slicer.history_nodes import showLearningCurve
 from rastrainer.slicer.session import Session
+from rastrainer.slicer.settings import STUDY
 from rastrainer.slicer.translation import _
 from rastrainer.study import StoredTrial, Trainee
-
-STUDY_SETTING = "RASTrainer/Study"
 
 
 class TraineesPanel:
@@ -34,6 +35,7 @@ class TraineesPanel:
         self._ui = ui
         self._session = session
         self._desk = session.trainees
+        self._isProblemShown = False
         ui.studyPathLineEdit.currentPath = str(session.studyPath)
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
         ui.traineeComboBox.connect("activated(int)", self.chooseTrainee)
@@ -44,6 +46,7 @@ class TraineesPanel:
         ui.deleteTraineeButton.connect("clicked()", self.deleteTrainee)
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
         ui.learningCurveButton.connect("clicked()", self.showLearningCurve)
+        ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         ui.exportHistoryButton.connect("clicked()", self.exportHistory)
         self._desk.changed.connect(self._show)
         self._show()
@@ -61,7 +64,7 @@ class TraineesPanel:
                 self._session.chooseStudy(Path(path))
             finally:
                 self._ui.studyPathLineEdit.currentPath = str(self._session.studyPath)
-            slicer.app.settings().setValue(STUDY_SETTING, path)
+            self._session.settings.set(STUDY, path)
 
     def chooseTrainee(self, _index: int = 0) -> None:
         """Choose the trainee of the list."""
@@ -93,19 +96,19 @@ class TraineesPanel:
     def exportTrainee(self) -> None:
         """Write everything about the chosen trainee into a file."""
         name = f"{self._desk.chosen}.json"
-        path = self._askForFile(_("Export the trainee"), name, "JSON (*.json)")
-        if path:
+        path = askWhereToSave(_("Export the trainee"), name, "JSON (*.json)")
+        if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The trainee was not exported.")):
-                count = self._desk.export(Path(path))
+                count = self._desk.export(path)
                 self._say(_("{count} trials are written to {path}."), count=count, path=path)
 
     def exportHistory(self) -> None:
         """Write the trials of the chosen trainee as a table."""
         name = f"{self._desk.chosen}.csv"
-        path = self._askForFile(_("Export the history"), name, "CSV (*.csv)")
-        if path:
+        path = askWhereToSave(_("Export the history"), name, "CSV (*.csv)")
+        if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The history was not exported.")):
-                count = self._desk.exportHistory(Path(path))
+                count = self._desk.exportHistory(path)
                 self._say(_("{count} trials are written to {path}."), count=count, path=path)
 
     def deleteTrainee(self) -> None:
@@ -117,7 +120,7 @@ class TraineesPanel:
                 "computer, for good? This cannot be undone; export the trainee first if the data "
                 "may be needed. Earlier exports and backups are yours to delete."
             ).format(name=name, trials=trials)
-            if slicer.util.confirmYesNoDisplay(question, _("Delete the trainee")):
+            if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
                 erased = self._desk.delete()
                 told = _("{name} is deleted with {trials} trials and {journals} journals.").format(
                     name=name, trials=erased.trials, journals=erased.journals
@@ -125,11 +128,22 @@ class TraineesPanel:
                 self._say("{told}", told=" ".join((told, *erased.warnings)))
 
     def showLearningCurve(self) -> None:
-        """Show score and time over the trials, as a table and a plot."""
+        """Show score and time over the trials as a plot, or give the user's layout back."""
+        if not self._ui.learningCurveButton.checked:
+            self._session.layout.giveBack(CURVE)
+            return
         with slicer.util.tryWithErrorDisplay(_("The learning curve cannot be shown.")):
             trials = self._desk.history()
             chart = showLearningCurve(slicer.mrmlScene, self._desk.chosen, trials)
-            showChart(chart)
+            showChart(self._session.layout, chart)
+
+    def showState(self) -> None:
+        """Show whether the learning curve is shown; called about ten times a second."""
+        setChecked(self._ui.learningCurveButton, self._session.layout.purpose == CURVE)
+
+    def _fold(self, isFolded: bool) -> None:
+        if isFolded:
+            self._session.layout.giveBack(CURVE)
 
     def _show(self, *_arguments: Any) -> None:
         ui = self._ui
@@ -138,8 +152,12 @@ class TraineesPanel:
             trainee, history = self._desk.chosenTrainee(), self._desk.history()
         except InputError as error:
             self._say("{error}", error=error)
+            self._isProblemShown = True
             return
+        if self._isProblemShown:
+            self._say("")
         entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
+        ui.pseudonymLineEdit.placeholderText = self._desk.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
         setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
         hasTrainee = trainee is not None
@@ -174,10 +192,8 @@ class TraineesPanel:
         )
 
     def _say(self, sentence: str, **values: Any) -> None:
-        self._ui.traineeText.text = sentence.format(**values)
-
-    def _askForFile(self, caption: str, name: str, kind: str) -> str:
-        return qt.QFileDialog.getSaveFileName(slicer.util.mainWindow(), caption, name, kind)
+        self._isProblemShown = False
+        setText(self._ui.traineeText, sentence.format(**values))
 
 
 def _entry(trainee: Trainee) -> str:

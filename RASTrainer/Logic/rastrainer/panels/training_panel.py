@@ -6,19 +6,23 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.kept_choices import keepChecked, keepChosen
+from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
 from rastrainer.panels.widgets import (
+    GRAY,
     GREEN,
     RED,
     YELLOW,
     chosenData,
-    fillComboBox,
-    light,
+    setLight,
     setSentence,
+    setText,
     setUsable,
 )
 from rastrainer.protocol import TRIAL_RUN, Mode, Phase, Proximity
 from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.session import Session
+from rastrainer.slicer.settings import MODE, SLICES_FOLLOW_TOOL, SLICES_SHOW_NEXT_POINT
 from rastrainer.slicer.training_desk import TrialStatus
 from rastrainer.slicer.translation import _
 
@@ -45,7 +49,11 @@ class TrainingPanel:
         self._session = session
         self._desk = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
-        fillComboBox(ui.modeComboBox, modes, Mode.DESKTOP.value)
+        keepChosen(ui.modeComboBox, modes, session.settings, MODE)
+        keepChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
+        keepChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
+        for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
+            box.connect("toggled(bool)", self._moveSlices)
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
         ui.startTaskButton.connect("clicked()", self.startTask)
         ui.pauseButton.connect("clicked()", self.pauseOrResume)
@@ -61,6 +69,7 @@ class TrainingPanel:
         for signal, slot in self._listening:
             signal.connect(slot)
         self._tell("")
+        self._moveSlices()
         self.showState()
 
     def close(self) -> None:
@@ -85,36 +94,42 @@ class TrainingPanel:
         """End the trial without registering it, after asking."""
         with slicer.util.tryWithErrorDisplay(_("The trial was not aborted.")):
             question = _("Abort the trial of {name}? Its touches will not be registered.").format(
-                name=self._desk.progress.trainee
+                name=shortName(self._desk.progress.trainee)
             )
-            if slicer.util.confirmYesNoDisplay(question, _("Abort the trial")):
+            if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
                 self._desk.abort()
+
+    def _moveSlices(self, *_checked: bool) -> None:
+        slices = self._session.slices
+        slices.showsNextPoint = self._ui.slicesNextPointCheckBox.checked
+        slices.followsTool = self._ui.slicesToolCheckBox.checked
 
     def showState(self, *_arguments: Any) -> None:
         """Show where the trial stands; called about ten times a second."""
         ui, progress, session = self._ui, self._desk.progress, self._session
-        ui.trainingTraineeText.text = session.trainees.chosen or _(
-            "None: choose one in the section Trainees."
-        )
-        ui.startTaskButton.text = _("Start {task}").format(task=session.taskTitle)
+        nobody = _("None: choose one in the section Trainees.")
+        setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
+        title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
+        ui.startTaskButton.text = title
         isConnected = session.link.status.state is LinkState.CONNECTED
         self._showButtons(progress, isConnected)
         received = len(session.trials.received)
-        ui.receivedText.text = (
-            _("{count}, all kept in the study").format(count=received) if received else _("none")
-        )
+        kept = _("{count}, all kept in the study").format(count=received)
+        setText(ui.receivedText, kept if received else _("none"))
         if not isConnected:
-            ui.phaseText.text = _("not connected; no touch is lost")
+            setText(ui.phaseText, _("not connected; no touch is lost"))
+            setLight(ui.clearanceLight, GRAY)
             for label in (ui.trialText, ui.nextPointText, ui.elapsedText, ui.clearanceText):
-                label.text = "–"
+                setText(label, "–")
             setSentence(ui.instructionText, "")
             return
-        ui.trialText.text = f"{progress.trainee}, {progress.task}" if progress.trainee else "–"
-        ui.phaseText.text = PHASES.get(progress.phase, progress.phase)
+        trial = f"{shortName(progress.trainee)}, {shortName(progress.task)}"
+        setText(ui.trialText, trial if progress.trainee else "–")
+        setText(ui.phaseText, PHASES.get(progress.phase, progress.phase))
         ui.pointsProgressBar.value = min(progress.touched, progress.total)
-        ui.nextPointText.text = progress.nextPoint or "–"
-        ui.elapsedText.text = _clock(progress.elapsedS)
-        ui.clearanceText.text = _clearance(progress)
+        setText(ui.nextPointText, progress.nextPoint or "–")
+        setText(ui.elapsedText, _clock(progress.elapsedS))
+        self._showClearance(progress)
         told = _("Told the trainee: {sentence}").format(sentence=progress.instruction)
         setSentence(ui.instructionText, told if progress.instruction else "")
 
@@ -150,6 +165,13 @@ class TrainingPanel:
             noTrial,
         )
 
+    def _showClearance(self, progress: TrialStatus) -> None:
+        color, words = NEARNESS.get(progress.proximity, (GRAY, progress.proximity))
+        isKnown = progress.clearanceMm is not None
+        setLight(self._ui.clearanceLight, color if isKnown else GRAY)
+        told = f"{progress.clearanceMm:.1f} mm, {words}" if isKnown else "–"
+        setText(self._ui.clearanceText, told)
+
     def _tell(self, sentence: str) -> None:
         setSentence(self._ui.trainingMessageText, sentence)
 
@@ -157,10 +179,3 @@ class TrainingPanel:
 def _clock(seconds: float) -> str:
     minutes, rest = divmod(int(seconds), 60)
     return f"{minutes}:{rest:02d} min"
-
-
-def _clearance(progress: TrialStatus) -> str:
-    if progress.clearanceMm is None:
-        return "–"
-    color, words = NEARNESS.get(progress.proximity, (GREEN, progress.proximity))
-    return f"{light(color)} {progress.clearanceMm:.1f} mm, {words}"

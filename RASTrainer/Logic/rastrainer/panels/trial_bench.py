@@ -12,12 +12,14 @@ import numpy as np
 import slicer
 
 from rastrainer import transforms
+from rastrainer.panels.call_soon import callSoon
 from rastrainer.panels.panel_stack import PanelStack
 from rastrainer.panels.places import findPlaces
 from rastrainer.slicer.connector_kit import desktopKit
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.session import Session
+from rastrainer.slicer.settings import Settings
 from rastrainer.tasks import LABELS
 
 SCENARIO = "colin27"
@@ -39,13 +41,15 @@ class TrialBench:
         self._folder = tempfile.TemporaryDirectory(prefix="RASTrainer-")
         folder = Path(self._folder.name)
         self.study = folder / "study.db"
+        # In memory alone: a test changes nothing that the user has chosen.
+        settings = Settings()
         places = replace(
-            findPlaces(moduleFile),
+            findPlaces(moduleFile, settings),
             study=self.study,
             records=folder / "trials",
             library=folder / "scenarios",
         )
-        self.session = Session(slicer.mrmlScene, places, desktopKit)
+        self.session = Session(slicer.mrmlScene, places, desktopKit, settings, callSoon)
         self._container = slicer.util.loadUI(resourcePath("UI/RASTrainer.ui"))
         self._container.setMRMLScene(slicer.mrmlScene)
         self._panels = PanelStack(self._container, resourcePath, self.session)

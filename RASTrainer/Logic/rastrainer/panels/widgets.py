@@ -7,22 +7,64 @@ from typing import Any
 
 import qt
 
-HIGHEST_TABLE = 270
-FRAME, SCROLL_BAR = 6, 16
-"""Pixels: of a table that need not scroll, of what is around its rows, of a bar below them."""
+from rastrainer.panels.plain_text import (
+    LONGEST_TEXT,
+    shortened,
+    shortName,
+    toolTip,
+    wrappable,
+)
+from rastrainer.slicer.heartbeat import LinkState
 
 GREEN, YELLOW, RED, GRAY = "#2e9e44", "#c98a00", "#d03030", "#888888"
+LINK_COLORS = {
+    LinkState.OFF: GRAY,
+    LinkState.NOT_INSTALLED: RED,
+    LinkState.LOOKING: YELLOW,
+    LinkState.ABSENT: RED,
+    LinkState.OTHER_PROGRAM: RED,
+    LinkState.GREETING: YELLOW,
+    LinkState.CONNECTED: GREEN,
+    LinkState.STALE: YELLOW,
+    LinkState.WRONG_VERSION: RED,
+}
 
 
-def light(color: str) -> str:
-    """Return a colored dot as rich text; words beside it say the same."""
-    return f'<span style="color:{color}">●</span>'
+def setLight(label: Any, color: str) -> None:
+    """Show a colored dot in a label of its own; words beside it say the same."""
+    label.text = f'<span style="color:{color}">●</span>'
+
+
+def setText(label: Any, text: str) -> None:
+    """Show what anyone may have written; what is too long stands whole in the tool tip."""
+    shown = wrappable(shortened(text, LONGEST_TEXT))
+    if label.text != shown:
+        label.text = shown
+        label.toolTip = toolTip(text) if len(text) > LONGEST_TEXT else ""
+
+
+def setSentence(label: Any, sentence: str) -> None:
+    """Show a sentence in a label, which takes no room while there is none."""
+    setText(label, sentence)
+    label.visible = bool(sentence)
+
+
+def textLabel(text: str) -> Any:
+    """Return a label for what anyone may have written, as those of the `.ui` files are."""
+    label = qt.QLabel()
+    label.textFormat = qt.Qt.PlainText
+    label.wordWrap = True
+    label.setSizePolicy(qt.QSizePolicy.Expanding, qt.QSizePolicy.Preferred)
+    # A label is at least as wide as its longest word, unless it is told otherwise.
+    label.minimumWidth = 1
+    setText(label, text)
+    return label
 
 
 def setUsable(button: Any, usable: bool, tip: str, reason: str = "") -> None:
     """Enable a button with its tool tip, or disable it with the reason in its place."""
     button.enabled = usable
-    button.toolTip = tip if usable or not reason else reason
+    button.toolTip = toolTip(tip if usable or not reason else reason)
 
 
 def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = ()) -> None:
@@ -31,23 +73,16 @@ def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = (
     table.setRowCount(len(rows))
     for number, texts in enumerate(rows):
         for column, text in enumerate(texts):
-            item = qt.QTableWidgetItem(text)
-            item.setToolTip(tips[number] if tips else text)
+            item = qt.QTableWidgetItem(shortened(text, LONGEST_TEXT))
+            item.setToolTip(toolTip(tips[number] if tips else text))
             table.setItem(number, column, item)
     table.resizeColumnsToContents()
     table.resizeRowsToContents()
-    _fitHeight(table)
-
-
-def setSentence(label: Any, sentence: str) -> None:
-    """Show a sentence in a label, which takes no room while there is none."""
-    label.text = sentence
-    label.visible = bool(sentence)
 
 
 def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) -> None:
     """Replace the entries (text, data) of a `QComboBox` and choose one, telling nobody."""
-    entries = list(entries)
+    entries = [(shortName(text), data) for text, data in entries]
     shown = [(combo.itemText(i), combo.itemData(i)) for i in range(combo.count)]
     wasBlocked = combo.blockSignals(True)
     if shown != entries:
@@ -70,15 +105,6 @@ def setChecked(box: Any, checked: bool) -> None:
     wasBlocked = box.blockSignals(True)
     box.checked = checked
     box.blockSignals(wasBlocked)
-
-
-def _fitHeight(table: Any) -> None:
-    """Make a table as high as its rows, up to a limit from which on it scrolls."""
-    rows = sum(table.rowHeight(row) for row in range(table.rowCount))
-    columns = sum(table.columnWidth(column) for column in range(table.columnCount))
-    bar = SCROLL_BAR if columns > table.viewport().width else 0
-    header = table.horizontalHeader().height
-    table.setFixedHeight(min(HIGHEST_TABLE, header + rows + bar + FRAME))
 
 
 def millimeters(value: float | None, digits: int = 2) -> str:

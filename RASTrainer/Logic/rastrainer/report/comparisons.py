@@ -1,9 +1,9 @@
-"""Modes compared on the means of the trainees who did both."""
+"""Modes compared on the means of the trainees who did both, free of what their order adds."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,6 +32,8 @@ class ModeComparison:
         trainees: Who did both.
         first_means: Mean of each of them, (n,) float.
         second_means: The same in the second mode.
+        order: By how many periods each of them did the second mode later than the first, (n,)
+            float; None where the order of the trials is unknown.
         result: The tests; None where they cannot be computed.
         adjusted_p: p of the t-test, adjusted by Holm's method; None for what is only described.
         reason: Why there is no result; "" where there is.
@@ -43,6 +45,7 @@ class ModeComparison:
     trainees: tuple[str, ...]
     first_means: np.ndarray
     second_means: np.ndarray
+    order: np.ndarray | None
     result: PairedComparison | None
     adjusted_p: float | None
     reason: str = ""
@@ -54,21 +57,24 @@ def compare_modes(
     """Compare two modes on every outcome that trials of both have.
 
     A trainee counts with the mean over the tasks that he or she did in both modes, so that a
-    missing trial does not make one mode look easier.
+    missing trial does not make one mode look easier. Where trainees had different orders of the
+    modes, the effect of the period is taken out.
     """
     found = []
+    delays = mode_delays(data, first, second) if data.has_order else None
     for outcome in outcomes:
         means = paired_means(data, outcome.name, first, second)
         if means:
-            found.append(_compared(outcome, first, second, means))
+            order = None if delays is None else np.array([delays[trainee] for trainee in means])
+            found.append(_compared(outcome, first, second, means, order))
     tested = [
         index
         for index, comparison in enumerate(found)
         if comparison.result is not None and comparison.outcome.name in CONFIRMATORY
     ]
-    adjusted = holm([found[index].result.p for index in tested])
+    adjusted = holm(np.array([found[index].result.p for index in tested]))
     for index, p in zip(tested, adjusted, strict=True):
-        found[index] = ModeComparison(**{**vars(found[index]), "adjusted_p": p})
+        found[index] = replace(found[index], adjusted_p=float(p))
     return tuple(found)
 
 
@@ -88,6 +94,29 @@ def paired_means(
     return means
 
 
+def mode_delays(data: StudyData, first: str, second: str) -> dict[str, float]:
+    """Return for each trainee who did both modes how many periods later the second one was done.
+
+    A period is a run of trials in one mode: 1 for who did all of the first mode before the second,
+    -1 for the opposite order; where modes took turns, the difference of the mean periods.
+    """
+    periods: dict[str, dict[str, list[int]]] = {}
+    latest: dict[str, tuple[str, int]] = {}
+    for trial in data.trials:
+        if trial.mode not in (first, second):
+            continue
+        mode, period = latest.get(trial.trainee, ("", 0))
+        period += trial.mode != mode
+        latest[trial.trainee] = trial.mode, period
+        own = periods.setdefault(trial.trainee, {first: [], second: []})
+        own[trial.mode].append(period)
+    return {
+        trainee: float(np.mean(own[second]) - np.mean(own[first]))
+        for trainee, own in periods.items()
+        if own[first] and own[second]
+    }
+
+
 def _task_means(trials: Sequence[TrialRow], name: str) -> dict[str, dict[str, float]]:
     """Return trainee → task → mean over the trainee's trials of that task."""
     values: dict[str, dict[str, list[float]]] = {}
@@ -102,15 +131,20 @@ def _task_means(trials: Sequence[TrialRow], name: str) -> dict[str, dict[str, fl
 
 
 def _compared(
-    outcome: Outcome, first: str, second: str, means: Mapping[str, tuple[float, float]]
+    outcome: Outcome,
+    first: str,
+    second: str,
+    means: Mapping[str, tuple[float, float]],
+    order: np.ndarray | None,
 ) -> ModeComparison:
     both = np.array(list(means.values()))
     result, reason = None, UNTESTED.get(outcome.name, "")
     if not reason:
         try:
-            result = compare_paired(both[:, 0], both[:, 1])
+            result = compare_paired(both[:, 0], both[:, 1], order)
         except InputError as error:
             reason = str(error)
+    columns = both[:, 0], both[:, 1]
     return ModeComparison(
-        outcome, first, second, tuple(means), both[:, 0], both[:, 1], result, None, reason
+        outcome, first, second, tuple(means), *columns, order, result, None, reason
     )

@@ -21,6 +21,12 @@ class Cell:
         attributes = f' colspan="{self.span}"' if self.span > 1 else ""
         attributes += f' class="{self.kind}"' if self.kind else ""
         attributes += f' style="background:{self.color}"' if self.color else ""
+        if tag == "th":
+            if not self.text:
+                # A corner heads nothing; a screen reader would name it.
+                tag = "td"
+            else:
+                attributes += f' scope="{"colgroup" if self.span > 1 else "col"}"'
         return f"<{tag}{attributes}>{html.escape(self.text)}</{tag}>"
 
 

@@ -23,13 +23,19 @@ from rastrainer.report.sections.limits import limits
 from rastrainer.report.sections.methods import methods
 from rastrainer.report.sections.mode_comparison import mode_comparison
 from rastrainer.report.sections.motion import motion
-from rastrainer.report.sections.paired_statistics import findings, paired_statistics
+from rastrainer.report.sections.paired_statistics import (
+    findings,
+    order_caveat,
+    paired_statistics,
+)
 from rastrainer.report.sections.paper_notes import paper_notes
 from rastrainer.report.sections.passing import passing
 from rastrainer.report.sections.published_tables import published_tables
 from rastrainer.report.sections.questionnaires import questionnaires
 from rastrainer.report.sections.spread import spread
+from rastrainer.report.sections.variation import variation
 from rastrainer.report.study_data import StudyData
+from rastrainer.scipy_modules import scipy_module
 
 PAGE, NUMBERS = "report.html", "trials.csv"
 
@@ -51,20 +57,27 @@ def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> 
         made_utc: When it was made, as the report shall say it; now by default.
 
     Raises:
-        InputError: the folder cannot be written.
+        InputError: the folder cannot be written, or scipy is missing.
     """
+    page_text = report_html(data, made_utc)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
     written = WrittenReport(folder / PAGE, folder / NUMBERS)
-    write_text(written.page, report_html(data, made_utc))
+    write_text(written.page, page_text)
     write_text(written.numbers, trials_csv(data.trials))
     return written
 
 
 def report_html(data: StudyData, made_utc: str | None = None) -> str:
-    """Return the page."""
+    """Return the page.
+
+    Raises:
+        InputError: scipy is missing.
+    """
+    # Before anything that catches the sentences of what cannot be computed.
+    scipy_module("stats")
     data = with_ctps(data)
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
@@ -77,12 +90,13 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         f"{modes} · made {made}"
     )
     sections = [
-        _summary(everything),
+        _summary(everything, data.gap),
         published_tables(data),
         mode_comparison(data),
         *(paired_statistics(comparisons) for comparisons in main),
         spread(data),
         learning(data),
+        variation(data),
         passing(data),
         motion(data, described[0] if described else ()),
         questionnaires(data),
@@ -98,7 +112,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     return page(data.title, subtitle, sections, footer)
 
 
-def _summary(comparisons: list[ModeComparison]) -> str:
+def _summary(comparisons: list[ModeComparison], gap: str) -> str:
     sentences = findings(comparisons)
     n = max((len(comparison.trainees) for comparison in comparisons), default=0)
     parts = [bullets(sentences)] if sentences else []
@@ -108,6 +122,10 @@ def _summary(comparisons: list[ModeComparison]) -> str:
             "“What cannot be concluded”."
         )
         parts.append(paragraph(few, "warning"))
+    if sentences and (caveat := order_caveat(comparisons)):
+        parts.append(paragraph(caveat, "warning"))
     if not parts:
         parts = [paragraph("No trainee did two modes; the study is described, nothing is tested.")]
+    if gap:
+        parts.insert(0, paragraph(f"{gap} What follows is about these trials alone.", "warning"))
     return section("In short", *parts)

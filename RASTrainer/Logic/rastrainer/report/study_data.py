@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from rastrainer.cohort.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.ctps import Trial
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_progress import QuestionnaireAnswers, StudyProgress
@@ -65,6 +66,8 @@ class StudyData:
         without_consent: How many trainees are left out because they did not agree to research.
         versions: Of the programs that made the records, name → different versions.
         has_order: Whether the order of the trials is known.
+        gap: What is missing of a virtual cohort that was not played to its end, as a sentence; ""
+            of a whole one and of any other study.
     """
 
     title: str
@@ -78,6 +81,7 @@ class StudyData:
     without_consent: int = 0
     versions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     has_order: bool = False
+    gap: str = ""
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -111,17 +115,27 @@ class StudyData:
         ]
 
 
-def read_study_data(path: Path) -> StudyData:
+def read_study_data(path: Path, allow_incomplete: bool = False) -> StudyData:
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
     Beside a CSV file `NAME.csv`, notes are read from `NAME.json` if it is there.
 
+    Args:
+        path: Of the file.
+        allow_incomplete: Read a virtual cohort that was not played to its end, too.
+
     Raises:
+        IncompleteStudyError: it was not, and is not allowed.
         InputError: the file cannot be used, or holds no trials of anyone who consents.
     """
     if not path.is_file():
         raise InputError(f"There is no file {path}.")
     data = _from_csv(path) if path.suffix.lower() == ".csv" else _from_database(path)
+    if data.gap and not allow_incomplete:
+        raise IncompleteStudyError(
+            f"{data.gap} Simulate it again into the same folder with the same options: only what "
+            "is missing is played."
+        )
     if not data.trials:
         raise InputError(
             f"The study {path} holds no trials of trainees who agreed to research "
@@ -151,6 +165,7 @@ def _from_database(path: Path) -> StudyData:
     with Study.open(path) as study:
         progress = StudyProgress(study)
         protocol = progress.protocol()
+        cohort = CohortStore(study).state()
         everyone = (*study.trainees(), *study.trainees(archived=True))
         consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
         enrolled = [name for name in progress.enrolled() if name in consenting]
@@ -180,6 +195,7 @@ def _from_database(path: Path) -> StudyData:
             without_consent=len(everyone) - len(consenting),
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
+            gap="" if cohort is None else cohort.gap,
         )
 
 

@@ -22,16 +22,25 @@ from rastrainer.slicer.heartbeat import (
     notInstalled,
 )
 from rastrainer.slicer.link_nodes import findIncomingNode
+from rastrainer.slicer.simulator_search import SimulatorSearch
 
 CONNECTOR_NAME = "RASTrainerLink"
+NOWHERE = 0
+"""The port that the connector is given once it is connected: nobody can listen there. By itself it
+would connect again 0.1 s after a loss, to whatever has the simulator's port by then."""
+CONNECT_WITHIN_S = 1.0
+"""How long the connector may connect to a simulator that has answered; then it is asked again."""
 
 
 class Connection:
     """One connection to a simulator, for as long as it is wanted.
 
+    The connector is started only when a simulator has just answered, as anything else might end
+    Slicer: see `rastrainer.slicer.probe`. A Slicer that listens cannot ask who will connect.
+
     Attributes:
         kit: what the connector and its commands are made with; None where it is not installed.
-        connector: the connector in the scene; None while no connection is wanted.
+        connector: the connector in the scene; None while there is no simulator to connect to.
         isOpen: there is a TCP connection.
         peerVersion: version of the simulator's protocol; None as long as it is not known.
     """
@@ -40,7 +49,7 @@ class Connection:
         self,
         scene: Any,
         findKit: Callable[[], ConnectorKit | None],
-        onCommand: Callable[[str, str], None],
+        onCommand: Callable[[str | bytes, str | bytes], None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`onCommand(name, content)` is called from inside VTK: it must not raise."""
@@ -52,9 +61,11 @@ class Connection:
         self._findKit = findKit
         self._onCommand = onCommand
         self._clock = clock
+        self._search = SimulatorSearch(clock)
         self._observerTag = 0
         self._address: tuple[str, int] | None = None
         self._isListening = False
+        self._connectsUntil = 0.0
         self._isHeard = False
         self._lastSign = 0.0
         self._heartbeatTime: int | None = None
@@ -70,6 +81,7 @@ class Connection:
                 address=f"{host}:{port}",
                 isWanted=self._address is not None,
                 isListening=self._isListening,
+                finding=self._search.finding,
                 isOpen=self.isOpen,
                 silenceS=self._clock() - self._lastSign,
                 isHeard=self._isHeard,
@@ -83,37 +95,85 @@ class Connection:
         self.kit = self._findKit()
         self._address = address
         self._isListening = isListening
+        self._search.begin()
 
     def end(self) -> None:
         """Want no connection any more."""
         self._address = None
+        self._search.end()
         self._dropConnector()
 
     def follow(self) -> bool:
         """Make good what was lost; return whether the connection has just been opened."""
         if self._address is None or self.kit is None:
             return False
-        self._keepConnector()
         wasOpen = self.isOpen
-        self.isOpen = self.connector.GetState() == self.connector.StateConnected
+        if self.connector is not None and self.connector.GetScene() is None:
+            self._dropConnector()
+            self._search.begin()
+        self.isOpen = (
+            self.connector is not None
+            and self.connector.GetState() == self.connector.StateConnected
+        )
         if not self.isOpen:
+            self._connect(wasOpen)
             return False
         if not wasOpen:
-            self._isHeard = False
-            self.peerVersion = None
-            self._lastSign = self._clock()
+            self._takeUp()
         self._hearHeartbeat()
         if self._clock() - self._lastSign > RECONNECT_AFTER_S:
             # Half-open: nothing will ever come over this connection again, if anything ever did.
             self.connector.Stop()
-            self.connector.Start()
+            self._search.begin()
             self.isOpen = False
         return self.isOpen and not wasOpen
 
-    def _keepConnector(self) -> None:
-        if self.connector is not None and self.connector.GetScene() is not None:
+    def _connect(self, isLost: bool) -> None:
+        """Let the connector connect, or listen; to a simulator alone, so look for one first."""
+        host, port = self._address
+        if self._clock() < self._connectsUntil and not isLost:
             return
-        self._dropConnector()
+        if self._isListening:
+            self._listen(port)
+            return
+        if self.connector is not None:
+            self.connector.SetServerPort(NOWHERE)
+        if isLost:
+            self._search.begin()
+        finding = self._search.process(host, port)
+        if finding is not None:
+            self._connectTo(finding.ip, port)
+
+    def _listen(self, port: int) -> None:
+        if self.connector is None:
+            self._makeConnector()
+            self.connector.SetTypeServer(port)
+        if self.connector.GetState() == self.connector.StateOff:
+            self.connector.Start()
+        self._connectsUntil = self._clock() + CONNECT_WITHIN_S
+
+    def _connectTo(self, ip: str, port: int) -> None:
+        if self.connector is not None and self.connector.GetServerHostname() != ip:
+            self._dropConnector()
+        if self.connector is None:
+            self._makeConnector()
+        if self.connector.GetState() == self.connector.StateOff:
+            self.connector.SetTypeClient(ip, port)
+            self.connector.Start()
+        else:
+            # `Stop` would block for as long as 0.1 s, and the connector tries by itself.
+            self.connector.SetServerPort(port)
+        self._connectsUntil = self._clock() + CONNECT_WITHIN_S
+
+    def _takeUp(self) -> None:
+        """Begin with a connection that has just been opened."""
+        self._isHeard = False
+        self.peerVersion = None
+        self._lastSign = self._connectsUntil = self._clock()
+        if not self._isListening:
+            self.connector.SetServerPort(NOWHERE)
+
+    def _makeConnector(self) -> None:
         self.connector = self.kit.makeConnector()
         self.connector.SetName(CONNECTOR_NAME)
         self.connector.SetSaveWithScene(False)
@@ -121,14 +181,10 @@ class Connection:
         self._observerTag = self.connector.AddObserver(
             self.connector.CommandReceivedEvent, self._onCommandReceived
         )
-        host, port = self._address
-        if self._isListening:
-            self.connector.SetTypeServer(port)
-        else:
-            self.connector.SetTypeClient(host, port)
-        self.connector.Start()
 
     def _dropConnector(self) -> None:
+        self.isOpen = False
+        self._connectsUntil = self._clock()
         if self.connector is None:
             return
         self.connector.RemoveObserver(self._observerTag)
@@ -136,7 +192,6 @@ class Connection:
         if self.connector.GetScene() is not None:
             self._scene.RemoveNode(self.connector)
         self.connector = None
-        self.isOpen = False
         self._heartbeatTime = None
 
     def _hearHeartbeat(self) -> None:

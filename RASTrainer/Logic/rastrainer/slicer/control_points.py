@@ -8,10 +8,17 @@ from typing import Any
 import numpy as np
 import slicer
 
+from rastrainer.slicer.wire_text import shownText
+
 
 def labelsOf(node: Any) -> tuple[str, ...]:
     """Return the labels of a `vtkMRMLMarkupsNode`."""
-    return tuple(node.GetNthControlPointLabel(i) for i in range(node.GetNumberOfControlPoints()))
+    return tuple(labelOf(node, i) for i in range(node.GetNumberOfControlPoints()))
+
+
+def labelOf(node: Any, index: int) -> str:
+    """Return the label of one point; a peer may have given it one that is no text."""
+    return shownText(node.GetNthControlPointLabel(index))
 
 
 def localPoints(node: Any) -> np.ndarray:

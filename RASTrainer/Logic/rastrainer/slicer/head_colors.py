@@ -11,7 +11,7 @@ from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.localization_error import LocalizationError
 from rastrainer.registration import Registration
-from rastrainer.slicer.color_legend import LEFT, hideLegend, showLegend
+from rastrainer.slicer.color_legend import HEAD_RANK, hideLegend, showLegend
 from rastrainer.slicer.residual_glyphs import COLOR_TABLE_ID
 from rastrainer.target_error import expected_tre
 
@@ -44,7 +44,7 @@ def colorHead(
     low, high = float(errors.min()), float(errors.max())
     display.SetScalarRange(*colorRange(low, high))
     display.SetScalarVisibility(True)
-    showLegend(model, "Expected TRE (mm)", LEFT)
+    showLegend(model, "TRE (mm)", HEAD_RANK)
     return low, high
 
 

@@ -9,7 +9,7 @@ Every line on standard output is one JSON object with the key `event`:
     removed count                                touches have gone: taken back, or a new trial began
     trial   results                              a trial is registered, scored and kept; the same
                                                  object is a line of results.jsonl
-    problem sentence                             something is wrong with a trial
+    problem sentence                             something is wrong with a trial or the images
     output  scene, picture, results, study       paths of the files, at the end
 
 Exit status: 0 when all trials are kept, 1 when they did not come in time, 2 for bad arguments.
@@ -29,6 +29,7 @@ from typing import Any
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.scenario import load_scenario
+from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.control_points import labelsOf, localPoints
 from rastrainer.slicer.headless_kit import headlessKit
 from rastrainer.slicer.headless_output import appendResults, writeOutput
@@ -37,6 +38,7 @@ from rastrainer.slicer.heartbeat import LinkStatus
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.scenario import showScenario
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
+from rastrainer.slicer.scenario_volume import VolumeLoader
 from rastrainer.slicer.study_place import STUDY_FILE, openStudyIn
 from rastrainer.slicer.trial_desk import ScoredTrial, TrialDesk
 from rastrainer.trial_files import read_trials
@@ -66,17 +68,21 @@ class HeadlessHost:
         self.scored = 0
         self._output = output
         self._touches = 0
+        self._work = BackgroundWork()
+        self._images = VolumeLoader(self.application.scene, self._work)
         self._desk = TrialDesk(
             self.application.scene,
             self.link,
             shelf.find,
             lambda: openStudyIn(output),
+            self._work,
             () if cohort is None else read_trials(cohort),
         )
         self.link.statusChanged.connect(self._tellStatus)
         self.link.pointsChanged.connect(self._tellPoints)
         self._desk.trialScored.connect(self._tellTrial)
-        self._desk.problemFound.connect(lambda sentence: tell("problem", sentence=sentence))
+        for source in (self._desk, self._images):
+            source.problemFound.connect(lambda sentence: tell("problem", sentence=sentence))
 
     def run(self, count: int, timeoutS: float) -> None:
         """Go on until so many trials are scored.
@@ -95,12 +101,15 @@ class HeadlessHost:
             if self.link.connector is not None:
                 self.link.connector.PeriodicProcess()
             self.link.process()
+            self._images.process()
+            self._work.process()
             time.sleep(PERIOD_S)
 
     def close(self) -> None:
         """Disconnect and close the study."""
-        self.link.disconnect()
         self._desk.close()
+        self._work.close()
+        self.link.disconnect()
 
     def _tellStatus(self, status: LinkStatus) -> None:
         tell("status", state=status.state.value, sentence=status.sentence, remedy=status.remedy)

@@ -30,7 +30,6 @@ class HeadlessCommand(vtk.vtkObject):
 
     def __init__(self) -> None:
         self.commandId = -1
-        self.sentAt = 0.0
         self._name = ""
         self._content = ""
         self._response = ""

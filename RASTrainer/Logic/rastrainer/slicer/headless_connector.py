@@ -11,7 +11,9 @@ import logging
 import re
 import threading
 import time
+import weakref
 from collections import deque
+from dataclasses import dataclass
 from typing import Any
 
 import slicer
@@ -22,7 +24,13 @@ from rastrainer.igtl.command import Command, CommandReply
 from rastrainer.igtl.content import Status
 from rastrainer.igtl.message import Header, Message, pack, unpack
 from rastrainer.slicer.headless_command import HeadlessCommand
-from rastrainer.slicer.incoming_nodes import NODE_CLASS, adoptOrCreateNode, updateNode
+from rastrainer.slicer.headless_crash import recordCrash
+from rastrainer.slicer.incoming_nodes import (
+    NODE_CLASS,
+    adoptOrCreateNode,
+    asSlicerHas,
+    updateNode,
+)
 from rastrainer.slicer.link_nodes import ORIGINAL_NAME
 from rastrainer.slicer.peer_sockets import PeerSockets
 
@@ -31,6 +39,25 @@ _CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")
 _DEVICE_NAME_FIELD = slice(14, 34)
 
 Raw = tuple[Header, bytes]
+
+
+@dataclass(frozen=True)
+class _Outgoing:
+    """A command on its way.
+
+    The real connector keeps what a command says, and tells its events to the object that was made
+    in Python, whether or not that still lives.
+    """
+
+    commandId: int
+    deadline: float
+    command: weakref.ref[HeadlessCommand]
+
+    def alive(self) -> HeadlessCommand:
+        command = self.command()
+        if command is None:
+            raise recordCrash("A command was deleted before the connector was done with it.")
+        return command
 
 
 class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
@@ -54,7 +81,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._sockets: PeerSockets | None = None
         self._state = self.StateOff
         self._nextCommandId = 1
-        self._outgoing: list[HeadlessCommand] = []
+        self._outgoing: list[_Outgoing] = []
         self._lock = threading.Lock()
         self._commands: deque[Raw] = deque()
         self._latest: dict[tuple[str, str, int], Raw] = {}
@@ -69,6 +96,16 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         """Make it a server; it listens on this machine's loopback only."""
         self._type, self._address = self.TypeServer, ("127.0.0.1", port)
         return 1
+
+    def GetServerHostname(self) -> str:
+        """Return the server that a client connects to."""
+        return self._address[0]
+
+    def SetServerPort(self, port: int) -> None:
+        """Change the port; a client that runs connects there the next time it has no server."""
+        self._address = (self._address[0], port)
+        if self._sockets is not None:
+            self._sockets.port = port
 
     def GetServerPort(self) -> int:
         """Return the TCP port, that in use where a server was given port 0."""
@@ -123,8 +160,8 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             command.SetCommandStatus(command.CommandFailed)
             return
         command.SetCommandStatus(command.CommandWaiting)
-        command.sentAt = time.monotonic()
-        self._outgoing.append(command)
+        deadline = time.monotonic() + command.GetTimeoutSec()
+        self._outgoing.append(_Outgoing(command.commandId, deadline, weakref.ref(command)))
 
     def PeriodicProcess(self) -> None:
         """Put into the scene what has arrived, and tell the observers.
@@ -170,25 +207,26 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
 
     def _processCommand(self, header: Header, body: bytes) -> None:
         try:
-            message = unpack(header, body)
+            message = unpack(header, body, keep_bytes=True)
         except InputError as error:
-            logging.error("A command was dropped: %s", error)
-            return
+            raise recordCrash(f"A broken command came: {error}") from None
         content = message.content
         if isinstance(content, CommandReply):
             self._takeAnswer(content, message)
             return
         command = HeadlessCommand()
         command.commandId = content.command_id
-        command.SetName(content.name)
-        command.SetCommandContent(content.body)
+        command.SetName(asSlicerHas(content.name))
+        command.SetCommandContent(asSlicerHas(content.body))
         command.SetCommandStatus(command.CommandWaiting)
         self.InvokeEvent(self.CommandReceivedEvent, command)
 
     def _takeAnswer(self, reply: CommandReply, message: Message) -> None:
-        for command in self._outgoing:
-            if command.commandId == reply.command_id:
-                command.setResponse(reply.body, message.metadata)
+        for outgoing in self._outgoing:
+            if outgoing.commandId == reply.command_id:
+                command = outgoing.alive()
+                metadata = {key: asSlicerHas(text) for key, text in message.metadata.items()}
+                command.setResponse(asSlicerHas(reply.body), metadata)
                 self.InvokeEvent(self.CommandResponseReceivedEvent, command)
                 command.InvokeEvent(command.CommandResponseEvent)
                 return
@@ -196,21 +234,22 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
 
     def _giveUpOldCommands(self) -> None:
         now = time.monotonic()
-        for command in self._outgoing:
-            if command.IsInProgress() and now - command.sentAt > command.GetTimeoutSec():
+        for outgoing in self._outgoing:
+            if now > outgoing.deadline and (command := outgoing.alive()).IsInProgress():
                 command.SetCommandStatus(command.CommandExpired)
                 command.InvokeEvent(command.CommandExpiredEvent)
-        completed = [command for command in self._outgoing if command.IsCompleted()]
-        self._outgoing = [command for command in self._outgoing if command.IsInProgress()]
+        commands = [(outgoing, outgoing.command()) for outgoing in self._outgoing]
+        completed = [command for _out, command in commands if command and command.IsCompleted()]
+        self._outgoing = [
+            out for out, command in commands if command is None or command.IsInProgress()
+        ]
         for command in completed:
             self.InvokeEvent(self.CommandCompletedEvent, command)
             command.InvokeEvent(command.CommandCompletedEvent)
 
     def _processData(self, header: Header, body: bytes, modifications: list) -> None:
         if _CRASHING_TYPE.match(header.type) or not body:
-            raise RuntimeError(
-                f"Slicer would not have survived this {header.type} message of {header.device}."
-            )
+            raise recordCrash(f"A {header.type} message of {header.device} came.")
         if header.type not in NODE_CLASS:
             logging.error("Received unknown device type %s of %s.", header.type, header.device)
             return
@@ -222,8 +261,10 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             logging.error("A message of %s was dropped: wrong checksum.", header.device)
             return
         try:
-            updateNode(node, unpack(header, body))
+            updateNode(node, unpack(header, body, keep_bytes=True))
         except InputError as error:
+            if "extended header" in str(error):
+                raise recordCrash(f"A message of {header.device} came: {error}") from None
             logging.error("A message of %s was dropped: %s", header.device, error)
 
     def _incomingNode(self, header: Header) -> Any:

@@ -12,6 +12,9 @@ import slicer
 
 from rastrainer.errors import InputError
 
+SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
+"""Slicer's own slice views and how they are cut."""
+
 
 class HeadlessScene:
     """Owns a `vtkMRMLScene` and the logics without which nodes lose their storage or defaults.
@@ -28,6 +31,8 @@ class HeadlessScene:
         self._markupsLogic = slicer.vtkSlicerMarkupsLogic()
         self._markupsLogic.SetMRMLApplicationLogic(self._applicationLogic)
         self._markupsLogic.SetMRMLScene(self.scene)
+        # Whoever opens a saved scene finds the images in the slice views.
+        self._sliceLogics = [self._sliceLogic(name, axes) for name, axes in SLICES.items()]
         # It shows of each Sequence what its browser has chosen.
         self._sequencesLogic = slicer.vtkSlicerSequencesLogic()
         self._sequencesLogic.SetMRMLApplicationLogic(self._applicationLogic)
@@ -67,3 +72,10 @@ class HeadlessScene:
                 self.scene.SetDataIOManager(None)
         if not isRead:
             raise InputError(f"{path} is not a scene bundle (.mrb) that can be read.")
+
+    def _sliceLogic(self, name: str, orientation: str) -> slicer.vtkMRMLSliceLogic:
+        logic = slicer.vtkMRMLSliceLogic()
+        logic.SetMRMLApplicationLogic(self._applicationLogic)
+        logic.SetMRMLScene(self.scene)
+        logic.AddSliceNode(name).SetOrientation(orientation)
+        return logic

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.slicer.finding import Finding, Peer, remedyOf, sentenceOf
 from rastrainer.slicer.translation import _
 
 STALE_AFTER_S = 3.5
@@ -22,7 +23,9 @@ class LinkState(str, Enum):
 
     OFF = "off"
     NOT_INSTALLED = "not installed"
+    LOOKING = "looking"
     ABSENT = "absent"
+    OTHER_PROGRAM = "other program"
     GREETING = "greeting"
     CONNECTED = "connected"
     STALE = "stale"
@@ -46,6 +49,7 @@ class LinkObservation:
         address: as the user gave it, such as `127.0.0.1:18944`.
         isWanted: the user has asked for a connection.
         isListening: the simulator is to connect to this side.
+        finding: who answers there; None while nobody was asked, or the answer is awaited.
         isOpen: there is a TCP connection.
         silenceS: seconds since the last heartbeat, or since the connection was opened.
         isHeard: a heartbeat has come over this connection.
@@ -55,6 +59,7 @@ class LinkObservation:
     address: str
     isWanted: bool
     isListening: bool = False
+    finding: Finding | None = None
     isOpen: bool = False
     silenceS: float = 0.0
     isHeard: bool = False
@@ -64,11 +69,11 @@ class LinkObservation:
 def judge(link: LinkObservation) -> LinkStatus:
     """Return the state of the link in words."""
     if not link.isWanted:
-        return LinkStatus(LinkState.OFF, _("Not connected."), _("Press Connect."))
+        return LinkStatus(LinkState.OFF, _("Not connected."), _("Press Start and connect."))
     if not link.isOpen:
-        return _absent(link)
+        return _noSimulatorYet() if link.isListening else _looking(link)
     if link.peerVersion not in (None, PROTOCOL_VERSION):
-        return _wrongVersion(link)
+        return _wrongVersion(link.peerVersion)
     if link.silenceS > STALE_AFTER_S:
         return _stale(link)
     if not link.isHeard:
@@ -91,29 +96,47 @@ def notInstalled() -> LinkStatus:
     )
 
 
-def _absent(link: LinkObservation) -> LinkStatus:
-    if link.isListening:
+def judgeFinding(finding: Finding, address: str) -> LinkStatus:
+    """Return in words who answers at an address where no connection is wanted."""
+    if finding.peer is not Peer.SIMULATOR:
+        isAbsent = finding.peer in (Peer.NOBODY, Peer.UNKNOWN_HOST)
         return LinkStatus(
-            LinkState.ABSENT,
-            _("No simulator has connected yet."),
-            _("Start it with “rastrainer simulator --connect HOST:PORT”, with this computer's."),
+            LinkState.ABSENT if isAbsent else LinkState.OTHER_PROGRAM,
+            sentenceOf(finding.peer, address),
+            remedyOf(finding.peer),
         )
+    if finding.version != PROTOCOL_VERSION:
+        return _wrongVersion(finding.version)
+    return LinkStatus(LinkState.CONNECTED, sentenceOf(finding.peer, address), _("Press Connect."))
+
+
+def lookingAt(address: str) -> LinkStatus:
+    """Return the status while it is asked who answers."""
+    sentence = _("Looking for a simulator at {address}.").format(address=address)
+    return LinkStatus(LinkState.LOOKING, sentence)
+
+
+def _looking(link: LinkObservation) -> LinkStatus:
+    status = None if link.finding is None else judgeFinding(link.finding, link.address)
+    isFound = status is not None and status.state is LinkState.CONNECTED
+    return lookingAt(link.address) if status is None or isFound else status
+
+
+def _noSimulatorYet() -> LinkStatus:
     return LinkStatus(
         LinkState.ABSENT,
-        _("No simulator answers at {address}.").format(address=link.address),
-        _("Start it with “rastrainer simulator”, or correct the host and port."),
+        _("No simulator has connected yet."),
+        _("Start it so that it connects to this computer."),
     )
 
 
-def _wrongVersion(link: LinkObservation) -> LinkStatus:
+def _wrongVersion(theirs: int) -> LinkStatus:
     return LinkStatus(
         LinkState.WRONG_VERSION,
         _("The simulator speaks version {theirs} of the protocol, this module {ours}.").format(
-            theirs=link.peerVersion, ours=PROTOCOL_VERSION
+            theirs=theirs, ours=PROTOCOL_VERSION
         ),
-        _("Update the module.")
-        if link.peerVersion > PROTOCOL_VERSION
-        else _("Update the simulator."),
+        _("Update the module.") if theirs > PROTOCOL_VERSION else _("Update the simulator."),
     )
 
 

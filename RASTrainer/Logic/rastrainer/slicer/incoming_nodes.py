@@ -60,6 +60,15 @@ NODE_CLASS = {
 _NEW_NODE_CLASS = {**NODE_CLASS, Transform.TYPE: "vtkMRMLLinearTransformNode"}
 
 
+def asSlicerHas(text: str) -> str | bytes:
+    """Return a text of a message as VTK hands it to Python: as bytes where it is not UTF-8."""
+    data = text.encode("utf-8", "surrogateescape")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data
+
+
 def adoptOrCreateNode(scene: Any, messageType: str, deviceName: str) -> Any:
     """Return the node for a device: one of that name and class that is there, or a new one."""
     name = deviceName or "OpenIGTLink"
@@ -88,14 +97,14 @@ def updateNode(node: Any, message: Message) -> None:
     if isinstance(content, Transform):
         _updateTransform(node, message)
     elif isinstance(content, String):
-        node.SetText(content.text.partition("\0")[0])
+        node.SetText(asSlicerHas(content.text.partition("\0")[0]))
         node.Modified()
     elif isinstance(content, Points):
         _updatePoints(node, message)
     else:
         node.setStatus(content)
     for key, value in message.metadata.items():
-        node.SetAttribute(METADATA_PREFIX + key, value)
+        node.SetAttribute(METADATA_PREFIX + key, asSlicerHas(value))
 
 
 def _updateTransform(node: Any, message: Message) -> None:
@@ -105,7 +114,7 @@ def _updateTransform(node: Any, message: Message) -> None:
     node.Modified()
     for key, value in message.metadata.items():
         if "Status" in key:
-            node.SetAttribute(key, value)
+            node.SetAttribute(key, asSlicerHas(value))
 
 
 def _updatePoints(node: Any, message: Message) -> None:
@@ -128,10 +137,11 @@ def _updatePoints(node: Any, message: Message) -> None:
 
 
 def _updatePoint(node: Any, index: int, point: Point) -> None:
+    label = asSlicerHas(point.label)
     if index >= node.GetNumberOfControlPoints():
-        node.AddControlPoint(vtk.vtkVector3d(point.position), point.label)
+        node.AddControlPoint(vtk.vtkVector3d(point.position), label)
     else:
-        node.SetNthControlPointLabel(index, point.label)
+        node.SetNthControlPointLabel(index, label)
         node.SetNthControlPointPosition(index, point.position)
     node.SetNthControlPointSelected(index, point.group != UNSELECTED)
     node.SetNthControlPointVisibility(index, point.color[3] > 0)

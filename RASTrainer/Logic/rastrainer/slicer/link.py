@@ -1,36 +1,45 @@
 """The link to the simulator: one class for desktop Slicer and for the headless side.
 
 Everything happens in `process`, which the host calls about ten times a second: nodes are polled
-rather than observed, since any of them may be deleted at any time.
+rather than observed, since any of them may be deleted at any time. Only answers and commands are
+handed over sooner, where the host lends a hand.
 """
 
 from __future__ import annotations
 
 import json
-import logging
 import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import (
     DEFAULT_HOST,
     DEFAULT_PORT,
     PROTOCOL_VERSION,
     CommandName,
-    Device,
     check_arguments,
-    decode_json_object,
 )
+from rastrainer.slicer.arrivals import Arrivals
 from rastrainer.slicer.connection import Connection
+from rastrainer.slicer.connection_check import ConnectionCheck, checkedAddress, checkPort
 from rastrainer.slicer.connector_kit import ConnectorKit
+from rastrainer.slicer.contained import Contained
 from rastrainer.slicer.heartbeat import LinkState, LinkStatus
-from rastrainer.slicer.link_nodes import capturedPointsNode, prepareNodes, simStateNode
-from rastrainer.slicer.pending_commands import OnReply, PendingCommands
+from rastrainer.slicer.link_nodes import prepareNodes
+from rastrainer.slicer.pending_commands import OnReply, PendingCommands, Request
 from rastrainer.slicer.signal import Signal
-from rastrainer.slicer.translation import _
+
+CallSoon = Callable[[Callable[[], None]], None]
+"""Has something called in the host's next turn."""
+
+
+def neverSoon(_work: Callable[[], None]) -> None:
+    """Leave it to the next `process`: the host has no turns."""
+
+
+POSES_HZ = 30.0
+"""How often poses are asked for; software graphics renders them 20 times a second at best."""
 
 
 class Link:
@@ -38,7 +47,7 @@ class Link:
 
     Attributes:
         statusChanged: emits the new `LinkStatus`.
-        opened: emits nothing, after each greeting that the simulator has answered.
+        opened: emits nothing, after the greeting of each connection has been answered.
         pointsChanged: emits the list of touched points (`vtkMRMLMarkupsFiducialNode`).
         stateChanged: emits what `SimState` says, a dict.
         trialCompleted: emits the record that the simulator delivers, a dict not yet checked.
@@ -51,7 +60,18 @@ class Link:
         findKit: Callable[[], ConnectorKit | None],
         client: str = "3D Slicer",
         clock: Callable[[], float] = time.monotonic,
+        callSoon: CallSoon = neverSoon,
     ) -> None:
+        """Make a link that is not connected.
+
+        Args:
+            scene: the scene.
+            findKit: returns what makes the connector; None where it is not installed.
+            client: what the simulator is told who connects.
+            clock: seconds that only rise.
+            callSoon: has something called in the host's next turn, so that answers and commands
+                need not wait for the next `process`; it is called from inside VTK.
+        """
         self.statusChanged = Signal()
         self.opened = Signal()
         self.pointsChanged = Signal()
@@ -60,15 +80,24 @@ class Link:
         self.stepAnswered = Signal()
         self._scene = scene
         self._client = client
-        # From inside VTK nothing may raise: commands are kept here until `process`.
-        self._received: deque[tuple[str, str]] = deque()
-        self._connection = Connection(
-            scene, findKit, lambda *command: self._received.append(command), clock
+        self._callSoon = callSoon
+        self._isCallDue = False
+        self._contained = Contained()
+        self._test = ConnectionCheck(self._contained, clock)
+        self._arrivals = Arrivals(
+            scene,
+            self._contained,
+            self.pointsChanged,
+            self.stateChanged,
+            {
+                CommandName.TRIAL_COMPLETED: self.trialCompleted,
+                CommandName.STEP_ANSWERED: self.stepAnswered,
+            },
         )
-        self._pending = PendingCommands(clock)
+        self._connection = Connection(scene, findKit, self._keepCommand, clock)
+        self._pending = PendingCommands(self._contained, clock, self._hurry)
+        self._wantsPoses = False
         self._preparedConnector: Any | None = None
-        self._points: tuple = ()
-        self._stateText = ""
         self._status = self._connection.status
 
     @property
@@ -92,9 +121,7 @@ class Link:
         Raises:
             InputError: no host, or a port that is none.
         """
-        if not host.strip():
-            raise InputError(_("Enter the host of the simulator, such as 127.0.0.1."))
-        self._begin((host.strip(), port), isListening=False)
+        self._begin(checkedAddress(host, port), isListening=False)
 
     def listenOn(self, port: int = DEFAULT_PORT) -> None:
         """Wait for a simulator that was started with `--connect`.
@@ -102,12 +129,36 @@ class Link:
         Raises:
             InputError: a port that is none.
         """
+        checkPort(port)
         self._begin(("", port), isListening=True)
+
+    def testConnection(
+        self, host: str, port: int, onFound: Callable[[LinkStatus], None]
+    ) -> LinkStatus:
+        """Ask once who answers at an address; `onFound` is told by a later `process`.
+
+        Returns:
+            What to say meanwhile.
+
+        Raises:
+            InputError: no host, or a port that is none.
+        """
+        return self._test.begin(*checkedAddress(host, port), onFound)
 
     def disconnect(self) -> None:
         """Close the connection and stay without one."""
         self._connection.end()
         self.process()
+
+    def wantPoses(self, areWanted: bool) -> None:
+        """Have the simulator send where the arm is while it moves, or nothing of it.
+
+        Slicer renders all its views for each pose, whoever looks: want them while somebody does.
+        """
+        if areWanted != self._wantsPoses:
+            self._wantsPoses = areWanted
+            if self.isOpen:
+                self._sayHello(isFirst=False)
 
     def send(
         self,
@@ -126,85 +177,73 @@ class Link:
         if not self.isOpen or status.state is LinkState.WRONG_VERSION:
             self._pending.refuse(onReply, status.sentence)
             return
-        command = self._connection.kit.makeCommand()
-        command.SetName(name)
-        command.SetCommandContent(json.dumps(dict(arguments or {}), allow_nan=False))
-        command.SetTimeoutSec(timeoutS)
-        self._pending.send(self._connection.connector, command, onReply)
+        content = json.dumps(dict(arguments or {}), allow_nan=False)
+        self._pending.send(Request(name, content, timeoutS, onReply), self._transmit)
 
     def process(self) -> None:
         """Do what is due: connect, judge the heartbeat, hand over what has arrived."""
+        self._isCallDue = False
         if self._scene.IsBatchProcessing():
             return
-        if self._connection.follow():
-            self._sayHello()
+        self._test.process()
+        if self._contained.run("The connection", self._connection.follow):
+            self._sayHello(isFirst=True)
         if self.connector is not self._preparedConnector:
             self._preparedConnector = self.connector
             if self.connector is not None:
                 prepareNodes(self._scene)
         self._tellStatus()
-        self._pending.poll(self.isOpen)
+        self._pending.poll(self.isOpen, self._transmit)
         if self.connector is not None:
-            self._handOverNodes()
-        self._handOverCommands()
+            self._arrivals.handOverNodes()
+        self._arrivals.handOverCommands()
 
     def _begin(self, address: tuple[str, int], isListening: bool) -> None:
-        if not 0 < address[1] < 65536:
-            raise InputError(_("The port must be a number from 1 to 65535."))
         self._connection.begin(address, isListening)
         self.process()
 
-    def _sayHello(self) -> None:
+    def _transmit(self, request: Request) -> Any:
+        """Return the connector's command for a request, sent."""
+        command = self._connection.kit.makeCommand()
+        command.SetName(request.name)
+        command.SetCommandContent(request.content)
+        command.SetTimeoutSec(request.timeoutS)
+        self.connector.SendCommand(command)
+        return command
+
+    def _keepCommand(self, name: str | bytes, content: str | bytes) -> None:
+        """Keep a command of the simulator until it can be handled: this is inside VTK."""
+        self._arrivals.keepCommand(name, content)
+        self._contained.run("A command's event", self._hurry)
+
+    def _hurry(self) -> None:
+        """See to it that what has arrived is handed over soon; called from inside VTK."""
+        if not self._isCallDue:
+            self._isCallDue = True
+            self._callSoon(self._handOverArrivals)
+
+    def _handOverArrivals(self) -> None:
+        self._isCallDue = False
+        if not self._scene.IsBatchProcessing():
+            self._pending.poll(self.isOpen, self._transmit)
+            self._arrivals.handOverCommands()
+
+    def _sayHello(self, isFirst: bool) -> None:
+        """Greet the simulator and ask for poses; later again, to ask for others."""
+
         def welcome(reply: Reply) -> None:
             version = reply.data.get("protocolVersion")
             if isinstance(version, int):
                 self._connection.peerVersion = version
-            if reply.ok:
-                self.opened.emit()
+            if reply.ok and isFirst:
+                self._contained.emit("The opened link", self.opened)
 
+        hz = POSES_HZ if self._wantsPoses else 0.0
         hello = {"protocolVersion": PROTOCOL_VERSION, "client": self._client}
-        self.send(CommandName.HELLO, hello, welcome)
+        self.send(CommandName.HELLO, {**hello, "toolTipHz": hz, "linksHz": hz}, welcome)
 
     def _tellStatus(self) -> None:
         status = self._connection.status
         if status != self._status:
             self._status = status
-            self.statusChanged.emit(status)
-
-    def _handOverNodes(self) -> None:
-        pointsNode = capturedPointsNode(self._scene)
-        points = _snapshot(pointsNode)
-        if points != self._points:
-            self._points = points
-            self.pointsChanged.emit(pointsNode)
-        text = simStateNode(self._scene).GetText() or ""
-        if text and text != self._stateText:
-            self._stateText = text
-            self._handOver(text, Device.SIM_STATE, self.stateChanged)
-
-    def _handOverCommands(self) -> None:
-        signals = {
-            CommandName.TRIAL_COMPLETED: self.trialCompleted,
-            CommandName.STEP_ANSWERED: self.stepAnswered,
-        }
-        while self._received:
-            name, content = self._received.popleft()
-            if name in signals:
-                self._handOver(content, name, signals[name])
-            else:
-                logging.warning("The simulator sent the unknown command %s.", name)
-
-    def _handOver(self, text: str, name: str, signal: Signal) -> None:
-        try:
-            value = decode_json_object(text)
-        except InputError as error:
-            logging.error("What came as %s cannot be read: %s", name, error)
-            return
-        signal.emit(value)
-
-
-def _snapshot(markupsNode: Any) -> tuple:
-    return tuple(
-        (markupsNode.GetNthControlPointLabel(i), tuple(markupsNode.GetNthControlPointPosition(i)))
-        for i in range(markupsNode.GetNumberOfControlPoints())
-    )
+            self._contained.emit("The link's status", self.statusChanged, status)

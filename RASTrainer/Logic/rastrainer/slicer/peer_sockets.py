@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import contextlib
-import logging
 import socket
 import threading
 from collections.abc import Callable
 
 from rastrainer.igtl import message as wire
+from rastrainer.slicer.headless_crash import CrashError, recordCrash
 
 RETRY_PERIOD_S = 0.1
 CRASHING_BODY = 2**31
+_VERSIONS = (b"\0\1", b"\0\2")
 
 Received = Callable[[int, wire.Header, bytes], None]
 
@@ -37,7 +38,8 @@ class PeerSockets:
         changed: Callable[[bool], None],
     ) -> None:
         self._listens = listens
-        self._address = (host, port)
+        self._host = host
+        self._port = port
         self._received = received
         self._changed = changed
         self._peers: dict[int, socket.socket] = {}
@@ -45,7 +47,7 @@ class PeerSockets:
         self._stopped = threading.Event()
         self._nextPeer = 0
         self._isConnected = False
-        self._listener = socket.create_server(self._address) if listens else None
+        self._listener = socket.create_server((host, port)) if listens else None
         if self._listener is not None:
             self._listener.settimeout(RETRY_PERIOD_S)
         self._thread = threading.Thread(target=self._keepConnected, daemon=True)
@@ -54,7 +56,12 @@ class PeerSockets:
     @property
     def port(self) -> int:
         """The port in use; differs from the given one where that was 0."""
-        return self._listener.getsockname()[1] if self._listener else self._address[1]
+        return self._listener.getsockname()[1] if self._listener else self._port
+
+    @port.setter
+    def port(self, port: int) -> None:
+        """Let a client connect there the next time."""
+        self._port = port
 
     def send(self, data: bytes) -> bool:
         """Send to every peer; blocks while one does not read, as Slicer's does.
@@ -105,7 +112,7 @@ class PeerSockets:
             if self._peers:
                 return None
         try:
-            peer = socket.create_connection(self._address, timeout=1.0)
+            peer = socket.create_connection((self._host, self._port), timeout=1.0)
         except OSError:
             return None
         peer.settimeout(None)
@@ -124,7 +131,7 @@ class PeerSockets:
             with peer.makefile("rb") as stream:
                 while (message := _readMessage(stream)) is not None:
                     self._received(number, *message)
-        except OSError:
+        except (OSError, CrashError):
             pass
         finally:
             _shut(peer)
@@ -133,13 +140,21 @@ class PeerSockets:
 
 
 def _readMessage(stream) -> tuple[wire.Header, bytes] | None:
-    headerBytes = stream.read(wire.HEADER_BYTES)
+    """Return the next message, None at the end.
+
+    The real client takes whatever comes for a header, and makes room for as much as it reads there.
+    """
+    start = stream.read(len(_VERSIONS[0]))
+    if len(start) < len(_VERSIONS[0]):
+        return None
+    if start not in _VERSIONS:
+        raise recordCrash("The connector met something that is not OpenIGTLink.")
+    headerBytes = start + stream.read(wire.HEADER_BYTES - len(start))
     if len(headerBytes) < wire.HEADER_BYTES:
         return None
     header = wire.read_header(headerBytes)
     if header is None or header.body_size >= CRASHING_BODY:
-        logging.error("The peer sent a header that no OpenIGTLink message has.")
-        return None
+        raise recordCrash("The peer sent a header that no OpenIGTLink message has.")
     body = stream.read(header.body_size)
     return (header, body) if len(body) == header.body_size else None
 

@@ -1,8 +1,7 @@
-"""Slicer's mouse mode in which a click puts a point into a markup, and where slices jump to."""
+"""Slicer's mouse mode in which a click puts a point into a markup."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 SELECTION = "vtkMRMLSelectionNodeSingleton"
@@ -18,9 +17,8 @@ def startPlacing(scene: Any, node: Any) -> None:
     interaction.SetCurrentInteractionMode(interaction.Place)
 
 
-def jumpTo(scene: Any, position: Sequence[float]) -> None:
-    """Bring a place, (3,) float, RAS mm, into all slice views."""
-    slices = scene.GetNodesByClass("vtkMRMLSliceNode")
-    slices.UnRegister(None)
-    for index in range(slices.GetNumberOfItems()):
-        slices.GetItemAsObject(index).JumpSliceByCentering(*position)
+def stopPlacing(scene: Any) -> None:
+    """Let clicks in the views place nothing more; a point that only follows the mouse goes."""
+    interaction = scene.GetNodeByID(INTERACTION)
+    if interaction.GetCurrentInteractionMode() == interaction.Place:
+        interaction.SetCurrentInteractionMode(interaction.ViewTransform)

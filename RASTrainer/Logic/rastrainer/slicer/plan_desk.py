@@ -12,17 +12,18 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import CommandName
 from rastrainer.registration import Registration
+from rastrainer.slicer.control_points import labelOf
 from rastrainer.slicer.link import Link
+from rastrainer.slicer.plan_points import LINE, PlanPoints, placedRows
 from rastrainer.slicer.registration_desk import RegistrationDesk
-from rastrainer.slicer.scene import Role, findOrAddNode
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.trial_desk import ScoredTrial
 from rastrainer.target_error import TargetError
 
-TARGET_COLOR = (0.85, 0.2, 0.55)
 LONGEST_NAME = 64
-LINE = "vtkMRMLMarkupsLineNode"
+SAME_PLACE_MM = 0.01
+"""Touches come as single precision numbers first, and with all digits once a trial is stored."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,15 @@ class Plan:
     entryWorld: np.ndarray | None
     expected: TargetError | None
 
+    def isAsGood(self, other: Plan) -> bool:
+        """Tell whether what holds for this plan holds for the other: they mean the same places."""
+        if (self.entry is None) != (other.entry is None):
+            return False
+        mine = (self.target, self.targetWorld, self.entry, self.entryWorld)
+        theirs = (other.target, other.targetWorld, other.entry, other.entryWorld)
+        pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a is not None]
+        return all(float(np.abs(a - b).max()) < SAME_PLACE_MM for a, b in pairs)
+
 
 class PlanDesk:
     """What the Plan panel does.
@@ -55,6 +65,7 @@ class PlanDesk:
         sentence: what was last said about the plan.
         trueErrorMm: how far the registration puts the target from where it is; None as long as
             the simulator has not revealed it.
+        points: that are placed, removed and brought back.
     """
 
     def __init__(self, scene: Any, link: Link, registration: RegistrationDesk) -> None:
@@ -62,19 +73,12 @@ class PlanDesk:
         self.isReachable: bool | None = None
         self.sentence = ""
         self.trueErrorMm: float | None = None
-        self._scene = scene
+        self.points = PlanPoints(scene)
         self._link = link
         self._registration = registration
         self._headToWorld: np.ndarray | None = None
         self._sent: Plan | None = None
-
-    def newTarget(self) -> Any:
-        """Return the list for a planned point, empty, ready to be placed."""
-        return self._fresh("vtkMRMLMarkupsFiducialNode", Role.PLAN_TARGET, _("Planned target"))
-
-    def newTrajectory(self) -> Any:
-        """Return the line for a planned trajectory, from entry to target, ready to be placed."""
-        return self._fresh(LINE, Role.PLAN_TRAJECTORY, _("Planned trajectory"))
+        self._isAnswered = self._isRefused = False
 
     def read(self, node: Any | None, row: int = -1) -> Plan:
         """Return the plan that a list of points or a line holds.
@@ -88,7 +92,9 @@ class PlanDesk:
         Raises:
             InputError: nothing is placed, or there is no registration to map it with.
         """
-        rows = _placedRows(node)
+        if node is None:
+            raise InputError(_("Place a target or a trajectory, or choose one."))
+        rows = placedRows(node)
         if not rows:
             raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
         points = np.array([node.GetNthControlPointPositionWorld(each) for each in rows])
@@ -124,7 +130,17 @@ class PlanDesk:
             arguments["entryMm"] = plan.entryWorld.tolist()
         self.isReachable, self.sentence = None, _("The simulator is asked.")
         self.trueErrorMm = None
+        self._sent, self._isAnswered, self._isRefused = plan, False, False
         self._link.send(CommandName.PLAN_TARGET, arguments, lambda reply: self._take(reply, plan))
+        self.changed.emit()
+
+    def follow(self, plan: Plan | None) -> None:
+        """Forget what was answered about another plan than this one, which is looked at now."""
+        if self._sent is None or (plan is not None and self._sent.isAsGood(plan)):
+            return
+        self._sent = self.isReachable = self.trueErrorMm = None
+        stale = _("What the simulator was shown is not this plan any more: show it again.")
+        self.sentence = "" if self._isRefused else stale
         self.changed.emit()
 
     def takeTruth(self, trial: ScoredTrial) -> None:
@@ -139,8 +155,10 @@ class PlanDesk:
         self.changed.emit()
 
     def _take(self, reply: Reply, plan: Plan) -> None:
+        if plan is not self._sent:
+            return
         if not reply.ok:
-            self.isReachable, self.sentence = None, reply.error
+            self._isRefused, self.sentence = True, reply.error
             self.changed.emit()
             return
         isReachable = reply.data.get("reachable")
@@ -148,11 +166,11 @@ class PlanDesk:
         reason = str(reply.data.get("reason", ""))
         told = _("The robot can carry it out.") if self.isReachable else reason
         self.sentence = _("The simulator shows the plan. {told}").format(told=told).strip()
-        self._sent = plan
+        self._isAnswered = True
         self._tellTrueError()
 
     def _tellTrueError(self) -> None:
-        if self._sent is not None and self._headToWorld is not None:
+        if self._isAnswered and self._sent is not None and self._headToWorld is not None:
             there = transforms.apply(self._headToWorld, self._sent.target[None])[0]
             self.trueErrorMm = float(np.linalg.norm(self._sent.targetWorld - there))
         self.changed.emit()
@@ -163,33 +181,14 @@ class PlanDesk:
         except InputError:
             return None
 
-    def _fresh(self, className: str, role: str, name: str) -> Any:
-        node = findOrAddNode(self._scene, className, role, name)
-        node.RemoveAllControlPoints()
-        display = node.GetDisplayNode()
-        display.SetSelectedColor(TARGET_COLOR)
-        display.SetOccludedVisibility(True)
-        return node
-
 
 def targetsOf(node: Any | None) -> tuple[str, ...]:
     """Return the labels of the points of a list that may be the target; none of a line."""
     if node is None or node.IsA(LINE):
         return ()
-    return tuple(node.GetNthControlPointLabel(row) for row in _placedRows(node))
+    return tuple(labelOf(node, row) for row in placedRows(node))
 
 
 def _nameOf(node: Any, row: int) -> str:
     """Return what the trainee is told: of one of several targets, which it is."""
-    return node.GetNthControlPointLabel(row) if len(targetsOf(node)) > 1 else node.GetName()
-
-
-def _placedRows(node: Any | None) -> list[int]:
-    """Return which points of a node are placed, and not only under the mouse."""
-    if node is None:
-        raise InputError(_("Place a target or a trajectory, or choose one."))
-    return [
-        row
-        for row in range(node.GetNumberOfControlPoints())
-        if node.GetNthControlPointPositionStatus(row) == node.PositionDefined
-    ]
+    return labelOf(node, row) if len(targetsOf(node)) > 1 else node.GetName()

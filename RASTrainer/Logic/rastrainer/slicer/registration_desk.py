@@ -10,17 +10,21 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.localization_error import LocalizationError
 from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration, register
-from rastrainer.slicer.control_points import localPoints
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.control_points import localPoints, worldPoints
 from rastrainer.slicer.head_colors import colorHead, uncolorHead
 from rastrainer.slicer.registration_input import Choices, Pairs, readPairs, snapshot
 from rastrainer.slicer.registration_nodes import showRegistration
 from rastrainer.slicer.registration_remedies import Remedy, remedies
 from rastrainer.slicer.residual_glyphs import clearResidualArrows, showResidualArrows
 from rastrainer.slicer.result_tables import showFits, showResiduals
+from rastrainer.slicer.scenario import TASK_ATTRIBUTE
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.skin_normals import SkinNormals
+from rastrainer.slicer.touches import checkSameTask
 from rastrainer.target_error import TargetError, target_error
 
 
@@ -56,7 +60,8 @@ class RegistrationDesk:
         isHeadColored: the head shows the target error to expect.
     """
 
-    def __init__(self, scene: Any) -> None:
+    def __init__(self, scene: Any, work: BackgroundWork | None = None) -> None:
+        """`work` prepares a head that is new; here and now where it is left out."""
         self.changed = Signal()
         self.comparison: Comparison | None = None
         self.problem = ""
@@ -69,7 +74,8 @@ class RegistrationDesk:
         self._targetId = ""
         self._history: list[Choices] = [Choices()]
         self._seen: tuple = ()
-        self._normals = SkinNormals()
+        self._normals = SkinNormals(work)
+        self._normals.found.connect(self._compute)
 
     @property
     def choices(self) -> Choices:
@@ -154,7 +160,8 @@ class RegistrationDesk:
     def process(self) -> None:
         """Register again if a list or the target has changed."""
         moving, fixed, target = self.moving(), self.fixed(), self.target()
-        seen = snapshot(moving, localPoints), snapshot(fixed), snapshot(target)
+        tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
+        seen = snapshot(moving, localPoints), snapshot(fixed), snapshot(target), *tasks
         if seen == self._seen:
             return
         if moving is None or moving.GetNumberOfControlPoints() == 0:
@@ -165,6 +172,7 @@ class RegistrationDesk:
     def _compute(self) -> None:
         self.comparison, self.problem, self.leaveOneOut = None, "", None
         try:
+            checkSameTask(self.moving(), self.fixed())
             pairs = readPairs(self.moving(), self.fixed(), self.choices)
             self.comparison = self._compare(pairs)
         except InputError as error:
@@ -195,7 +203,12 @@ class RegistrationDesk:
         Raises:
             InputError: the fit has too few points to tell.
         """
-        return target_error(fit, position, self._normals.errorOnSkin(self._head(), fit))
+        return target_error(fit, position, self._errorOnSkin(fit))
+
+    def _errorOnSkin(self, fit: Registration) -> LocalizationError | None:
+        fixed = self.fixed()
+        expected = None if fixed is None else worldPoints(fixed)
+        return self._normals.errorOnSkin(self._head(), fit, expected)
 
     def targetPosition(self) -> np.ndarray | None:
         """Return the target, (3,) float, RAS mm; None where there is none."""
@@ -221,7 +234,7 @@ class RegistrationDesk:
             return
         if self.isHeadColored and self.shown is not None:
             with contextlib.suppress(InputError):
-                colorHead(head, self.shown, self._normals.errorOnSkin(head, self.shown))
+                colorHead(head, self.shown, self._errorOnSkin(self.shown))
                 return
         uncolorHead(head)
 

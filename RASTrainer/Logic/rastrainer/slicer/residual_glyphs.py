@@ -9,7 +9,7 @@ import numpy as np
 import vtk
 
 from rastrainer.registration import Registration
-from rastrainer.slicer.color_legend import RIGHT, hideLegend, showLegend
+from rastrainer.slicer.color_legend import ARROWS_RANK, hideLegend, showLegend
 from rastrainer.slicer.scene import Role, findNode, findOrAddNode
 
 LONGEST_ARROW_MM = 40.0
@@ -63,7 +63,7 @@ def showResidualArrows(scene: Any, registration: Registration) -> Any:
     display.SetScalarRangeFlag(display.UseManualScalarRange)
     display.SetScalarRange(*residualRange(registration))
     display.SetScalarVisibility(True)
-    showLegend(node, "Residual (mm)", RIGHT)
+    showLegend(node, "Residual (mm)", ARROWS_RANK)
     return node
 
 

@@ -1,4 +1,4 @@
-"""Shows a scenario in the scene: head and skull, what is planned, and the fiducials of a task."""
+"""Shows a scenario in the scene: head, images, what is planned, and the fiducials of a task."""
 
 from __future__ import annotations
 
@@ -12,17 +12,23 @@ from rastrainer.head_mesh import read_head_mesh
 from rastrainer.scenario import Scenario
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.polydata import trianglesPolyData
+from rastrainer.slicer.scenario_volume import wantVolume
 from rastrainer.slicer.scene import Role, findOrAddNode, removeNode
+from rastrainer.slicer.shown_content import (
+    SCENARIO_ATTRIBUTE,
+    TASK_ATTRIBUTE,
+    isShown,
+    noteShown,
+    stampOf,
+)
 from rastrainer.tasks import Task
-
-SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
-TASK_ATTRIBUTE = "RASTrainer.task"
-CONTENT_ATTRIBUTE = "RASTrainer.content"
-"""Stamp of what a node shows: a scenario that is built anew may keep its name."""
 
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
+OUTLINE_PIXELS = 2
+"""Of head and skull in the slice views: one is hardly seen on an MRI."""
+
 FIDUCIAL_COLOR = (0.25, 0.55, 0.95)
 TARGET_COLOR = (0.2, 0.75, 0.35)
 
@@ -30,7 +36,8 @@ TARGET_COLOR = (0.2, 0.75, 0.35)
 def showScenario(scene: Any, scenario: Scenario) -> None:
     """Show head, skull, targets and trajectory; called again, nothing is made twice.
 
-    The first point of the list of targets is the scenario's own, at which the error is told.
+    The images come later, by a `VolumeLoader`. The first point of the list of targets is the
+    scenario's own, at which the error is told.
 
     Raises:
         InputError: a mesh of the scenario cannot be used.
@@ -39,6 +46,7 @@ def showScenario(scene: Any, scenario: Scenario) -> None:
     _showSkull(scene, scenario)
     _showTargets(scene, scenario)
     _showTrajectory(scene, scenario)
+    wantVolume(scene, scenario)
 
 
 def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
@@ -51,20 +59,16 @@ def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
     node = findOrAddNode(
         scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
     )
-    name, digest = f"{scenario.name}/{task.name}", sha256(task.fiducials.tobytes()).hexdigest()
-    if not _shows(node, TASK_ATTRIBUTE, name, digest):
+    name, digest = taskKey(scenario.name, task.name), sha256(task.fiducials.tobytes()).hexdigest()
+    if not isShown(node, TASK_ATTRIBUTE, name, digest):
         _fillFiducials(node, task)
-        _note(node, TASK_ATTRIBUTE, name, digest)
+        noteShown(node, TASK_ATTRIBUTE, name, digest)
     return node
 
 
-def _shows(node: Any, attribute: str, name: str, content: str) -> bool:
-    return (node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)) == (name, content)
-
-
-def _note(node: Any, attribute: str, name: str, content: str) -> None:
-    node.SetAttribute(attribute, name)
-    node.SetAttribute(CONTENT_ATTRIBUTE, content)
+def taskKey(scenarioName: str, taskName: str) -> str:
+    """Return what `TASK_ATTRIBUTE` says of a list of points that belongs to a task."""
+    return f"{scenarioName}/{taskName}"
 
 
 def _fillFiducials(node: Any, task: Task) -> None:
@@ -96,24 +100,17 @@ def _showSkull(scene: Any, scenario: Scenario) -> None:
 def _fill(node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]) -> bool:
     """Show a mesh of a scenario, and tell whether something else was shown."""
     # Asked before every trial: the file is read only when it is not the one that is shown.
-    stamp = _stamp(path)
-    if _shows(node, SCENARIO_ATTRIBUTE, scenario.name, stamp):
+    stamp = stampOf(path)
+    if isShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp):
         return False
     mesh = read_head_mesh(path)
     node.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
-    _note(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
+    noteShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
     display = node.GetDisplayNode()
     display.SetColor(color)
     display.SetVisibility2D(True)
+    display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
     return True
-
-
-def _stamp(path: Path) -> str:
-    """Tell a file from what it was, without reading it."""
-    if not path.is_file():
-        return ""
-    status = path.stat()
-    return f"{status.st_mtime_ns} {status.st_size}"
 
 
 def _showTargets(scene: Any, scenario: Scenario) -> None:

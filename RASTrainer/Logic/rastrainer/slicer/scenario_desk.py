@@ -8,22 +8,27 @@ from typing import Any
 from rastrainer.progress import Progress
 from rastrainer.scenario import Scenario
 from rastrainer.scenario_library import ListedScenario
+from rastrainer.slicer.head_preview import findSkin
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.polydata import trianglesPolyData
 from rastrainer.slicer.robot_scene import robotNode, setRobotVisible, showRobot
 from rastrainer.slicer.scenario import SKIN_COLOR, showScenario, showTask
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
+from rastrainer.slicer.scenario_volume import showImages
 from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode
-from rastrainer.slicer.world_placement import isPlanned, showPlannedPlace
+from rastrainer.slicer.touches import showOnlyTouchesOf
+from rastrainer.slicer.world_placement import followPlacement, isPlanned, showPlannedPlace
 
 
 class ScenarioDesk:
     """What the Scenario panel does."""
 
-    def __init__(self, scene: Any, shelf: ScenarioShelf, robotFolder: Path) -> None:
+    def __init__(self, scene: Any, shelf: ScenarioShelf, robotFolder: Path, python: Path) -> None:
+        """`python` runs the process that looks for heads."""
         self._scene = scene
         self._shelf = shelf
         self._robotFolder = robotFolder
+        self._python = python
 
     def listed(self) -> tuple[ListedScenario, ...]:
         """Return the scenarios that come with the module and those of the user."""
@@ -41,7 +46,9 @@ class ScenarioDesk:
         """
         scenario = self._shelf.find(scenarioName)
         showScenario(self._scene, scenario)
+        showImages(self._scene)
         fixed = showTask(self._scene, scenario, taskName)
+        showOnlyTouchesOf(self._scene, scenario.name, taskName)
         placed = findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
         if placed is None or isPlanned(placed):
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
@@ -76,15 +83,7 @@ class ScenarioDesk:
         return model, warnings
 
     def _skinOf(self, volumeNode: Any, progress: Progress) -> tuple[Any, list[str]]:
-        # Only here: scipy takes time to import.
-        from rastrainer.slicer.head.head_draft import find_skin
-        from rastrainer.slicer.head.scenario_build import in_background
-        from rastrainer.slicer.head.volume import volume_from_node
-
-        volume = volume_from_node(volumeNode)
-        _body, mesh, warnings = in_background(
-            lambda tell: find_skin(volume, progress=tell), progress
-        )
+        _body, mesh, warnings = findSkin(self._python, volumeNode, None, progress)
         name = f"Head of {volumeNode.GetName()}"
         model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
         model.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
@@ -100,6 +99,8 @@ class ScenarioDesk:
         """
         if shown:
             showRobot(self._scene, self._robotFolder)
+            # At once, so that the views can be moved to where it stands.
+            followPlacement(self._scene)
         setRobotVisible(self._scene, shown)
 
     @property

@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.progress import Progress
 from rastrainer.scenario import Scenario, load_scenario
 from rastrainer.scenario_package import unpack
-from rastrainer.slicer.child_process import ChildProcess
+from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.child_process import runChild
 from rastrainer.slicer.control_points import labelsOf, worldPoints
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from rastrainer.slicer.simulator_desk import SimulatorDesk
@@ -19,6 +21,7 @@ class ScenarioFiles:
     """What the panels Scenario and Plan do with scenarios on disk.
 
     `ownProgram` is a `rastrainer` installed elsewhere; that of the simulator where it is empty.
+    `progress` is called while it works: it may let the application draw, and may raise to cancel.
     """
 
     def __init__(self, simulator: SimulatorDesk, shelf: ScenarioShelf, library: Path) -> None:
@@ -27,13 +30,17 @@ class ScenarioFiles:
         self._shelf = shelf
         self._library = library
 
-    def takeIn(self, package: Path) -> Scenario:
+    def takeIn(self, package: Path, progress: Progress = lambda _step, _share: None) -> Scenario:
         """Unpack a scenario's zip file into the library.
+
+        Args:
+            package: the file.
+            progress: see the class.
 
         Raises:
             InputError: it cannot be used; nothing has changed.
         """
-        folder = unpack(package, self._library)
+        folder = inBackground(lambda tell: unpack(package, self._library, tell), progress)
         self._shelf.refresh()
         return load_scenario(folder)
 
@@ -44,6 +51,7 @@ class ScenarioFiles:
         keepsFace: bool = False,
         keepsNames: bool = False,
         ownProgram: str = "",
+        progress: Progress = lambda _step, _share: None,
     ) -> str:
         """Write a scenario as a zip file and return a sentence that says what was taken off.
 
@@ -53,6 +61,7 @@ class ScenarioFiles:
             keepsFace: whether the head keeps its face and skull.
             keepsNames: whether title, name and source stay, which may be the patient's name.
             ownProgram: see the class.
+            progress: see the class.
 
         Raises:
             InputError: it cannot be written.
@@ -60,9 +69,16 @@ class ScenarioFiles:
         words = ["pack", str(self._shelf.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else []
         words += ["--keep-names"] if keepsNames else []
-        return self._run(words, ownProgram)
+        return self._run(words, ownProgram, progress)
 
-    def keepPlan(self, name: str, title: str, node: Any, ownProgram: str = "") -> Scenario:
+    def keepPlan(
+        self,
+        name: str,
+        title: str,
+        node: Any,
+        ownProgram: str = "",
+        progress: Progress = lambda _step, _share: None,
+    ) -> Scenario:
         """Copy a scenario with a list in the place of its targets, or a line of its trajectory.
 
         Args:
@@ -70,6 +86,7 @@ class ScenarioFiles:
             title: of the copy.
             node: a `vtkMRMLMarkupsFiducialNode` or a `vtkMRMLMarkupsLineNode`.
             ownProgram: see the class.
+            progress: see the class.
 
         Raises:
             InputError: there is one of that title already, or the plan cannot be carried out.
@@ -78,16 +95,18 @@ class ScenarioFiles:
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
         plan = planWords(None, node) if isLine else planWords(node, None)
         source = str(self._shelf.find(name).folder)
-        self._run(["plan", source, "-o", str(folder), f"--title={title}", *plan], ownProgram)
+        words = ["plan", source, "-o", str(folder), f"--title={title}", *plan]
+        self._run(words, ownProgram, progress)
         self._shelf.refresh()
         return load_scenario(folder)
 
-    def _run(self, words: list[str], ownProgram: str) -> str:
+    def _run(self, words: list[str], ownProgram: str, progress: Progress) -> str:
         """Run `rastrainer scenario` and return the last line that it has written."""
-        command, environment = self._simulator.command(["scenario", *words], ownProgram)
-        child = ChildProcess(command, environment)
-        status = child.wait()
-        said = [line for line in child.takeLines() if line] or [_("it said nothing")]
+        command = self._simulator.command(["scenario", *words], ownProgram)
+        said = [_("it said nothing")]
+        status = runChild(
+            command, lambda line: said.append(line or said[-1]), lambda: progress("", 0.0)
+        )
         if status != 0:
             raise InputError(said[-1].removeprefix("rastrainer: "))
         return said[-1]

@@ -17,6 +17,7 @@ from rastrainer.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario_setup import SetUp, write_setup
 from rastrainer.slicer.control_points import labelsOf, worldPoints
 from rastrainer.slicer.hand_placed import handPlacedLists
+from rastrainer.slicer.head.own_process import in_own_process
 from rastrainer.slicer.head_preview import HeadPreview
 from rastrainer.slicer.scenario_files import planWords
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
@@ -24,8 +25,9 @@ from rastrainer.slicer.simulator_desk import SimulatorDesk
 from rastrainer.slicer.translation import _
 
 if TYPE_CHECKING:
-    from rastrainer.slicer.head.extraction import HeadSettings
+    from rastrainer.slicer.head.head_body import HeadSettings
 
+MAKE_DRAFT = "rastrainer.slicer.head.head_draft:make_draft"
 SOURCE = "The volume {name} in 3D Slicer."
 
 
@@ -40,6 +42,7 @@ class ScenarioWishes:
         threshold: value that parts air from skin; None finds it.
         cutMm: height (S) of the flat base; None finds it.
         hasSkull: whether the skull is wanted.
+        hasVolume: whether the scenario carries the images.
         setUp: how the head stands before the robot.
         targets: a `vtkMRMLMarkupsFiducialNode` of planned targets, or None.
         trajectory: a `vtkMRMLMarkupsLineNode` from the entry to the target, or None.
@@ -52,6 +55,7 @@ class ScenarioWishes:
     threshold: float | None = None
     cutMm: float | None = None
     hasSkull: bool = True
+    hasVolume: bool = True
     setUp: SetUp = field(default_factory=SetUp)
     targets: Any = None
     trajectory: Any = None
@@ -81,14 +85,28 @@ class ScenarioMaker:
     """What the panel New scenario does."""
 
     def __init__(
-        self, scene: Any, simulator: SimulatorDesk, shelf: ScenarioShelf, library: Path
+        self,
+        scene: Any,
+        simulator: SimulatorDesk,
+        shelf: ScenarioShelf,
+        library: Path,
+        python: Path,
     ) -> None:
-        """Scenarios come into the folder `library`, each into a folder of its own."""
+        """Make scenarios.
+
+        Args:
+            scene: the scene.
+            simulator: whose program plans the tasks.
+            shelf: of the scenarios that there are.
+            library: into which they come, each into a folder of its own.
+            python: runs the process that makes the head.
+        """
         self._scene = scene
         self._simulator = simulator
         self._shelf = shelf
         self._library = library
-        self._preview = HeadPreview(scene)
+        self._python = python
+        self._preview = HeadPreview(scene, python)
 
     def preview(self, volumeNode: Any, wishes: ScenarioWishes, progress: Progress) -> list[str]:
         """Show the head that is found, and return warnings, one sentence each.
@@ -114,7 +132,7 @@ class ScenarioMaker:
             volumeNode: T1-weighted MRI or CT of a head; the segment that `preview` has made of it
                 is taken where there is one.
             wishes: what else is wanted.
-            progress: told each step's name and the share of the work done, ten times a second; it
+            progress: told each step's name and the share of the work done, many times a second; it
                 may let the application draw, and may raise to cancel: then nothing is left behind.
             ownProgram: a `rastrainer` installed elsewhere; that of the simulator where empty.
 
@@ -125,10 +143,11 @@ class ScenarioMaker:
 
         with self._planned(volumeNode, wishes) as planned:
             folder = self._library / self._shelf.newName(planned.title)
-            command, environment = self._simulator.command([], ownProgram)
+            command = self._simulator.command([], ownProgram)
             scenario, warnings = build_scenario(
-                planned.head, folder, planned.words, command, environment, progress
+                planned.head, folder, planned.words, command, progress
             )
+        self._preview.hide(volumeNode)
         self._shelf.refresh()
         return scenario, [*planned.warnings, *warnings]
 
@@ -145,21 +164,20 @@ class ScenarioMaker:
         """
         from rastrainer.slicer.head.scenario_build import plan_scenario
 
-        with self._planned(volumeNode, replace(wishes, hasSkull=False)) as planned:
-            command, environment = self._simulator.command([], ownProgram)
+        with self._planned(volumeNode, replace(wishes, hasSkull=False, hasVolume=False)) as planned:
+            command = self._simulator.command([], ownProgram)
             words = [*planned.words, "--check"]
             warnings = plan_scenario(
-                planned.head, planned.folder / "none", words, command, environment, progress
+                planned.head, planned.folder / "none", words, command, progress
             )
         return [*planned.warnings, *warnings]
 
     @contextmanager
     def _planned(self, volumeNode: Any, wishes: ScenarioWishes) -> Iterator[_Planned]:
         """Yield what the simulator is asked for; its files are there as long as the context."""
-        from rastrainer.slicer.head.head_draft import make_draft
-        from rastrainer.slicer.head.volume import volume_from_node
+        from rastrainer.slicer.head.volume import image_of_node
 
-        volume, settings = volume_from_node(_chosen(volumeNode)), _settings(wishes)
+        image, settings = image_of_node(_chosen(volumeNode)), _settings(wishes)
         segment = self._preview.segment(volumeNode, settings)
         title = wishes.title.strip() or volumeNode.GetName()
         source = wishes.source.strip() or SOURCE.format(name=volumeNode.GetName())
@@ -172,7 +190,16 @@ class ScenarioMaker:
             folder = Path(temporary)
             yield _Planned(
                 title,
-                lambda tell: make_draft(volume, settings, wishes.hasSkull, tell, segment),
+                lambda tell: in_own_process(
+                    self._python,
+                    MAKE_DRAFT,
+                    tell,
+                    image,
+                    settings,
+                    wishes.hasSkull,
+                    segment=segment,
+                    has_volume=wishes.hasVolume,
+                ),
                 [*words, *self._words(wishes, folder), *_tasks(lists, folder)],
                 leftOut,
                 folder,
@@ -193,7 +220,7 @@ def _chosen(volumeNode: Any) -> Any:
 
 
 def _settings(wishes: ScenarioWishes) -> HeadSettings:
-    from rastrainer.slicer.head.extraction import HeadSettings
+    from rastrainer.slicer.head.head_body import HeadSettings
 
     return HeadSettings(threshold=wishes.threshold, base_mm=wishes.cutMm)
 

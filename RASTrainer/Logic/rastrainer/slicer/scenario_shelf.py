@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Callable, Iterable
 from itertools import count
@@ -11,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer.scenario_library import (
     ListedScenario,
+    list_folder,
     list_folders,
     list_scenarios,
     user_library,
@@ -25,12 +27,15 @@ LONGEST_STEM = 30
 class ScenarioShelf:
     """Reads scenarios when they are asked for, anew where they were built anew.
 
-    `refresh` looks what has come since.
+    `refresh` looks what has come since. Any thread may ask.
     """
 
     def __init__(self, *folders: Path) -> None:
         """Put the scenarios of these folders on the shelf."""
-        self._list: Callable[[], Iterable[ListedScenario]] = lambda: list_folders(folders)
+        self._list: Callable[[], Iterable[ListedScenario]] = lambda: list_folders(
+            folders, self._listOne
+        )
+        self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
         self._listed: tuple[ListedScenario, ...] | None = None
         self._scenarios: dict[str, tuple[int, Scenario]] = {}
 
@@ -38,14 +43,24 @@ class ScenarioShelf:
     def below(cls, *libraries: Path) -> ScenarioShelf:
         """Return the shelf of all scenarios in these folders of folders."""
         shelf = cls()
-        shelf._list = lambda: list_scenarios(libraries)
+        shelf._list = lambda: list_scenarios(libraries, shelf._listOne)
         return shelf
 
     def listed(self) -> tuple[ListedScenario, ...]:
         """Return what is on the shelf; what cannot be used says why."""
-        if self._listed is None:
-            self._listed = tuple(self._list())
-        return self._listed
+        listed = self._listed
+        if listed is None:
+            self._listed = listed = tuple(self._list())
+        return listed
+
+    def _listOne(self, folder: Path) -> ListedScenario:
+        """List a scenario, which takes long, only where one of its files has changed since."""
+        stamp, line = self._lines.get(folder, ((), None))
+        present = _fileStamps(folder)
+        if line is None or stamp != present:
+            line = list_folder(folder)
+            self._lines[folder] = present, line
+        return line
 
     def refresh(self) -> None:
         """Look anew at the next question."""
@@ -103,3 +118,13 @@ def _stamp(folder: Path) -> int:
         return (folder / FILE_NAME).stat().st_mtime_ns
     except OSError:
         return 0
+
+
+def _fileStamps(folder: Path) -> tuple:
+    """Return what tells whether any file of a scenario has changed."""
+    stamps = []
+    for path in sorted(folder.rglob("*")):
+        with contextlib.suppress(OSError):
+            status = path.stat()
+            stamps.append((str(path), status.st_mtime_ns, status.st_size))
+    return tuple(stamps)

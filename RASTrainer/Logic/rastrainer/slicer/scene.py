@@ -13,6 +13,7 @@ class Role:
     HEAD_MODEL = "head model"
     HEAD_PREVIEW = "head preview"
     HEAD_SEGMENT = "head segment"
+    HEAD_VOLUME = "head volume"
     SKULL = "skull"
     FIXED_FIDUCIALS = "fixed fiducials"
     TARGET = "target"
@@ -36,13 +37,15 @@ class Role:
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:
     """Return the first node of the class with the role, or None."""
+    return next(iter(nodesOf(scene, className, role)), None)
+
+
+def nodesOf(scene: Any, className: str, role: str) -> list[Any]:
+    """Return all nodes of the class with the role, in the scene's order."""
     nodes = scene.GetNodesByClass(className)
     nodes.UnRegister(None)
-    for index in range(nodes.GetNumberOfItems()):
-        node = nodes.GetItemAsObject(index)
-        if node.GetAttribute(ROLE_ATTRIBUTE) == role:
-            return node
-    return None
+    found = (nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems()))
+    return [node for node in found if node.GetAttribute(ROLE_ATTRIBUTE) == role]
 
 
 def removeNode(scene: Any, className: str, role: str) -> None:

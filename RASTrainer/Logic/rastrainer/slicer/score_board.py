@@ -59,13 +59,8 @@ class Standing:
     betterThan: float
 
 
-def scoreRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
-    """Return the scores of a trial and their parts.
-
-    Args:
-        trial: with its results.
-        cohort: trials that CTPS compares with; those of the trial's own mode count.
-    """
+def scoreRows(trial: StoredTrial) -> list[Row]:
+    """Return the score of a trial with its results, and its parts."""
     score, rigid = trial.score, trial.registrations.get(RIGID)
     rows = []
     if score is not None:
@@ -91,7 +86,24 @@ def scoreRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
             Row(_("Expected TRE"), rigid.expected_tre_mm, "mm", _interval(rigid.tre_interval_mm)),
         ]
     rows.append(Row(_("True TRE"), trial.true_tre_mm, "mm", _("only a simulator can tell it")))
-    return [*rows, *_ctpsRows(trial, cohort)]
+    return rows
+
+
+def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
+    """Return the scores of the publication, none where they cannot be told.
+
+    Args:
+        trial: with its results.
+        cohort: trials that CTPS compares with; those of the trial's own mode count.
+    """
+    rigid = trial.registrations.get(RIGID)
+    found = None if rigid is None else published_score(trial.record, rigid.fre_mm, cohort)
+    if found is None:
+        return []
+    return [
+        Row(_("CTPS as published"), found.published, "", CTPS_WARNING),
+        Row(_("CTPS by equation 3"), found.equation_3, "", _("half of it, as printed")),
+    ]
 
 
 def motionRows(trial: StoredTrial) -> list[Row]:
@@ -171,17 +183,6 @@ def _showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
             Column("note", [row.note for row in rows], isText=True),
         ],
     )
-
-
-def _ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
-    rigid = trial.registrations.get(RIGID)
-    found = None if rigid is None else published_score(trial.record, rigid.fre_mm, cohort)
-    if found is None:
-        return []
-    return [
-        Row(_("CTPS as published"), found.published, "", CTPS_WARNING),
-        Row(_("CTPS by equation 3"), found.equation_3, "", _("half of it, as printed")),
-    ]
 
 
 def _interval(ends: tuple[float, float] | None) -> str:

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.protocol import Phase
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.borrowed_layout import BorrowedLayout
 from rastrainer.slicer.connector_kit import ConnectorKit
-from rastrainer.slicer.link import Link
+from rastrainer.slicer.link import CallSoon, Link, neverSoon
 from rastrainer.slicer.plan_desk import PlanDesk
 from rastrainer.slicer.registration_desk import RegistrationDesk
 from rastrainer.slicer.replay_desk import ReplayDesk
@@ -17,9 +19,13 @@ from rastrainer.slicer.scenario_desk import ScenarioDesk
 from rastrainer.slicer.scenario_files import ScenarioFiles
 from rastrainer.slicer.scenario_maker import ScenarioMaker
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
+from rastrainer.slicer.scenario_volume import VolumeLoader
+from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.simulator_desk import SimulatorDesk
+from rastrainer.slicer.simulator_package import SimulatorPackage
 from rastrainer.slicer.simulator_setup import SimulatorSetup
+from rastrainer.slicer.slice_follower import SliceFollower
 from rastrainer.slicer.study_desk import StudyDesk
 from rastrainer.slicer.study_place import openStudyFile
 from rastrainer.slicer.trainee_desk import TraineeDesk
@@ -27,6 +33,7 @@ from rastrainer.slicer.training_desk import TrainingDesk
 from rastrainer.slicer.trial_desk import ScoredTrial, TrialDesk
 from rastrainer.slicer.world_placement import followPlacement
 from rastrainer.study import Study
+from rastrainer.study_patience import Patience
 from rastrainer.trial_files import read_trials
 
 ROBOT = Path("robots", "iiwa7")
@@ -44,7 +51,7 @@ class Places:
         study: file of the study, until another is chosen.
         records: folder of the journals of the simulator that is started from here.
         library: folder of the user's own scenarios, which the simulator knows too.
-        package: what pip installs, unless the user says otherwise.
+        package: the simulator as it comes with the module.
     """
 
     assets: Path
@@ -53,20 +60,23 @@ class Places:
     study: Path
     records: Path
     library: Path
-    package: str
+    package: SimulatorPackage
 
 
 class Session:
     """Wires the desks together; `process` is to be called about ten times a second.
 
     Attributes:
+        work: what is done in the background, one after the other.
         link: to the simulator.
         simulator: its set-up and process.
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
+        images: brings the images of the scenario that is shown.
         scenarioMaker: makes scenarios of volumes.
         scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
         training: trials under way.
+        slices: keeps the slice views at the next point, or at the tool.
         study: leads through the protocol.
         trials: where finished trials arrive.
         replay: feedback on stored trials, and their replay.
@@ -76,50 +86,95 @@ class Session:
         studyPath: file of the present study.
         task: name of the chosen task.
         taskTitle: what people read.
+        isSeen: returns whether somebody may be looking at the module, at the 3D view, or (where
+            asked to count them) at the slice views; the module's widget sets it.
         taskChosen: emits nothing, whenever another task is chosen.
         scenarioMade: emits the name of a scenario that has just been made.
+        settings: what the user has chosen in the panels.
+        layout: of the views, while tables or plots are shown.
     """
 
     def __init__(
-        self, scene: Any, places: Places, findKit: Callable[[], ConnectorKit | None]
+        self,
+        scene: Any,
+        places: Places,
+        findKit: Callable[[], ConnectorKit | None],
+        settings: Settings | None = None,
+        callSoon: CallSoon = neverSoon,
     ) -> None:
+        """Open a session.
+
+        Args:
+            scene: the scene.
+            places: where things are.
+            findKit: returns what makes the connector; None where it is not installed.
+            settings: without them what the user chooses is forgotten at the end.
+            callSoon: has something called in the application's next turn.
+        """
         self.places = places
+        self.settings = settings or Settings()
+        self.layout = BorrowedLayout(scene)
         self.studyPath = places.study
         self._scene = scene
+        self._patience = Patience.interactive()
         shelf = ScenarioShelf.below(places.assets / "scenarios", places.library)
         self.cohort = read_trials(places.assets / PUBLISHED_STUDY)
-        self.link = Link(scene, findKit)
-        setup = SimulatorSetup(places.python, places.simulator)
+        self.work = BackgroundWork()
+        self.link = Link(scene, findKit, callSoon=callSoon)
+        setup = SimulatorSetup(places.python, places.simulator, places.package)
         self.simulator = SimulatorDesk(self.link, setup, places.records)
-        self.trainees = TraineeDesk(self.openStudy, places.records)
-        self.scenario = ScenarioDesk(scene, shelf, places.assets / ROBOT)
-        self.scenarioMaker = ScenarioMaker(scene, self.simulator, shelf, places.library)
+        self.trainees = TraineeDesk(self.openStudy, places.records, self.openStudyPatiently)
+        self.scenario = ScenarioDesk(scene, shelf, places.assets / ROBOT, places.python)
+        self.images = VolumeLoader(scene, self.work)
+        self.scenarioMaker = ScenarioMaker(
+            scene, self.simulator, shelf, places.library, places.python
+        )
         self.scenarioFiles = ScenarioFiles(self.simulator, shelf, places.library)
         self.training = TrainingDesk(scene, self.link, shelf.find)
+        self.slices = SliceFollower(scene, self.training)
         self.study = StudyDesk(self.trainees, self.training, self.link)
         self.trials = TrialDesk(
-            scene, self.link, shelf.find, self.openStudy, self.cohort, places.records
+            scene,
+            self.link,
+            shelf.find,
+            self.openStudyPatiently,
+            self.work,
+            self.cohort,
+            places.records,
         )
         self.replay = ReplayDesk(
-            scene, self.trainees, shelf.find, places.records, places.assets / ROBOT
+            scene,
+            self.openStudyPatiently,
+            self.work,
+            shelf.find,
+            places.records,
+            places.assets / ROBOT,
+            self._isTrialOpen,
         )
-        self.registration = RegistrationDesk(scene)
+        self.registration = RegistrationDesk(scene, self.work)
         self.plan = PlanDesk(scene, self.link, self.registration)
         self.task = ""
         self.taskTitle = ""
+        self.isSeen: Callable[[bool], bool] = lambda _inSlices: False
         self.taskChosen = Signal()
         self.scenarioMade = Signal()
         self._trial = ""
         self.trials.trialKept.connect(self.study.countTrial)
         self.trials.trialScored.connect(self._takeScored)
         self.link.stateChanged.connect(self._noticeNewTrial)
+        self.replay.shown.connect(self.registration.reset)
 
     def openStudy(self) -> Study:
-        """Open the present study, or begin it.
+        """Open the present study, or begin it; this thread draws the window and waits for no lock.
 
         Raises:
             InputError: the file is no study, or cannot be used.
+            StudyBusyError: another program has it locked.
         """
+        return openStudyFile(self.studyPath, self._patience)
+
+    def openStudyPatiently(self) -> Study:
+        """Open the present study in a thread that may wait for a lock; otherwise as `openStudy`."""
         return openStudyFile(self.studyPath)
 
     def chooseStudy(self, path: Path) -> None:
@@ -128,9 +183,9 @@ class Session:
         Raises:
             InputError: the file is no study, or cannot be used; the present one stays.
         """
-        openStudyFile(path).close()
+        openStudyFile(path, self._patience).close()
         self.studyPath = path
-        self.trials.closeStudy()
+        self.trials.forgetWaiting()
         self.trainees.reopen()
 
     def chooseTask(self, name: str, title: str) -> None:
@@ -143,29 +198,60 @@ class Session:
         self.simulator.process()
         if self._scene.IsBatchProcessing():
             return
+        inSlices = self.slices.followsTool
+        areShown = self.scenario.isRobotShown or inSlices
+        self.link.wantPoses(areShown and self.isSeen(inSlices))
         self.link.process()
+        self.work.process()
+        if self._patience.regained():
+            # What could not be read while the study was locked may be shown now.
+            self.trainees.changed.emit()
+        if self.trainees.noticesOthers():
+            self._showTrainees()
         self.study.process()
         self.registration.process()
         self.replay.process()
+        self.images.process()
         followPlacement(self._scene)
+        self.slices.process()
+
+    def giveTimeToWork(self) -> bool:
+        """Let work in the background run for a moment; return whether there still is any."""
+        self.work.giveTime()
+        if not self._scene.IsBatchProcessing():
+            self.work.process()
+        return self.work.isBusy
 
     def sceneWasCleared(self) -> None:
         """Forget what pointed into the old scene; a trial that runs is shown again."""
         self.registration.reset()
         self.training.forgetScene()
+        self.plan.points.forget()
 
     def close(self) -> None:
         """Disconnect, close the study, and end the simulator that was started from here."""
+        self.layout.giveBack()
         self.study.close()
         self.training.close()
         self.trials.close()
+        self.work.close()
         self.link.disconnect()
         self.trainees.close()
         self.simulator.close()
 
+    def _isTrialOpen(self) -> bool:
+        return self.link.isOpen and self.training.progress.isOpen
+
+    def _showTrainees(self) -> None:
+        """Let each panel show what is new in the study, in a turn of its own."""
+        for listener in self.trainees.changed.listeners:
+            self.work.later(listener)
+
     def _takeScored(self, trial: ScoredTrial) -> None:
+        record = trial.analysis.record
         self.plan.takeTruth(trial)
-        self.trainees.changed.emit()
+        self.replay.takeFeedback(record.trial_id, trial.analysis.feedback)
+        self._showTrainees()
 
     def _noticeNewTrial(self, state: dict[str, Any]) -> None:
         trial = str(state.get("trialId", ""))

@@ -21,7 +21,12 @@ class Signal:
         if listener in self._listeners:
             self._listeners.remove(listener)
 
+    @property
+    def listeners(self) -> tuple[Callable[..., Any], ...]:
+        """Who is told, in this order."""
+        return tuple(self._listeners)
+
     def emit(self, *values: Any) -> None:
         """Call every listener."""
-        for listener in tuple(self._listeners):
+        for listener in self.listeners:
             listener(*values)

@@ -7,10 +7,11 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.slicer.child_process import environmentWith
 from rastrainer.slicer.link import Link
+from rastrainer.slicer.running_simulator import RunningSimulator
+from rastrainer.slicer.setup_source import SetupSource
 from rastrainer.slicer.simulator_program import ProgramState, SimulatorProgram
-from rastrainer.slicer.simulator_setup import SetupSource, SimulatorSetup
+from rastrainer.slicer.simulator_setup import SimulatorSetup
 from rastrainer.slicer.translation import _
 
 
@@ -20,6 +21,7 @@ class SimulatorDesk:
     Attributes:
         program: the simulator's process.
         setup: the private folder and its pip.
+        running: a simulator that was not started from here.
     """
 
     def __init__(self, link: Link, setup: SimulatorSetup, records: Path) -> None:
@@ -27,7 +29,9 @@ class SimulatorDesk:
         self.program = SimulatorProgram()
         self.setup = setup
         self._link = link
+        self.running = RunningSimulator(records, link)
         self._records = records
+        self.program.ready.connect(self._connect)
         self.program.changed.connect(self._followProgram)
 
     @property
@@ -42,7 +46,7 @@ class SimulatorDesk:
         hasWindow: bool = False,
         hasNetwork: bool = False,
     ) -> None:
-        """Start the simulator on this computer.
+        """Start the simulator on this computer, or find one that runs already; see `running`.
 
         Args:
             port: to listen on; 0 takes any free one.
@@ -53,15 +57,15 @@ class SimulatorDesk:
         Raises:
             InputError: it is not set up, or cannot be started.
         """
+        if not self.program.isRunning and self.running.look():
+            return
         arguments = ["simulator", "--port", str(port), "--records", str(self._records)]
         arguments += ["--lan"] if hasNetwork else []
         arguments += ["--desktop"] if hasWindow else []
-        self.program.start(*self.command(arguments, ownProgram))
+        self.program.start(self.command(arguments, ownProgram))
 
-    def command(
-        self, arguments: Sequence[str], ownProgram: str = ""
-    ) -> tuple[list[str], dict[str, str] | None]:
-        """Return what runs `rastrainer` with these arguments, and the environment for it.
+    def command(self, arguments: Sequence[str], ownProgram: str = "") -> list[str]:
+        """Return what runs `rastrainer` with these arguments.
 
         Args:
             arguments: such as `simulator --port 0`.
@@ -73,41 +77,56 @@ class SimulatorDesk:
         if ownProgram:
             if not Path(ownProgram).is_file():
                 raise InputError(_("There is no program {path}.").format(path=ownProgram))
-            return [ownProgram, *arguments], None
+            return [ownProgram, *arguments]
         if self.needsSetup:
             raise InputError(_("The simulator is not set up yet: press Set up first."))
-        return self.setup.command(arguments), environmentWith(self.setup.folder)
+        return self.setup.command(arguments)
 
     def stop(self) -> None:
-        """Disconnect and end the simulator that was started from here."""
+        """Disconnect, and ask the simulator that was started from here to end."""
         if self.program.isRunning:
             self._link.disconnect()
             self.program.stop()
 
-    def beginSetup(self, package: str, wheels: str = "") -> None:
+    def beginSetup(self, index: str = "", wheels: str = "") -> None:
         """Begin to set the simulator up.
 
         Args:
-            package: what pip installs.
-            wheels: a folder of wheels to install from without network; empty asks the network.
+            index: address of a package index; pip's own where empty.
+            wheels: a folder of wheels to install from without network; empty asks the index.
 
         Raises:
             InputError: it cannot begin.
         """
-        if self.program.isRunning:
-            raise InputError(_("Stop the simulator before it is set up anew."))
-        self.setup.begin(SetupSource(package, Path(wheels) if wheels else None))
+        if self.program.isRunning or self.running.look():
+            raise InputError(_("End the simulator that is running before it is set up anew."))
+        self.setup.begin(SetupSource(index.strip(), Path(wheels) if wheels else None))
+
+    def removeSetup(self) -> None:
+        """Remove what was set up; trials and settings stay.
+
+        Raises:
+            InputError: the simulator runs, or is being set up, or cannot be removed.
+        """
+        if self.program.isRunning or self.running.look():
+            raise InputError(_("End the simulator that is running before it is removed."))
+        self.setup.remove()
 
     def process(self) -> None:
         """Hand on what pip and the simulator say."""
         self.setup.process()
         self.program.process()
+        self.running.process()
 
     def close(self) -> None:
-        """End what was started from here."""
-        self.setup.cancel()
-        self.program.stop()
+        """End what was started from here: Slicer quits."""
+        self.setup.close()
+        self.program.close()
+
+    def _connect(self) -> None:
+        self._link.connectTo(DEFAULT_HOST, self.program.port)
 
     def _followProgram(self) -> None:
-        if self.program.state is ProgramState.READY:
-            self._link.connectTo(DEFAULT_HOST, self.program.port)
+        if self.program.state is ProgramState.FAILED:
+            # One that has begun in the meantime may be why.
+            self.running.look()

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from enum import Enum
 
+from rastrainer.errors import InputError
 from rastrainer.slicer.child_process import ChildProcess
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
@@ -16,6 +17,7 @@ _NETWORK = re.compile(
     r"RASTrainer simulator serves the local network on (.+); the browser warns"
     r"(?:.* fingerprint, (\S+))?$"
 )
+_KINEMATICS = re.compile(r"RASTrainer simulator computes the robot's kinematics by (.+)$")
 _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: (\d+)$")
 
 
@@ -25,6 +27,7 @@ class ProgramState(str, Enum):
     STOPPED = "stopped"
     STARTING = "starting"
     READY = "ready"
+    STOPPING = "stopping"
     FAILED = "failed"
 
 
@@ -37,8 +40,10 @@ class SimulatorProgram:
         sentence: what happened last, for people.
         pageAddresses: where a browser or a headset finds the simulator's page.
         fingerprint: SHA-256 of the certificate of the pages in the local network; empty without.
+        kinematics: what computes the robot's, such as "Pinocchio 3.9.0"; empty while not known.
         pairingCode: that a browser or a headset is let in for; only whoever started it knows.
-        changed: emits nothing, whenever `state` has changed.
+        ready: emits nothing, once it is.
+        changed: emits nothing, whenever `state` or `sentence` has changed.
         pairingChanged: emits nothing, whenever an address or the code has.
         wroteLine: emits each line of its output.
     """
@@ -50,15 +55,19 @@ class SimulatorProgram:
         self.pageAddresses: list[str] = []
         self.fingerprint = ""
         self.pairingCode = ""
+        self.kinematics = ""
+        self.ready = Signal()
         self.changed = Signal()
         self.pairingChanged = Signal()
         self.wroteLine = Signal()
         self._child: ChildProcess | None = None
         self._lastLine = ""
+        self._isAskedToEnd = False
+        self._next: list[str] | None = None
 
     @property
     def isRunning(self) -> bool:
-        """Whether the process is there."""
+        """Whether the process, or anything that it has started, is there."""
         return self._child is not None
 
     @property
@@ -77,63 +86,110 @@ class SimulatorProgram:
         ).format(fingerprint=self.fingerprint)
         return f"{sentence} {warning}"
 
-    def start(self, command: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
-        """Start the process; a second time does nothing while it runs.
+    def start(self, command: Sequence[str]) -> None:
+        """Start the process: soon, where the former one is ending; while it runs, do nothing.
 
         Raises:
             InputError: the program cannot be started.
         """
+        if self.state is ProgramState.STOPPING:
+            self._next = list(command)
+            self._change(ProgramState.STOPPING, _("The simulator is ending; it starts again then."))
         if self._child is not None:
             return
-        self._child = ChildProcess(command, environment)
+        self._child = ChildProcess(command)
         self._lastLine = ""
+        self._isAskedToEnd = False
         self._pair([], "")
         self._change(ProgramState.STARTING, _("The simulator is starting."))
 
     def stop(self) -> None:
-        """End the process; trials it has recorded stay with it and are offered next time."""
+        """Ask the process to end; trials it has recorded stay with it and are offered next time.
+
+        `process` notices the end, and kills what does not end within seconds.
+        """
+        self._next = None
         if self._child is None:
             return
-        self._child.stop()
-        self._handOnLines()
-        self._child = None
-        self._pair([], "")
-        self._change(ProgramState.STOPPED, _("The simulator was stopped."))
+        self._isAskedToEnd = True
+        self._child.end()
+        self._showEnding()
 
     def process(self) -> None:
-        """Hand on its output, and notice that it is ready or has ended."""
+        """Hand on its output, and notice that it is ready, is ending or has ended."""
         if self._child is None:
             return
-        status = self._child.exitStatus
+        isOver, child = self._child.poll(), self._child
         self._handOnLines()
-        if status is None:
-            return
-        self._child = None
+        if isOver:
+            self._child = None
+            self._tellEnd(child.exitStatus)
+            self._startNext()
+        elif child.exitStatus is not None and self.state is not ProgramState.STOPPING:
+            # Its window, or the real Python of a launcher that was killed.
+            self._showEnding()
+
+    def close(self) -> None:
+        """End the process and all that it has started, at once if need be: Slicer quits."""
+        self._next = None
+        if self._child is not None:
+            self._child.close()
+            self._handOnLines()
+            self._child = None
+            self._pair([], "")
+            self._change(ProgramState.STOPPED, _("The simulator was stopped."))
+
+    def _showEnding(self) -> None:
         self._pair([], "")
-        if status == 0:
+        self._change(ProgramState.STOPPING, _("The simulator is ending."))
+
+    def _tellEnd(self, status: int) -> None:
+        self._pair([], "")
+        if self._isAskedToEnd:
+            self._change(ProgramState.STOPPED, _("The simulator was stopped."))
+        elif status == 0:
             # As when the trainee's window is closed.
             self._change(ProgramState.STOPPED, _("The simulator has ended."))
+        else:
+            reason = self._lastLine or _("it said nothing")
+            self._change(
+                ProgramState.FAILED,
+                _("The simulator ended by itself (status {status}): {reason}").format(
+                    status=status, reason=reason
+                ),
+            )
+
+    def _startNext(self) -> None:
+        """Start what was asked for while the former process was ending."""
+        command, self._next = self._next, None
+        if command is None:
             return
-        reason = self._lastLine or _("it said nothing")
-        self._change(
-            ProgramState.FAILED,
-            _("The simulator ended by itself (status {status}): {reason}").format(
-                status=status, reason=reason
-            ),
-        )
+        try:
+            self.start(command)
+        except InputError as error:
+            self._change(ProgramState.FAILED, str(error))
 
     def _handOnLines(self) -> None:
         for line in self._child.takeLines():
             self._lastLine = line or self._lastLine
             self.wroteLine.emit(line)
-            ready = _READY.match(line)
-            if ready:
-                self.port = int(ready.group(2))
-                self._change(
-                    ProgramState.READY,
-                    _("The simulator runs on port {port}.").format(port=self.port),
-                )
-            self._readPairing(line)
+            # What is ending may say for a moment that it is ready.
+            if self.state is not ProgramState.STOPPING:
+                self._read(line)
+                self._readPairing(line)
+
+    def _read(self, line: str) -> None:
+        if ready := _READY.match(line):
+            self.port = int(ready.group(2))
+            sentence = _("The simulator runs on port {port}.").format(port=self.port)
+            self._change(ProgramState.READY, sentence)
+            self.ready.emit()
+        elif said := _KINEMATICS.match(line):
+            self.kinematics = said.group(1)
+            sentence = _(
+                "The simulator runs on port {port}. {name} computes the robot's kinematics."
+            ).format(port=self.port, name=self.kinematics)
+            self._change(ProgramState.READY, sentence)
 
     def _readPairing(self, line: str) -> None:
         if views := _VIEWS.match(line):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,8 +10,12 @@ from rastrainer.errors import InputError
 from rastrainer.export.erasure import Erasure, erase_trainee
 from rastrainer.export.tidy_csv import write_histories, write_history
 from rastrainer.export.trainee_json import export_trainee
+from rastrainer.progress import Progress
+from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.signal import Signal
-from rastrainer.study import StoredTrial, Study, Trainee
+from rastrainer.study import StoredTrial, Study, StudyBusyError, Trainee
+
+LOOK_EVERY_S = 1.0
 
 
 class TraineeDesk:
@@ -21,13 +26,31 @@ class TraineeDesk:
         chosen: pseudonym of the chosen trainee, empty where none is.
     """
 
-    def __init__(self, openStudy: Callable[[], Study], records: Path) -> None:
-        """`records` is the folder of the simulator's journals, if it is on this computer."""
+    def __init__(
+        self,
+        openStudy: Callable[[], Study],
+        records: Path,
+        openPatiently: Callable[[], Study] | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Keep the trainees of a study.
+
+        Args:
+            openStudy: opens the study.
+            records: folder of the simulator's journals, if it is on this computer.
+            openPatiently: opens it in any thread, which may wait for a lock; as `openStudy` when
+                left out.
+            clock: seconds.
+        """
+        self._openPatiently = openPatiently or openStudy
         self.changed = Signal()
         self.chosen = ""
         self._openStudy = openStudy
         self._records = records
         self._study: Study | None = None
+        self._clock = clock
+        self._lastLook = clock()
+        self._version: int | None = None
 
     @property
     def study(self) -> Study:
@@ -38,6 +61,7 @@ class TraineeDesk:
         """
         if self._study is None:
             self._study = self._openStudy()
+            self._version = self._study.database.version()
         return self._study
 
     def reopen(self) -> None:
@@ -50,7 +74,20 @@ class TraineeDesk:
         """Close the study; it is opened again when it is needed."""
         if self._study is not None:
             self._study.close()
-            self._study = None
+            self._study = self._version = None
+
+    def noticesOthers(self) -> bool:
+        """Tell, about once a second, whether somebody else has changed the study meanwhile.
+
+        Another Slicer may work with the same file; nobody waits for it here.
+        """
+        now = self._clock()
+        if self._study is None or now - self._lastLook < LOOK_EVERY_S:
+            return False
+        self._lastLook = now
+        version, before = self._study.database.version(), self._version
+        self._version = version or before
+        return version is not None and version != before
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
         """Return those who train, and the archived ones too where asked for, by pseudonym."""
@@ -64,11 +101,17 @@ class TraineeDesk:
             self.changed.emit()
 
     def chosenTrainee(self) -> Trainee | None:
-        """Return who is chosen; None where nobody is, or no longer there."""
+        """Return who is chosen; None where nobody is, or no longer there.
+
+        Raises:
+            StudyBusyError: another program has the study locked.
+        """
         if not self.chosen:
             return None
         try:
             return self.study.trainee(self.chosen)
+        except StudyBusyError:
+            raise
         except InputError:
             return None
 
@@ -109,8 +152,14 @@ class TraineeDesk:
         """Write the trials of the chosen trainee as a CSV file; return their number."""
         return write_history(self.study, [self.chosen], path)
 
-    def exportHistories(self, path: Path) -> tuple[int, int]:
+    def exportHistories(
+        self, path: Path, progress: Progress = lambda _step, _share: None
+    ) -> tuple[int, int]:
         """Write the trials of all who agreed to research as a CSV file.
+
+        Args:
+            path: of the file.
+            progress: called many times a second meanwhile; it may let the application draw.
 
         Returns:
             The number of trials, and of the trainees who are left out.
@@ -118,7 +167,12 @@ class TraineeDesk:
         Raises:
             InputError: nobody agreed, or the file cannot be written.
         """
-        return write_histories(self.study, path)
+
+        def write(_tell: Progress) -> tuple[int, int]:
+            with self._openPatiently() as study:
+                return write_histories(study, path)
+
+        return inBackground(write, progress)
 
     def history(self) -> tuple[StoredTrial, ...]:
         """Return the trials of the chosen trainee in the order they were started."""

@@ -15,6 +15,7 @@ from rastrainer.slicer.link import Link
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.touches import forgetStoredTouches, noteTouchedTask
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.world_placement import showPlannedPlace
 
@@ -147,6 +148,7 @@ class TrainingDesk:
         trial = str(state.get("trialId", ""))
         if state.get("phase") in OPEN_PHASES and trial != self._shownTrial:
             self._shownTrial = trial
+            forgetStoredTouches(self._scene)
             self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
         self.changed.emit()
 
@@ -164,6 +166,7 @@ class TrainingDesk:
         except InputError as error:
             self.answered.emit(str(error))
             return
+        noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")))
         showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
         self.changed.emit()
 

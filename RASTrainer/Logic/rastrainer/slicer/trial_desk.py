@@ -1,4 +1,7 @@
-"""What happens when a finished trial arrives: kept, acknowledged, registered, scored, told.
+"""What happens when a finished trial arrives: scored, kept, acknowledged, told, one by one.
+
+Checking, scoring and storing is done in the background; the scene and the link are the main
+thread's.
 
 Nothing is lost and nothing counts twice, whatever is cut on the way. The simulator offers a trial
 until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
@@ -19,16 +22,20 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import OPEN_PHASES, CommandName
 from rastrainer.scenario import Scenario
+from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.trial_scene import showTrial
 from rastrainer.study import DeletedTrialError, Study
 from rastrainer.trial_analysis import TrialAnalysis
+from rastrainer.trial_intake import Intake, take_in
 from rastrainer.trial_record import TrialRecord
 from rastrainer.trial_results import RevealedTruth
 from rastrainer.trial_review import review, with_progress
 
+MOST_WAITING = 32
+"""Trials that wait to be scored; a simulator that has more offers them again."""
 SCORED_TIMEOUT_S = 60.0
 """Nobody waits for this answer, and one that is given up would be asked for again only over the
 next connection: a busy simulator gets the time it needs."""
@@ -58,6 +65,7 @@ class TrialDesk:
         link: Link,
         findScenario: Callable[[str], Scenario],
         openStudy: Callable[[], Study],
+        work: BackgroundWork,
         cohort: Sequence[Trial] = (),
         records: Path | None = None,
     ) -> None:
@@ -66,8 +74,9 @@ class TrialDesk:
         Args:
             scene: the scene.
             link: to the simulator.
-            findScenario: gives the scenario of a name.
-            openStudy: opens the study when it is first needed.
+            findScenario: gives the scenario of a name, in any thread.
+            openStudy: opens the study, in any thread; it may wait for a lock there.
+            work: in which trials are scored and kept.
             cohort: what CTPS compares with.
             records: folder of the simulator's journals, if it is on this computer.
         """
@@ -79,10 +88,13 @@ class TrialDesk:
         self._link = link
         self._findScenario = findScenario
         self._openStudy = openStudy
+        self._work = work
         self._cohort = cohort
         self._records = records
-        self._study: Study | None = None
+        self._deliveries: deque[Mapping[str, Any]] = deque()
+        self._isTaking = False
         self._told: set[str] = set()
+        self._revealed: set[str] = set()
         self._untold: deque[TrialRecord] = deque()
         self._state: Mapping[str, Any] = {}
         self._lastProblem = ""
@@ -91,78 +103,128 @@ class TrialDesk:
         link.opened.connect(self._resume)
 
     def close(self) -> None:
-        """Listen to the link no more and close the study."""
+        """Listen to the link no more, and begin nothing more."""
         self._link.trialCompleted.disconnect(self._receive)
         self._link.stateChanged.disconnect(self._followTraining)
         self._link.opened.disconnect(self._resume)
-        self.closeStudy()
+        self.forgetWaiting()
 
-    def closeStudy(self) -> None:
-        """Close the study; the next trial goes into the one that is to be opened then."""
-        if self._study is not None:
-            self._study.close()
-            self._study = None
+    def forgetWaiting(self) -> None:
+        """Leave undone what has not begun: the simulator offers it again, for another study."""
+        self._deliveries.clear()
+        self._untold.clear()
+        self._revealed.clear()
 
     def _followTraining(self, state: Mapping[str, Any]) -> None:
         self._state = state
 
     def _receive(self, value: Mapping[str, Any]) -> None:
-        """Keep a delivered trial, then acknowledge it, then go on with it."""
+        """Let a delivered trial wait for its turn; what is left out is offered again."""
+        trialId = value.get("trialId")
+        if any(waiting.get("trialId") == trialId for waiting in self._deliveries):
+            return
+        if len(self._deliveries) >= MOST_WAITING:
+            self._complain(
+                _("Trials arrive faster than they can be scored; they are offered again later.")
+            )
+            return
+        self._deliveries.append(value)
+        self._takeNext()
+
+    def _takeNext(self) -> None:
+        """Check, score and keep one trial in the background; the next follows."""
+        if self._isTaking or not self._deliveries:
+            return
+        self._isTaking = True
+        value = self._deliveries[0]
+        isBeingTold = value.get("trialId") in self._told
+        self._work.do(
+            lambda: self._takeIn(value, isBeingTold),
+            lambda intake: self._finish(value, lambda: self._accept(intake)),
+            lambda error: self._finish(value, lambda: self._refuse(value, error)),
+        )
+
+    def _takeIn(self, value: Mapping[str, Any], isBeingTold: bool) -> Intake:
+        with self._openStudy() as study:
+            return take_in(value, study, lambda record: self._analyze(record, study), isBeingTold)
+
+    def _finish(self, value: Mapping[str, Any], go: Callable[[], None]) -> None:
+        self._isTaking = False
+        if self._deliveries and self._deliveries[0] is value:
+            self._deliveries.popleft()
         try:
-            record = TrialRecord.from_json(value)
-            study = self._openedStudy()
-            analysis = self._analyze(record)
-            isRevealed = _keep(value, record, analysis, study)
-        except DeletedTrialError:
-            # Its trainee is gone for good: it must not be offered for ever.
-            self._acknowledge(record)
-            return
-        except InputError as error:
-            self._complain(_("A trial could not be kept: {error}").format(error=error))
-            return
-        self._acknowledge(record)
+            go()
+        finally:
+            self._takeNext()
+
+    def _accept(self, intake: Intake) -> None:
+        """Acknowledge a trial that is kept, then go on with it."""
+        record = intake.record
+        self._acknowledge(record.trial_id)
+        if intake.problem:
+            self._complain(
+                _("A trial is kept but cannot be scored: {error}").format(error=intake.problem)
+            )
         if record.trial_id not in self.received:
             self.received.append(record.trial_id)
             self.trialKept.emit(record)
-        if analysis is not None and not isRevealed and record.trial_id not in self._told:
-            self._show(analysis)
-            self._tellScore(with_progress(analysis, study), self._complain)
+        if intake.analysis is not None and record.trial_id not in self._told:
+            self._tellScore(intake.analysis, self._complain)
+            self._work.later(lambda: self._show(intake.analysis))
 
-    def _acknowledge(self, record: TrialRecord) -> None:
-        self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": record.trial_id})
+    def _refuse(self, value: Mapping[str, Any], error: Exception) -> None:
+        if isinstance(error, DeletedTrialError):
+            # Its trainee is gone for good: it must not be offered for ever.
+            self._acknowledge(value["trialId"])
+        else:
+            self._complain(_("A trial could not be kept: {error}").format(error=error))
 
-    def _analyze(self, record: TrialRecord) -> TrialAnalysis | None:
-        try:
-            scenario = self._findScenario(record.scenario)
-            return review(record, scenario, self._openedStudy(), self._records, self._cohort)
-        except InputError as error:
-            self._complain(_("A trial is kept but cannot be scored: {error}").format(error=error))
-            return None
+    def _acknowledge(self, trialId: str) -> None:
+        self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": trialId})
+
+    def _analyze(self, record: TrialRecord, study: Study) -> TrialAnalysis:
+        scenario = self._findScenario(record.scenario)
+        return review(record, scenario, study, self._records, self._cohort)
 
     def _resume(self) -> None:
         """Go on with trials whose score was told to nobody before the connection was cut."""
-        try:
-            self._untold = deque(self._openedStudy().unrevealed())
-        except InputError as error:
-            self._complain(str(error))
-            return
-        self._resumeNext()
+
+        def take(records: tuple[TrialRecord, ...]) -> None:
+            self._untold = deque(records)
+            self._resumeNext()
+
+        def unrevealed() -> tuple[TrialRecord, ...]:
+            with self._openStudy() as study:
+                return study.unrevealed()
+
+        self._work.do(unrevealed, take, lambda error: self._complain(str(error)))
 
     def _resumeNext(self) -> None:
         """Score and tell one trial; the next follows its answer.
 
-        Scoring takes a moment. If all were scored at once, the link would go unread for so long
-        that their answers, and then the connection, would be given up.
+        If all were scored at once, a trial that arrives meanwhile would wait for all of them.
         """
         while self._untold and self._link.isOpen:
             record = self._untold.popleft()
-            if record.trial_id in self._told:
-                continue
-            analysis = self._analyze(record)
-            if analysis is not None:
-                # A trial of another simulator is none of this one's business.
-                self._tellScore(analysis, logging.info, self._resumeNext)
+            # Since the list was read it may have been told, or be about to be.
+            if record.trial_id not in self._told | self._revealed:
+                self._told.add(record.trial_id)
+                self._work.do(
+                    lambda record=record: self._analyzeAgain(record),
+                    # A trial of another simulator is none of this one's business.
+                    lambda analysis: self._tellScore(analysis, logging.info, self._resumeNext),
+                    lambda error, record=record: self._resumeAfter(record, error),
+                )
                 return
+
+    def _analyzeAgain(self, record: TrialRecord) -> TrialAnalysis:
+        with self._openStudy() as study:
+            return with_progress(self._analyze(record, study), study)
+
+    def _resumeAfter(self, record: TrialRecord, error: Exception) -> None:
+        self._told.discard(record.trial_id)
+        self._complain(_("A trial is kept but cannot be scored: {error}").format(error=error))
+        self._resumeNext()
 
     def _show(self, analysis: TrialAnalysis) -> None:
         """Show a trial in the scene, unless another one is being played there."""
@@ -180,43 +242,41 @@ class TrialDesk:
         trialId = analysis.record.trial_id
         self._told.add(trialId)
 
-        def takeAnswer(reply: Reply) -> None:
+        def end(error: Exception | None = None) -> None:
             self._told.discard(trialId)
+            if error is not None:
+                complain(_("The score was not taken: {error}").format(error=error))
+            goOn()
+
+        def takeAnswer(reply: Reply) -> None:
             try:
                 if not reply.ok:
                     raise InputError(reply.error)
                 truth = RevealedTruth.from_json(reply.data)
-                self._openedStudy().set_truth(trialId, truth.true_tre_mm, truth.head_to_world)
             except InputError as error:
-                complain(_("The score was not taken: {error}").format(error=error))
-            else:
+                end(error)
+                return
+            self._work.do(lambda: self._keepTruth(trialId, truth), lambda _none: tell(truth), end)
+
+        def tell(truth: RevealedTruth) -> None:
+            self._revealed.add(trialId)
+            try:
                 self.trialScored.emit(ScoredTrial(analysis, truth))
-            goOn()
+            finally:
+                end()
 
         arguments = _scoreArguments(analysis)
         self._link.send(CommandName.TRIAL_SCORED, arguments, takeAnswer, SCORED_TIMEOUT_S)
 
-    def _openedStudy(self) -> Study:
-        if self._study is None:
-            self._study = self._openStudy()
-        return self._study
+    def _keepTruth(self, trialId: str, truth: RevealedTruth) -> None:
+        with self._openStudy() as study:
+            study.set_truth(trialId, truth.true_tre_mm, truth.head_to_world)
 
     def _complain(self, sentence: str) -> None:
         """Tell a problem once, though the trial is offered every two seconds."""
         if sentence != self._lastProblem:
             self._lastProblem = sentence
             self.problemFound.emit(sentence)
-
-
-def _keep(
-    value: Mapping[str, Any], record: TrialRecord, analysis: TrialAnalysis | None, study: Study
-) -> bool:
-    """Store a trial with its results, once; return whether its truth is known already."""
-    if analysis is None:
-        study.add_trial(value)
-    else:
-        study.add_trial(value, analysis.fits.values(), analysis.target_errors, analysis.score)
-    return study.trial(record.trial_id).true_tre_mm is not None
 
 
 def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:

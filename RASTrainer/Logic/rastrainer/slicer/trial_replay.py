@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,16 +17,26 @@ from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNod
 
 SAMPLE_HZ = 10.0
 """Of what is shown; the journal has 50 samples a second."""
+TRIAL_ATTRIBUTE = "RASTrainer.trial"
+"""On a replay's browser: UUID of the trial."""
+STATES_A_SLICE = 50
+"""So many states go into the scene before the application may draw again."""
 SAME_ROBOT_MM = 0.01
 TOOL_COLOR = (0.2, 0.45, 0.85)
 TOUCH_COLOR = (0.95, 0.55, 0.1)
 TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
-_TOOL, _TIP, _TOUCHES, _CLEARANCE = "tool", "tool model", "touches", "clearance"
+_PLACE, _TOOL, _TIP = "place", "tool", "tool model"
+_TOUCHES, _CLEARANCE = "touches", "clearance"
 
 
 def showReplay(
-    scene: Any, name: str, track: ReplayTrack, chain: ArmChain, worldToHead: np.ndarray
+    scene: Any,
+    name: str,
+    track: ReplayTrack,
+    chain: ArmChain,
+    worldToHead: np.ndarray,
+    rest: Callable[[float], None] = lambda _share: None,
 ) -> Any:
     """Put a trial into the scene as a Sequence in place of the one before.
 
@@ -37,12 +48,14 @@ def showReplay(
         track: from its journal.
         chain: of the robot that it was recorded with.
         worldToHead: (4, 4) float, mm, registration of the trial.
+        rest: told the share of the work done after each slice of it; it may let the application
+            draw, and may raise to cancel: then nothing is left behind.
 
     Returns:
         The `vtkMRMLSequenceBrowserNode`, at the first sample.
 
     Raises:
-        InputError: the trial was recorded with another robot.
+        InputError: the trial was recorded with another robot, or the scene was closed meanwhile.
     """
     trajectory = track.trajectory
     rows = _rows(trajectory.times_s)
@@ -50,8 +63,24 @@ def showReplay(
     tips = trajectory.tip_mm[rows]
     if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
         raise InputError("The trial was recorded with another robot than the one that is here.")
-    removeReplay(scene)
-    placed = _node(scene, "vtkMRMLLinearTransformNode", "place", f"{name}: WorldToHead")
+    removeReplay(scene, rest)
+    try:
+        return _fillScene(scene, name, trajectory, rows, poses, worldToHead, rest)
+    except BaseException:
+        removeReplay(scene)
+        raise
+
+
+def _fillScene(
+    scene: Any,
+    name: str,
+    trajectory: Trajectory,
+    rows: np.ndarray,
+    poses: np.ndarray,
+    worldToHead: np.ndarray,
+    rest: Callable[[float], None],
+) -> Any:
+    placed = _node(scene, "vtkMRMLLinearTransformNode", _PLACE, f"{name}: WorldToHead")
     placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
     tool = _node(scene, "vtkMRMLLinearTransformNode", _TOOL, f"{name}: tool")
     touches = _node(scene, "vtkMRMLMarkupsFiducialNode", _TOUCHES, f"{name}: touches")
@@ -64,6 +93,7 @@ def showReplay(
     browser.SetIndexDisplayMode(browser.IndexDisplayAsIndexValue)
     browser.SetPlaybackRateFps(SAMPLE_HZ)
     times = trajectory.times_s[rows]
+    total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
     for proxy, states in (
         (tool, zip(times, _toolStates(tool, poses), strict=True)),
         (touches, _touchStates(touches, trajectory)),
@@ -74,10 +104,17 @@ def showReplay(
         sequence.SetIndexName("time")
         sequence.SetIndexUnit("s")
         sequence.SetIndexType(sequence.NumericIndex)
+        # Whoever saves the states asks the scene that they are kept in for units.
+        sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
         for time, state in states:
             # The proxy becomes what the state is, with all its attributes.
             state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
             sequence.SetDataNodeAtValue(state, f"{time:.3f}")
+            done += 1
+            if done % STATES_A_SLICE == 0:
+                rest(done / total)
+                if browser.GetScene() is None or sequence.GetScene() is None:
+                    raise InputError("The scene was changed before the trial could be shown.")
         # Told of both at once, Slicer makes no proxy of its own.
         wasModifying = browser.StartModify()
         browser.AddSynchronizedSequenceNode(sequence)
@@ -106,6 +143,9 @@ def moment(scene: Any) -> tuple[float, str] | None:
     text = findNode(scene, "vtkMRMLTextNode", _role(_CLEARANCE))
     if browser is None or text is None or browser.GetMasterSequenceNode() is None:
         return None
+    if browser.GetSelectedItemNumber() < 0:
+        # It is still being put into the scene.
+        return None
     value = browser.GetMasterSequenceNode().GetNthIndexValue(browser.GetSelectedItemNumber())
     return float(value or 0.0), text.GetText()
 
@@ -115,16 +155,55 @@ def findReplay(scene: Any) -> Any | None:
     return findNode(scene, "vtkMRMLSequenceBrowserNode", _role("browser"))
 
 
-def removeReplay(scene: Any) -> None:
-    """Take the replay and all its nodes out of the scene."""
+def isReplayOf(scene: Any, trialId: str) -> bool:
+    """Tell whether the replay that is in the scene is that of a trial, with all its nodes."""
+    browser = findReplay(scene)
+    parts = (
+        ("vtkMRMLLinearTransformNode", _PLACE),
+        ("vtkMRMLLinearTransformNode", _TOOL),
+        ("vtkMRMLModelNode", _TIP),
+        ("vtkMRMLMarkupsFiducialNode", _TOUCHES),
+        ("vtkMRMLTextNode", _CLEARANCE),
+    )
+    return (
+        browser is not None
+        and browser.GetAttribute(TRIAL_ATTRIBUTE) == trialId
+        and browser.GetMasterSequenceNode() is not None
+        and all(findNode(scene, className, _role(part)) is not None for className, part in parts)
+    )
+
+
+def stopReplay(scene: Any) -> None:
+    """Let a replay that plays stand still."""
+    browser = findReplay(scene)
+    if browser is not None:
+        browser.SetPlaybackActive(False)
+
+
+def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None) -> None:
+    """Take the replay and all its nodes out of the scene; `rest` is as of `showReplay`."""
     nodes = scene.GetNodes()
     ours = [nodes.GetItemAsObject(n) for n in range(nodes.GetNumberOfItems())]
+    ours = [n for n in ours if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(_role(""))]
+    # First what would show each change of the others.
+    ours.sort(key=lambda node: not node.IsA("vtkMRMLSequenceBrowserNode"))
     for node in ours:
-        role = node.GetAttribute(ROLE_ATTRIBUTE) or ""
-        if role.startswith(f"{Role.REPLAY} ") and node.GetScene() is not None:
-            if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
-                scene.RemoveNode(node.GetDisplayNode())
-            scene.RemoveNode(node)
+        if node.GetScene() is None:
+            continue
+        if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
+            scene.RemoveNode(node.GetDisplayNode())
+        scene.RemoveNode(node)
+        if node.IsA("vtkMRMLSequenceNode"):
+            _empty(node, rest)
+
+
+def _empty(sequence: Any, rest: Callable[[float], None]) -> None:
+    """Take the states out of a sequence in slices: thousands at once would take too long."""
+    count = sequence.GetNumberOfDataNodes()
+    for index in reversed(range(count)):
+        sequence.RemoveDataNodeAtValue(sequence.GetNthIndexValue(index))
+        if index % STATES_A_SLICE == 0:
+            rest(0.0)
 
 
 def _rows(times: np.ndarray) -> np.ndarray:

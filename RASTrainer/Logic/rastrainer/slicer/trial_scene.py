@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from rastrainer.scenario import Scenario
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.registration_nodes import showRegistration
 from rastrainer.slicer.residual_glyphs import showResidualArrows
 from rastrainer.slicer.result_tables import showFits, showResiduals
 from rastrainer.slicer.scenario import showScenario, showTask
+from rastrainer.slicer.touches import showTouches
 from rastrainer.trial_analysis import TrialAnalysis
 
 
@@ -22,8 +21,7 @@ def showTrial(scene: Any, scenario: Scenario, analysis: TrialAnalysis) -> None:
     """
     showScenario(scene, scenario)
     fixed = showTask(scene, scenario, analysis.record.task)
-    moving = capturedPointsNode(scene)
-    setPoints(moving, analysis.record.labels, analysis.record.positions_mm)
+    moving = showTouches(scene, analysis.record)
     showRegistration(scene, analysis.rigid, moving, fixed)
     showResiduals(scene, analysis.rigid, analysis.rigid.leave_one_out_mm())
     kinds = list(analysis.fits)

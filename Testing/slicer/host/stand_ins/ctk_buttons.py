@@ -9,12 +9,17 @@ MARGIN = 4
 WITHOUT_LIMIT = 16777215
 
 
-class Folding:
-    """Hides the children of a widget, also those that come while it is collapsed."""
+class Folding(QtCore.QObject):
+    """Hides the children of a widget, also those that come while it is collapsed.
+
+    As in CTK, a child that is hidden or shown meanwhile is so when the widget is opened.
+    """
 
     def __init__(self, widget: QtWidgets.QWidget) -> None:
+        super().__init__()
         self._widget = widget
         self._hidden: list[QtWidgets.QWidget] = []
+        self._isAtWork = False
         self.is_collapsed = False
 
     def fold(self, is_collapsed: bool) -> None:
@@ -23,8 +28,11 @@ class Folding:
         if is_collapsed:
             self.hide_children()
             return
+        self._isAtWork = True
         for child in self._hidden:
+            child.removeEventFilter(self)
             child.show()
+        self._isAtWork = False
         self._hidden = []
 
     def hide_children(self) -> None:
@@ -32,14 +40,30 @@ class Folding:
         direct = QtCore.Qt.FindChildOption.FindDirectChildrenOnly
         for child in self._widget.findChildren(QtWidgets.QWidget, options=direct):
             if not child.isHidden():
-                child.hide()
+                self._hide(child)
                 self._hidden.append(child)
+                child.installEventFilter(self)
 
     def heed(self, event: QtCore.QEvent) -> None:
         """Hide a child that has just come."""
         kinds = (QtCore.QEvent.Type.ChildPolished, QtCore.QEvent.Type.LayoutRequest)
         if self.is_collapsed and event.type() in kinds:
             self.hide_children()
+
+    def eventFilter(self, child: QtCore.QObject, event: QtCore.QEvent) -> bool:
+        """Remember that a child of the collapsed widget is to stay hidden."""
+        isHidden = event.type() == QtCore.QEvent.Type.HideToParent
+        if isHidden and not self._isAtWork and child in self._hidden:
+            self._hidden.remove(child)
+            child.removeEventFilter(self)
+        return False
+
+    def _hide(self, child: QtWidgets.QWidget) -> None:
+        self._isAtWork = True
+        child.hide()
+        # Or Qt would not tell that it is hidden once more.
+        child.setAttribute(QtCore.Qt.WidgetAttribute.WA_WState_ExplicitShowHide, False)
+        self._isAtWork = False
 
 
 class ctkCollapsibleButton(QtWidgets.QAbstractButton):

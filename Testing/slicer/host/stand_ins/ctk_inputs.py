@@ -6,6 +6,9 @@ from PySide6 import QtCore, QtWidgets
 
 from Testing.slicer.host.stand_ins.dialogs import QFileDialog
 
+PATH_FRAME = 60
+"""Pixels around the path: its combo box's frame and arrow, and the button to browse."""
+
 
 class ctkComboBox(QtWidgets.QComboBox):
     """A combo box that shows a text while nothing is chosen."""
@@ -19,7 +22,10 @@ class ctkComboBox(QtWidgets.QComboBox):
 
 
 class ctkPathLineEdit(QtWidgets.QWidget):
-    """A line for a path, and a button to browse for one."""
+    """A line for a path, and a button to browse for one.
+
+    Unless it is told otherwise it is as wide as its path, as CTK's is: a long path widens the dock.
+    """
 
     Dirs, Files, Drives, NoSymLinks, Readable, Writable, Executable = (1 << n for n in range(7))
 
@@ -39,6 +45,12 @@ class ctkPathLineEdit(QtWidgets.QWidget):
         row.addWidget(self._edit)
         row.addWidget(button)
         self._edit.textChanged.connect(self.currentPathChanged)
+
+    def minimumSizeHint(self) -> QtCore.QSize:
+        hint = super().minimumSizeHint()
+        text = self._edit.text()
+        width = self._edit.fontMetrics().horizontalAdvance(text or 7 * "x")
+        return hint.expandedTo(QtCore.QSize(width + PATH_FRAME, 0))
 
     def browse(self) -> None:
         isFolder = not self._filters & self.Files

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 
 from PySide6 import QtCore, QtGui, QtWidgets
 
-from Testing.slicer.host.answers import ANSWERS
+from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.failures import FAILURES
 
 Buttons = QtWidgets.QMessageBox.StandardButton
@@ -16,6 +17,9 @@ class QMessageBox(QtWidgets.QMessageBox):
     """Is shown, and closed by the answer at once."""
 
     def exec(self) -> int:
+        if ANSWERS.are_given_by_hand:
+            FAILURES.tell(sys.exc_info()[1])
+            return super().exec()
         details = QtWidgets.QMessageBox.ButtonRole.ActionRole  # The button Show Details.
         buttons = {
             self._name(button): button
@@ -77,25 +81,41 @@ class QFileDialog(QtWidgets.QFileDialog):
 
     @staticmethod
     def getOpenFileName(_parent: object = None, caption: str = "", *_more: object) -> str:
-        return ANSWERS.path(caption)
+        return _path(caption, QtWidgets.QFileDialog.FileMode.ExistingFile)
 
     @staticmethod
     def getSaveFileName(_parent: object = None, caption: str = "", *_more: object) -> str:
-        return ANSWERS.path(caption)
+        return _path(caption, QtWidgets.QFileDialog.FileMode.AnyFile)
 
     @staticmethod
     def getExistingDirectory(_parent: object = None, caption: str = "", *_more: object) -> str:
+        return _path(caption, QtWidgets.QFileDialog.FileMode.Directory)
+
+
+def _path(caption: str, mode: QtWidgets.QFileDialog.FileMode) -> str:
+    if not ANSWERS.are_given_by_hand:
         return ANSWERS.path(caption)
+    dialog = QFileDialog()
+    dialog.setWindowTitle(caption)
+    dialog.setOption(QtWidgets.QFileDialog.Option.DontUseNativeDialog)
+    dialog.setFileMode(mode)
+    if mode == QtWidgets.QFileDialog.FileMode.AnyFile:
+        dialog.setAcceptMode(QtWidgets.QFileDialog.AcceptMode.AcceptSave)
+    return dialog.selectedFiles()[0] if dialog.exec() else ""
 
 
 class QInputDialog(QtWidgets.QInputDialog):
     """Returns the text that the test has given; an empty one where it is canceled."""
 
     @staticmethod
-    def getText(_parent: object, title: str, label: str, *_more: object) -> str:
+    def getText(
+        _parent: object, title: str, label: str, _echo: int = 0, text: str = "", *_more: object
+    ) -> str:
         answer = ANSWERS.take(title, label)
         if answer is None:
             FAILURES.add(f"Nobody has answered “{label}”.")
+        # The text that the field begins with is the message's details.
+        ANSWERS.messages.append(Message(title, label, text, answer or ""))
         return answer or ""
 
     @staticmethod

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import vtk
@@ -50,6 +51,23 @@ class qSlicerMainWindow(QtWidgets.QMainWindow):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("qSlicerMainWindow")
+        self._selector: Any = None
+        self._picture: Callable[[], QtGui.QPixmap] | None = None
+
+    def setPicture(self, picture: Callable[[], QtGui.QPixmap]) -> None:
+        """Let the host draw what the window shows."""
+        self._picture = picture
+
+    def grab(self, *_rectangle: object) -> QtGui.QPixmap:
+        """Return a picture of the window."""
+        return self._picture()
+
+    def setModuleSelector(self, selector: Any) -> None:
+        """Let the host say what its list of modules does."""
+        self._selector = selector
+
+    def moduleSelector(self) -> Any:
+        return self._selector
 
 
 class qMRMLTableView(QtWidgets.QTableView):

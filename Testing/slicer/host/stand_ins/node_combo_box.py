@@ -6,7 +6,7 @@ from typing import Any
 
 from PySide6 import QtCore, QtWidgets
 
-from Testing.slicer.host.stand_ins.observing import weakly
+from Testing.slicer.host.stand_ins.observing import unobserving, weakly
 
 
 def _stored(name: str, kind: Any) -> QtCore.Property:
@@ -77,6 +77,7 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
                 scene.EndCloseEvent,
             )
             self._tags = [scene.AddObserver(event, weakly(self._follow)) for event in events]
+            self.destroyed.connect(unobserving(scene, self._tags))
         self._fill()
         self.mrmlSceneChanged.emit(scene)
 

@@ -21,3 +21,13 @@ def weakly(method: Callable[..., None]) -> Callable[..., None]:
             alive(event, call_data)
 
     return observe
+
+
+def unobserving(observed: Any, tags: list[int]) -> Callable[[], None]:
+    """Return what ends the observers of a widget that is deleted."""
+
+    def unobserve() -> None:
+        for tag in tags:
+            observed.RemoveObserver(tag)
+
+    return unobserve

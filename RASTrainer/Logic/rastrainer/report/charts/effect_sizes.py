@@ -10,13 +10,13 @@ from rastrainer.report.comparisons import ModeComparison
 from rastrainer.report.outcomes import mode_title
 
 WIDTH, ROW = 680, 27
-LEFT, RIGHT = 226, 560
+LEFT, RIGHT = 226, 536
 FARTHEST = 6.0
 
 
 def effect_sizes(comparisons: Sequence[ModeComparison]) -> str:
     """Return the chart; intervals that leave the axis end in an arrow."""
-    shown = [comparison for comparison in comparisons if comparison.result is not None]
+    shown = [one for one in comparisons if one.result is not None and one.result.gz_interval]
     reach = max([1.0, *(abs(end) for comparison in shown for end in comparison.result.gz_interval)])
     reach = min(FARTHEST, reach * 1.05)
     axis = Axis(-reach, reach, LEFT, RIGHT)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from rastrainer.number_text import significant
 from rastrainer.report.charts.svg import FAINT, INK, Axis, Sheet, axis_over, y_grid
 
 WIDTH, HEIGHT = 330, 232
@@ -42,7 +43,7 @@ def learning_curves(
         sheet.polyline([(across.at(x), axis.at(y)) for x, y in own], color, 1.2, opacity)
         if len(trainees) <= 24:
             for x, y in own:
-                sheet.dot(across.at(x), axis.at(y), 2.6, color, 0.8, f"{name}: {y:.4g}")
+                sheet.dot(across.at(x), axis.at(y), 2.6, color, 0.8, f"{name}: {significant(y, 4)}")
     means = [(x, float(np.mean([y for n, y in points if n == x]))) for x in numbers]
     sheet.polyline([(across.at(x), axis.at(y)) for x, y in curve or means], INK, 2.4)
     ticks = numbers if len(numbers) <= 12 else across.ticks(6)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rastrainer.number_text import significant
 from rastrainer.report.charts.svg import FAINT, INK, Sheet, axis_over, mode_color, number, y_grid
 from rastrainer.report.comparisons import ModeComparison
 from rastrainer.report.outcomes import mode_title
@@ -28,7 +29,14 @@ def paired_lines(comparison: ModeComparison) -> str:
     for trainee, first, second in pairs:
         sheet.polyline([(FIRST, axis.at(first)), (SECOND, axis.at(second))], FAINT, 1.1, opacity)
         for x, value, color in ((FIRST, first, colors[0]), (SECOND, second, colors[1])):
-            sheet.dot(x, axis.at(value), 3.4, color, max(opacity, 0.5), f"{trainee}: {value:.4g}")
+            sheet.dot(
+                x,
+                axis.at(value),
+                3.4,
+                color,
+                max(opacity, 0.5),
+                f"{trainee}: {significant(value, 4)}",
+            )
     means = [float(comparison.first_means.mean()), float(comparison.second_means.mean())]
     sheet.polyline([(FIRST, axis.at(means[0])), (SECOND, axis.at(means[1]))], INK, 2.6)
     for x, mode in ((FIRST, comparison.first), (SECOND, comparison.second)):

@@ -11,6 +11,7 @@ from rastrainer.clusters.trainee_clusters import (
     TraineeClusters,
     cluster_trainees,
 )
+from rastrainer.number_text import fixed, p_phrase
 from rastrainer.report.markup import paragraph, section, table
 from rastrainer.report.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES
 from rastrainer.report.study_data import StudyData
@@ -57,8 +58,9 @@ def _table(found: TraineeClusters) -> str:
 
 def _words(found: TraineeClusters) -> str:
     return (
-        f"k-means on z-scores; mean silhouette {found.silhouette:.2f}, where 95 % of samples "
-        f"without groups stay below {found.chance_silhouette:.2f}. Stability is the mean Jaccard "
-        "similarity under resampling of trainees (Hennig 2007). A group describes these trainees; "
-        "it does not say why they differ."
+        f"k-means on z-scores; mean silhouette {fixed(found.silhouette, 2)}. That there is more "
+        f"than one group is shown by the dip test ({p_phrase(found.dip_p)}), which finds groups in "
+        "at most 5 % of studies of a population with a single peak, however skewed. Stability is "
+        "the mean Jaccard similarity under resampling of trainees (Hennig 2007). A group describes "
+        "these trainees; it does not say why they differ."
     )

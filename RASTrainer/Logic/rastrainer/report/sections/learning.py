@@ -1,4 +1,4 @@
-"""How trainees went on from trial to trial."""
+"""How trainees went on from trial to trial, and whether that is more than chance."""
 
 from __future__ import annotations
 
@@ -6,35 +6,58 @@ from collections import defaultdict
 
 import numpy as np
 
-from rastrainer.errors import InputError
 from rastrainer.learning.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
+from rastrainer.learning.trend import ALPHA, STEADY, Verdict
+from rastrainer.number_text import fixed, p_text, percent
 from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
-from rastrainer.report.markup import bullets, figure, paragraph, section
+from rastrainer.report.markup import Cell, bullets, figure, paragraph, section, table
 from rastrainer.report.outcomes import MAIN_OUTCOMES, Outcome, mode_title
+from rastrainer.report.sections.paired_statistics import interval_text
 from rastrainer.report.study_data import StudyData
+from rastrainer.report.trends import CohortTrend, cohort_trend
 
 SHOWN = ("completion_time_s", "rmse_mm", "score")
+CURVE_TOLD = 8
+"""Of fewer trials the plateau lies too far beyond them to be told."""
+HEADER = [
+    *(
+        "Outcome",
+        Cell("mode", kind="text"),
+        "n",
+        "trials",
+        "first",
+        "last",
+        "change [95 %]",
+        "p (Page)",
+    ),
+    "alone: better / steady / undecided",
+]
 
 Points = dict[str, list[tuple[float, float]]]
 
 
 def learning(data: StudyData) -> str:
     """Return the curves of each mode over the trials, or over the tasks where no order is known."""
-    charts, sentences = [], []
+    charts, rows, sentences = [], [], []
     for outcome in (o for o in MAIN_OUTCOMES if o.name in SHOWN):
         for index, mode in enumerate(data.modes):
             points = _points(data, mode, outcome)
             if not points:
                 continue
-            curve = _mean_curve(points) if data.has_order and outcome.better < 0 else None
+            series = [[value for _, value in own] for own in points.values()]
+            trend = cohort_trend(series, outcome.better) if data.has_order else None
+            curve = _curve(trend, outcome)
             charts.append(_chart(data, outcome, mode, index, points, curve))
-            if data.has_order and outcome.better < 0:
-                sentences.append(_sentence(outcome, mode, points, curve))
+            if data.has_order:
+                rows.append(_row(outcome, mode, trend, len(points)))
+            if curve is not None and len(trend.means) >= CURVE_TOLD:
+                sentences.append(_sentence(outcome, mode, curve))
     return section(
         "Learning curves",
         figure(charts, "Every trainee; thick: the curve fitted to the means, or the means."),
-        bullets(sentences),
+        *([table([HEADER], rows, "wide"), paragraph(_words(), "small")] if rows else []),
+        bullets(sentences) if sentences else "",
         paragraph(_limits(data)),
     )
 
@@ -49,18 +72,11 @@ def _points(data: StudyData, mode: str, outcome: Outcome) -> Points:
     return {trainee: sorted(own) for trainee, own in points.items()}
 
 
-def _mean_curve(points: Points) -> LearningCurve | None:
-    means = _means(points)
-    try:
-        return fit_learning_curve(means) if len(means) >= FEWEST_TRIALS else None
-    except InputError:
+def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
+    """Return the curve of the means where they are shown to fall."""
+    if trend is None or not trend.is_shown or outcome.better > 0:
         return None
-
-
-def _means(points: Points) -> list[float]:
-    """Return the mean of each trial number, as far as all trainees have come."""
-    common = min(len(own) for own in points.values())
-    return [float(np.mean([own[i][1] for own in points.values()])) for i in range(common)]
+    return fit_learning_curve(trend.means) if len(trend.means) >= FEWEST_TRIALS else None
 
 
 def _chart(
@@ -73,30 +89,53 @@ def _chart(
 ) -> str:
     x_title = "trial" if data.has_order else "task"
     fitted = []
-    if curve is not None and curve.has_learned:
-        fitted = [(x, curve.at(x)) for x in np.linspace(1, len(_means(points)), 60)]
+    if curve is not None:
+        last = max(len(own) for own in points.values())
+        fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
     heading = f"{mode_title(mode).split(' ')[0]}: {outcome.heading}"
     span = [t.values[outcome.name] for t in data.trials if outcome.name in t.values]
     color = mode_color(mode, index)
     return learning_curves(heading, color, points, x_title, fitted, (min(span), max(span)))
 
 
-def _sentence(outcome: Outcome, mode: str, points: Points, curve: LearningCurve | None) -> str:
-    name = f"{outcome.title}, {mode_title(mode)}"
-    if curve is None:
-        return f"{name}: fewer than {FEWEST_TRIALS} trials each, no curve is fitted."
-    learned = 0
-    for own in points.values():
-        try:
-            learned += fit_learning_curve([value for _, value in own]).has_learned
-        except InputError:
-            continue
-    if not curve.has_learned:
-        return f"{name}: the means show no learning that a curve would explain better than chance."
+def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> list[Cell | str]:
+    start = [outcome.heading, Cell(mode_title(mode), kind="text")]
+    if trend is None:
+        return [*start, str(trainees), "too few", *["–"] * (len(HEADER) - 4)]
+    change = "–"
+    if trend.change is not None:
+        change = interval_text(trend.change, trend.interval, outcome.digits)
+    counts = [trend.verdicts[verdict] for verdict in Verdict]
+    return [
+        *start,
+        str(trend.trainees),
+        str(len(trend.means)),
+        outcome.text(trend.means[0]),
+        outcome.text(trend.means[-1]),
+        change,
+        "–" if trend.p is None else p_text(trend.p),
+        " / ".join(map(str, counts)),
+    ]
+
+
+def _sentence(outcome: Outcome, mode: str, curve: LearningCurve) -> str:
     return (
-        f"{name}: from {curve.at(1):.3g} to a plateau of {curve.plateau:.3g} {outcome.unit} "
-        f"(a·n^−b + c, a = {curve.gain:.3g}, b = {curve.rate:.2f}, R² = {curve.r_squared:.2f}); "
-        f"learning is shown for {learned} of {len(points)} trainees alone."
+        f"{outcome.title}, {mode_title(mode)}: the means follow a·n^−b + c with "
+        f"a = {fixed(curve.gain, outcome.digits)} {outcome.unit}, b = {fixed(curve.rate, 2)} and "
+        f"c = {fixed(curve.plateau, outcome.digits)} {outcome.unit} "
+        f"(R² = {fixed(curve.r_squared, 2)})."
+    )
+
+
+def _words() -> str:
+    return (
+        "First and last: means of the trainees at their first trial and at the last that all of "
+        "them did. Change: mean of the lines through ln(trial) of each trainee. Page's test "
+        f"(one-sided, {percent(ALPHA)}) asks whether all trainees together get better. Each "
+        "trainee alone: better by the permutation test of the slope (one-sided; one in twenty who "
+        f"do not learn passes it by chance), steady where a change by {percent(STEADY)} of the "
+        "mean is excluded, and undecided where the trials allow both. These tests are not "
+        "corrected for being several."
     )
 
 
@@ -110,7 +149,7 @@ def _limits(data: StudyData) -> str:
     is_fixed = data.protocol is None or data.protocol.task_order == "fixed"
     if is_fixed and len(data.tasks) > 1:
         return (
-            "Tasks of different difficulty were done one after the other; the curves show practice "
-            "and difficulty together."
+            "Tasks of different difficulty were done one after the other; curves and tests show "
+            "practice and difficulty together, and harder tasks hide what is learned."
         )
     return "Tasks were balanced over the trainees, so that the curve of the means shows practice."

@@ -14,12 +14,12 @@ from rastrainer.scoring import LONG_PAUSE_S
 
 def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     """Return the section."""
-    n = max((len(comparison.trainees) for comparison in comparisons), default=0)
-    sentences = (
-        what_cannot_be_concluded(n)
-        if comparisons
-        else ["No trainee did two modes: nothing is said about their difference."]
-    )
+    sentences = ["No trainee did two modes: nothing is said about their difference."]
+    if comparisons:
+        largest = max(comparisons, key=lambda one: (one.result is not None, len(one.trainees)))
+        sentences = what_cannot_be_concluded(
+            len(largest.trainees), largest.result, largest.order is not None
+        )
     sentences += _missing(data) + _paused(data)
     if data.without_consent:
         sentences.append(

@@ -21,20 +21,16 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     outcomes = [outcome for outcome in MOTION_OUTCOMES if outcome.name in found]
     if not outcomes:
         return ""
-    effects = {c.outcome.name: c.result for c in comparisons if c.result is not None}
+    compared = {c.outcome.name: c for c in comparisons if c.result is not None}
     rows = []
     for outcome in outcomes:
-        cells: list[Cell | str] = [outcome.heading]
-        for mode in data.modes:
-            values = [
-                t.values[outcome.name] for t in data.of_mode(mode) if outcome.name in t.values
-            ]
-            cells.append(_mean_and_sd(values, outcome.digits) if values else "–")
-        effect = effects.get(outcome.name)
-        cells.append(
-            "–" if effect is None else interval_text(effect.hedges_gz, effect.gz_interval, 2)
-        )
-        rows.append(cells)
+        values = [
+            [t.values[outcome.name] for t in data.of_mode(mode) if outcome.name in t.values]
+            for mode in data.modes
+        ]
+        means = [_mean_and_sd(own, outcome.digits) if own else "–" for own in values]
+        counts = " / ".join(str(len(own)) for own in values)
+        rows.append([outcome.heading, *means, counts, *_effect(compared.get(outcome.name))])
     definitions = [
         [
             outcome.title,
@@ -46,14 +42,26 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     modes = [mode_title(mode) for mode in data.modes]
     return section(
         "Motion metrics",
-        paragraph("Mean ± standard deviation of the trials; described, not tested."),
-        table([["Metric", *modes, "g_z [95 %]"]], rows, "long"),
+        paragraph(
+            "Mean ± standard deviation of the trials; described, not tested. g_z is of the n "
+            "trainees who did both modes."
+        ),
+        table([["Metric", *modes, "trials", "n", "g_z [95 %]"]], rows, "long"),
         table(
             [["Metric", Cell("Definition", kind="text"), Cell("Source", kind="text")]],
             definitions,
             "long",
         ),
     )
+
+
+def _effect(comparison: ModeComparison | None) -> list[str]:
+    """Return the number of trainees and the effect size, as far as there is one."""
+    if comparison is None:
+        return ["–", "–"]
+    gz, interval = comparison.result.hedges_gz, comparison.result.gz_interval
+    text = "–" if gz is None else interval_text(gz, interval, 2)
+    return [str(len(comparison.trainees)), text]
 
 
 def _mean_and_sd(values: Sequence[float], digits: int) -> str:

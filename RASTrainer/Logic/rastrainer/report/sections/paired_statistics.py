@@ -6,12 +6,30 @@ from collections.abc import Sequence
 
 from rastrainer.inference.few_subjects import what_it_shows
 from rastrainer.inference.paired import equivalence_margin
-from rastrainer.number_text import fixed
+from rastrainer.number_text import fixed, p_text
 from rastrainer.report.charts.effect_sizes import effect_sizes
 from rastrainer.report.charts.paired_lines import paired_lines
 from rastrainer.report.comparisons import ModeComparison
-from rastrainer.report.markup import Cell, figure, paragraph, section, table
+from rastrainer.report.markup import Cell, figure, heading, paragraph, section, table
 from rastrainer.report.outcomes import mode_name, mode_title
+
+SEPARATED = (
+    "Trainees had different orders of the modes, so that the effect of the period (practice, "
+    "fatigue) is separated: difference, t-test and effect size above are free of it (regression of "
+    "the differences on the order; with two sequences the usual analysis of a crossover), and the "
+    "rank test compares later minus earlier between the sequences. “Between sequences” is the mean "
+    "over both modes of those who began with the second one minus that of the others. It differs "
+    "from 0 by chance, or where one mode leaves more behind for the other than the other way "
+    "round; that carry-over would be in the difference of the modes, too."
+)
+SAME_ORDER = (
+    "The order of the modes does not allow to separate the effect of the period (practice, "
+    "fatigue): it is part of the differences."
+)
+UNKNOWN_ORDER = (
+    "Which mode came first is not in the data: the effect of the period (practice, fatigue) is "
+    "part of the differences, or of their scatter."
+)
 
 
 def findings(comparisons: Sequence[ModeComparison]) -> list[str]:
@@ -45,20 +63,53 @@ def paired_statistics(comparisons: Sequence[ModeComparison]) -> str:
         "Paired statistics",
         paragraph(intro),
         _table(comparisons),
+        *_order(comparisons),
         figure(
             [paired_lines(comparison) for comparison in comparisons[:6]],
             "Every trainee's means in both modes (thick: the mean of all), and the mean difference "
             "with its 95 % interval on an axis of its own.",
         ),
         figure([effect_sizes(comparisons)], "Standardized paired differences.")
-        if any(comparison.result for comparison in comparisons)
+        if any(one.result is not None and one.result.gz_interval for one in comparisons)
         else "",
     )
 
 
-def p_text(p: float) -> str:
-    """Return a p-value as papers print it."""
-    return "< .001" if p < 0.001 else f"{p:.3f}".lstrip("0")
+def order_caveat(comparisons: Sequence[ModeComparison]) -> str:
+    """Return why the effect of the period is not separated; "" where it is."""
+    if any(one.result is not None and one.result.sequences is not None for one in comparisons):
+        return ""
+    known = any(comparison.order is not None for comparison in comparisons)
+    return SAME_ORDER if known else UNKNOWN_ORDER
+
+
+def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
+    """Say what the order of the modes did, or why that is not told."""
+    separated = [c for c in comparisons if c.result is not None and c.result.sequences is not None]
+    if not separated:
+        return [paragraph(order_caveat(comparisons))]
+    first, second = (mode_name(mode) for mode in (separated[0].first, separated[0].second))
+    rows = []
+    for comparison in separated:
+        found, digits = comparison.result.sequences, comparison.outcome.digits + 1
+        between = "–"
+        if found.between is not None:
+            between = interval_text(found.between, found.between_interval, digits)
+        later = interval_text(found.later, found.later_interval, digits)
+        counts = [str(found.first_first), str(found.second_first)]
+        rows.append([comparison.outcome.heading, *counts, later, between])
+    header = [
+        "Outcome",
+        f"n, {first} first",
+        f"n, {second} first",
+        "one period later [95\N{NO-BREAK SPACE}%]",
+        "between sequences [95\N{NO-BREAK SPACE}%]",
+    ]
+    return [
+        heading("What the order of the modes did"),
+        table([header], rows, "wide"),
+        paragraph(SEPARATED, "small"),
+    ]
 
 
 def _table(comparisons: Sequence[ModeComparison]) -> str:
@@ -75,8 +126,9 @@ def _table(comparisons: Sequence[ModeComparison]) -> str:
         "t",
         "p",
         "p (Holm)",
+        "rank test p",
     ]
-    return table([[*headers, "Wilcoxon p", "g_z"]], rows, "wide")
+    return table([[*headers, "g_z"]], rows, "wide")
 
 
 def _row(comparison: ModeComparison) -> list[Cell | str]:
@@ -85,7 +137,6 @@ def _row(comparison: ModeComparison) -> list[Cell | str]:
     start = [outcome.heading, str(len(comparison.trainees)), *means]
     if result is None:
         return [*start, Cell(comparison.reason, 7, kind="text")]
-    ranks = result.signed_ranks
     return [
         *start,
         interval_text(result.mean_difference, result.interval, outcome.digits + 1),
@@ -93,8 +144,8 @@ def _row(comparison: ModeComparison) -> list[Cell | str]:
         fixed(result.t, 2),
         p_text(result.p),
         "–" if comparison.adjusted_p is None else p_text(comparison.adjusted_p),
-        "–" if ranks is None else p_text(ranks.p),
-        fixed(result.hedges_gz, 2),
+        "–" if result.ranks is None else p_text(result.ranks.p),
+        "–" if result.hedges_gz is None else fixed(result.hedges_gz, 2),
     ]
 
 

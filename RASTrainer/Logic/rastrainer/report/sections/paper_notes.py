@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rastrainer.number_text import fixed, significant
 from rastrainer.report.markup import Cell, bullets, heading, paragraph, section, table
 from rastrainer.report.published_scores import cohort_scores
 from rastrainer.report.study_data import StudyData
@@ -15,12 +16,20 @@ def paper_notes(data: StudyData) -> str:
     notes = data.notes
     if notes is None:
         return ""
-    rows = [[printed.what, printed.printed, _ours(data, printed)] for printed in notes.printed]
+    rows = [
+        [
+            printed.what,
+            str(len(data.ctps_trials(printed.mode))),
+            printed.printed,
+            _ours(data, printed),
+        ]
+        for printed in notes.printed
+    ]
     claims = [[Cell(claim, kind="text"), Cell(words, kind="text")] for claim, words in notes.claims]
     return section(
         "The paper's numbers, checked",
         paragraph(f"Source: {notes.source}."),
-        table([["", "printed", "from the trials"]], rows),
+        table([["what", "trials", "printed", "from the trials"]], rows),
         heading("What does not fit"),
         bullets(notes.inconsistencies),
         heading("The claims"),
@@ -39,4 +48,6 @@ def _ours(data: StudyData, printed: Printed) -> str:
         value = float(np.mean([trial.rmse_mm for trial in trials]))
     else:
         value = getattr(scores, printed.quantity)
-    return "–" if value is None else f"{value:.4g}" if abs(value) < 1 else f"{value:.3f}"
+    if value is None:
+        return "–"
+    return significant(value, 4) if abs(value) < 1 else fixed(value, 3)

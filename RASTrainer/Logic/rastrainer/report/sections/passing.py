@@ -10,9 +10,10 @@ from rastrainer.experiment.study_protocol import pass_mark_of
 from rastrainer.feedback.progress_words import (
     ADEQUATE_FAILURES,
     INADEQUATE_FAILURES,
+    TRAINING_TRIALS,
     competence_of,
 )
-from rastrainer.learning.lc_cusum import LcCusum
+from rastrainer.learning.lc_cusum import LcCusum, fewest_trials, lc_cusum_limit
 from rastrainer.number_text import percent
 from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
@@ -90,9 +91,12 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
 
 def _words(data: StudyData, mark: float) -> str:
     source = "the default, which stands on no data" if data.protocol is None else "of the protocol"
+    limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
+    fewest = fewest_trials(ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and an expected target error "
         "within the limit of its task. A trainee is called competent by LC-CUSUM (Biau and "
         f"Porcher 2010) for failing in {percent(ADEQUATE_FAILURES)} of trials and not in "
-        f"{percent(INADEQUATE_FAILURES)}, over all tasks of a mode; few trials can hardly show it."
+        f"{percent(INADEQUATE_FAILURES)}, over all tasks of a mode. Fewer than {fewest} "
+        "trials in a mode cannot show it, even if all are passed."
     )

@@ -7,9 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from rastrainer.ctps import CTPS_WARNING, CohortScores
+from rastrainer.inference.correlation import Correlation
+from rastrainer.number_text import fixed, p_phrase
 from rastrainer.report.markup import Cell, heading, paragraph, section, table
 from rastrainer.report.outcomes import mode_title, task_title
-from rastrainer.report.published_scores import cohort_scores
+from rastrainer.report.published_scores import cohort_scores, complexity_correlation
 from rastrainer.report.study_data import StudyData
 
 MOST_COLUMNS = 6
@@ -24,10 +26,11 @@ def published_tables(data: StudyData) -> str:
         scores = cohort_scores(data, mode)
         if scores is None:
             continue
-        parts.append(heading(f"Table {ROMAN[number % 4]}. {mode_title(mode)}"))
+        counts = f"{len(scores.subjects)} trainees, {len(scores.trials)} trials"
+        parts.append(heading(f"Table {ROMAN[number % 4]}. {mode_title(mode)}: {counts}"))
         few = len(scores.subjects) <= MOST_COLUMNS
         parts.append(_whole(data, mode, scores) if few else _by_task(data, mode, scores))
-        parts.append(paragraph(_overall(mode, scores), "small"))
+        parts.append(paragraph(_overall(mode, scores) + _complexity(data, mode, scores), "small"))
     if not parts:
         return ""
     warning = paragraph(f"How to read CTPS: {CTPS_WARNING}", "warning")
@@ -49,7 +52,7 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
     subjects = list(scores.subjects)
     headers = [
         [
-            "",
+            Cell("", kind="group"),
             *(Cell(_subject(name), 2, kind="group") for name in subjects),
             Cell("", kind="group"),
         ],
@@ -73,9 +76,9 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
     last: list[Cell | str] = [Cell("User Perf.", kind="total")]
     for subject in subjects:
         color = performance_color(scores.subjects[subject], scores.subjects.values())
-        last.append(Cell(f"{scores.subjects[subject]:.2f}", 2, color, "total"))
+        last.append(Cell(fixed(scores.subjects[subject], 2), 2, color, "total"))
     return table(
-        headers, [*rows, [*last, Cell(f"{scores.overall:.2f}", kind="total")]], "wide tasks"
+        headers, [*rows, [*last, Cell(fixed(scores.overall, 2), kind="total")]], "wide tasks"
     )
 
 
@@ -93,14 +96,15 @@ def _by_task(data: StudyData, mode: str, scores: CohortScores) -> str:
             [task_title(task), *cells, _performance(scores.tasks[task], scores.tasks.values())]
         )
     low, middle, high = np.quantile(list(scores.subjects.values()), [0, 0.5, 1])
-    users = f"{len(scores.subjects)} users: {low:.1f} to {high:.1f}, median {middle:.1f}"
+    span = f"{fixed(low, 1)} to {fixed(high, 1)}, median {fixed(middle, 1)}"
+    users = f"{len(scores.subjects)} users: {span}"
     total = [Cell("User Perf.", kind="total"), Cell(users, 3, kind="total")]
-    rows.append([*total, Cell(f"{scores.overall:.2f}", kind="total")])
+    rows.append([*total, Cell(fixed(scores.overall, 2), kind="total")])
     return table([["Task", "trials", "CT (s)", "RMSE (mm)", "Task Perf."]], rows)
 
 
 def _performance(value: float, among: Iterable[float]) -> Cell:
-    return Cell(f"{value:.2f}", color=performance_color(value, among), kind="marginal")
+    return Cell(fixed(value, 2), color=performance_color(value, among), kind="marginal")
 
 
 def _subject(name: str) -> str:
@@ -118,11 +122,41 @@ def _overall(mode: str, scores: CohortScores) -> str:
         ""
         if scores.pearson_r is None
         else " Task number and mean time of the task correlate "
-        f"with r = {scores.pearson_r:.3f}, r² = {scores.r_squared:.3f}."
+        f"with r = {fixed(scores.pearson_r, 3)}, r² = {scores.r_squared:.3f}."
     )
     return (
-        f"Overall CTPS of {mode_title(mode)}: {scores.overall:.2f}{spread} over "
-        f"{len(scores.trials)} trials; {scores.equation_3_overall:.2f} by the paper's equation 3. "
+        f"Overall CTPS of {mode_title(mode)}: {fixed(scores.overall, 2)}{spread} over "
+        f"{len(scores.trials)} trials; {fixed(scores.equation_3_overall, 2)} by the paper's "
+        "equation 3. "
         f"Measured against a mean time of {scores.reference.mean_ct_s:.2f} s and a best RMSE of "
         f"{scores.reference.best_rmse_mm:.2f} mm.{correlation}"
     )
+
+
+def _complexity(data: StudyData, mode: str, scores: CohortScores) -> str:
+    """Say how time and CTPS go with the tasks' numbers, of task means and of single trials."""
+    trials = data.ctps_trials(mode)
+    of_times = complexity_correlation((t.task, t.completion_time_s) for t in trials)
+    of_trials = complexity_correlation(
+        (trial.task, score) for trial, score in zip(trials, scores.trials, strict=True)
+    )
+    task_times = complexity_correlation(
+        (task, float(np.mean([t.completion_time_s for t in trials if t.task == task])))
+        for task in scores.tasks
+    )
+    task_scores = complexity_correlation(scores.tasks.items())
+    if None in (of_times, of_trials, task_times, task_scores):
+        return ""
+    return (
+        f" With the number of the task as its complexity, over {task_times.n} task means: time "
+        f"{_correlation(task_times)}, CTPS {_correlation(task_scores)}; over the {of_times.n} "
+        f"trials: time r = {fixed(of_times.r, 2)}, CTPS r = {fixed(of_trials.r, 2)} "
+        "(not tested: trials of a trainee depend on each other)."
+    )
+
+
+def _correlation(found: Correlation) -> str:
+    interval = ""
+    if found.interval is not None:
+        interval = f" [{fixed(found.interval[0], 3)}, {fixed(found.interval[1], 3)}]"
+    return f"r = {fixed(found.r, 2)}{interval}, {p_phrase(found.p)}"

@@ -1,6 +1,7 @@
 """Make the draft of a head out of a volume, in a process of its own.
 
     python -m rastrainer.slicer.head VOLUME -o DIR [--threshold T] [--cut S] [--no-skull]
+        [--no-volume]
 
 Standard output has a line such as ` 30%  Filling cavities` a step, and `Warning: …` lines. At the
 line `The head is made.` DIR holds the draft without its skull, which is put there at the end. Exit
@@ -24,7 +25,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run and return the exit status."""
     arguments = _parser().parse_args(argv)
     try:
-        from rastrainer.slicer.head.extraction import HeadSettings
+        from rastrainer.slicer.head.head_body import HeadSettings
         from rastrainer.slicer.head.head_draft import make_draft, read_any_volume
     except ImportError as error:
         print(
@@ -44,7 +45,12 @@ def main(argv: Sequence[str] | None = None) -> int:
             print(HEAD_MADE, flush=True)
 
         draft, _ = make_draft(
-            volume, settings, not arguments.no_skull, print_progress, head_made=head_made
+            volume,
+            settings,
+            not arguments.no_skull,
+            print_progress,
+            head_made=head_made,
+            has_volume=not arguments.no_volume,
         )
         if draft.skull is not None:
             write_draft(arguments.output, draft)
@@ -63,6 +69,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--threshold", type=float, help="value that parts air from skin")
     parser.add_argument("--cut", type=float, metavar="S", help="height of the base, mm superior")
     parser.add_argument("--no-skull", action="store_true")
+    parser.add_argument("--no-volume", action="store_true")
     return parser
 
 

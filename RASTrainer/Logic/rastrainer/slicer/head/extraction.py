@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import vtk
 
@@ -11,9 +9,9 @@ from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.progress import Progress
 from rastrainer.slicer.head import beyond_image, mask, surface, tissue, topology
+from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
 from rastrainer.slicer.head.volume import Volume, on_ras_grid
 
-SPACING_MM = 1.0
 MARGIN = 14
 """Voxels added around the image, in which the nose and the ears may close."""
 
@@ -22,49 +20,6 @@ MOST_DECIMATIONS, BASE_RESERVE = 3, 500
 HAIRS_MM = (0.0, 0.2, 0.4)
 LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
-
-
-@dataclass(frozen=True)
-class HeadSettings:
-    """What may be chosen about the extraction.
-
-    Attributes:
-        threshold: value that parts air from skin; None finds it (Otsu; −475 HU of a CT).
-        base_mm: height (S) of the flat base; None for just above the image's lower edge, or the
-            neck.
-        noise_mm: standard deviation of the smoothing of the image.
-        cavity_depth_mm: what lies so deep below the skin is filled: airways, sinuses, ear canals.
-        opening_mm: openings up to this width do not count as part of the skin's outside.
-        triangles: how many are aimed at; the flat base adds a few.
-    """
-
-    threshold: float | None = None
-    base_mm: float | None = None
-    noise_mm: float = 1.0
-    cavity_depth_mm: float = 4.0
-    opening_mm: float = 12.0
-    triangles: int = 55_000
-
-
-@dataclass(frozen=True)
-class HeadBody:
-    """A head as voxels of 1 mm along RAS, before it becomes a surface.
-
-    Attributes:
-        level: (i, j, k) float, positive inside, its zero between the voxels where the skin is.
-        body: (i, j, k) bool, without cavities and tunnels.
-        origin: (3,) float, RAS mm, of voxel 0, 0, 0.
-        base_mm: height (S) of the flat base.
-        threshold: that parts air from skin, in the volume's own values.
-        is_ct: whether the values are Hounsfield units.
-    """
-
-    level: np.ndarray
-    body: np.ndarray
-    origin: np.ndarray
-    base_mm: float
-    threshold: float
-    is_ct: bool
 
 
 def extract_head(

@@ -1,4 +1,4 @@
-"""From a volume to the draft of a head: checks, extraction and the skull, in one call."""
+"""From a volume to the draft of a head: checks, extraction, images and the skull, in one call."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from pathlib import Path
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.progress import Progress
 from rastrainer.scenario_draft import HeadDraft
-from rastrainer.slicer.head.dicom_series import read_dicom_folder
-from rastrainer.slicer.head.extraction import HeadBody, HeadSettings, find_head, skin_of
-from rastrainer.slicer.head.segment import for_segment
+from rastrainer.slicer.head.extraction import find_head, skin_of
+from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
+from rastrainer.slicer.head.head_image import image_of
+from rastrainer.slicer.head.segment import SegmentImage, for_segment, volume_of_segment
 from rastrainer.slicer.head.skull import SCALP_MM, skull_of
 from rastrainer.slicer.head.tissue import is_hounsfield
-from rastrainer.slicer.head.volume import Volume, read_volume
+from rastrainer.slicer.head.volume import Volume, as_float, read_volume
 from rastrainer.slicer.head.volume_checks import check_head, check_volume
 
 
@@ -24,6 +25,8 @@ def read_any_volume(path: Path) -> Volume:
     Raises:
         InputError: it cannot be read.
     """
+    from rastrainer.slicer.head.dicom_series import read_dicom_folder
+
     return read_dicom_folder(path) if Path(path).is_dir() else read_volume(path)
 
 
@@ -32,8 +35,9 @@ def make_draft(
     settings: HeadSettings | None = None,
     has_skull: bool = True,
     progress: Progress = lambda _step, _share: None,
-    segment: Volume | None = None,
+    segment: SegmentImage | None = None,
     head_made: Callable[[HeadDraft, list[str]], None] = lambda _draft, _warnings: None,
+    has_volume: bool = True,
 ) -> tuple[HeadDraft, list[str]]:
     """Return a head and warnings, one sentence each.
 
@@ -42,21 +46,28 @@ def make_draft(
         settings: what to choose otherwise than usual.
         has_skull: whether the skull is wanted too.
         progress: told each step's name and the share of the work done; may raise to cancel.
-        segment: the head as `volume_of_segment` returns it; None finds it in the volume.
+        segment: the head; None finds it in the volume.
         head_made: given the draft without its skull and the warnings, before the skull is made.
+        has_volume: whether the images are to be part of the draft.
 
     Raises:
         InputError: the volume cannot be used, or there is no head in it or no bone in a CT.
     """
+    volume = as_float(volume)
     found, mesh, warnings = find_skin(
         volume, settings, lambda step, share: progress(step, 0.8 * share), segment
     )
     draft = HeadDraft(mesh, _head_method(found, segment is not None))
+    if has_volume:
+        progress("Preparing the images", 0.8)
+        images, told = image_of(volume, found)
+        draft = replace(draft, method=f"{draft.method} {told}", volume=images)
     head_made(draft, warnings)
     if has_skull:
         progress("Making the skull", 0.85)
         method = f"{draft.method} {_skull_method(found)}"
-        draft = HeadDraft(mesh, method, skull_of(volume, found), not found.is_ct)
+        skull = skull_of(volume, found)
+        draft = replace(draft, method=method, skull=skull, is_skull_approximate=not found.is_ct)
     progress("Done", 1.0)
     return draft, warnings
 
@@ -65,14 +76,16 @@ def find_skin(
     volume: Volume,
     settings: HeadSettings | None = None,
     progress: Progress = lambda _step, _share: None,
-    segment: Volume | None = None,
+    segment: SegmentImage | None = None,
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
     """Return a head as voxels and as a surface, and warnings; otherwise as `make_draft`."""
     settings = settings or HeadSettings()
+    volume = as_float(volume)
     warnings = check_volume(volume)
     if segment is not None:
         settings = for_segment(settings)
-    found = find_head(volume if segment is None else segment, settings, progress)
+    searched = volume if segment is None else volume_of_segment(segment)
+    found = find_head(searched, settings, progress)
     if segment is not None:
         found = replace(found, is_ct=is_hounsfield(volume.values))
     mesh = skin_of(found, settings, progress)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import slicer
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.extraction import SPACING_MM, HeadBody, HeadSettings
+from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
 from rastrainer.slicer.head.volume import (
     Volume,
     lowest_slice,
@@ -23,8 +22,6 @@ from rastrainer.slicer.head.volume import (
 SEGMENT_NAME = "Head"
 BASE_TAG = "RASTrainer.baseMm"
 EDITED_NOISE_MM = 0.8
-BELOW_BASE_MM = 3.0
-"""So far a segment goes on below the base: its own end is not yet felt where the base is cut."""
 
 _HALF = 0.5
 _AIR = 2
@@ -35,15 +32,14 @@ def show_segment(node: Any, head: HeadBody) -> str:
 
     The segment ends 3 mm below the head's base, whose height (S) is kept in its tag `BASE_TAG`.
     """
-    below = max(0, round((head.base_mm - BELOW_BASE_MM - head.origin[2]) / SPACING_MM))
-    body = head.body[:, :, below:]
+    import slicer
+
+    voxels, origin = head.labels
     image = slicer.vtkOrientedImageData()
-    image.SetDimensions(body.shape)
+    image.SetDimensions(voxels.shape[::-1])
     image.SetSpacing([SPACING_MM] * 3)
-    right, anterior, superior = head.origin
-    image.SetOrigin(right, anterior, superior + below * SPACING_MM)
-    voxels = np.ascontiguousarray(body.transpose(2, 1, 0), np.uint8).ravel()
-    image.GetPointData().SetScalars(numpy_to_vtk(voxels, deep=True))
+    image.SetOrigin(*origin)
+    image.GetPointData().SetScalars(numpy_to_vtk(voxels.ravel(), deep=True))
     segmentation = node.GetSegmentation()
     former = segmentation.GetSegmentIdBySegmentName(SEGMENT_NAME)
     if former:
@@ -57,7 +53,43 @@ def show_segment(node: Any, head: HeadBody) -> str:
     return segmentation.GetSegmentIdBySegmentName(SEGMENT_NAME)
 
 
-def volume_of_segment(node: Any, segment_id: str) -> Volume:
+@dataclass(frozen=True)
+class SegmentImage:
+    """A segment as it is in the scene.
+
+    Attributes:
+        labels: 0 outside; its image ends where the segment does.
+        base_mm: height (S) of the base that was shown with it, −∞ where none was.
+    """
+
+    labels: Volume
+    base_mm: float
+
+
+def read_segment(node: Any, segment_id: str) -> SegmentImage:
+    """Return a segment of a `vtkMRMLSegmentationNode`, copied.
+
+    Raises:
+        InputError: it is not there, or its transform is not linear.
+    """
+    import slicer
+
+    image = slicer.vtkOrientedImageData()
+    if not segment_id or not node.GetBinaryLabelmapRepresentation(segment_id, image):
+        raise InputError("The segment of the head is not there; choose another, or make it anew.")
+    array = image.GetPointData().GetScalars()
+    if array is None:
+        raise InputError("The segment of the head is empty.")
+    matrix = vtk.vtkMatrix4x4()
+    image.GetImageToWorldMatrix(matrix)
+    first = np.array(image.GetExtent()[::2], dtype=float)
+    to_ras = to_world(node) @ matrix_of(matrix)
+    to_ras[:3, 3] += to_ras[:3, :3] @ first
+    labels = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
+    return SegmentImage(Volume(labels, to_ras), _base_of(node, segment_id))
+
+
+def volume_of_segment(segment: SegmentImage) -> Volume:
     """Return a segment as a volume of zeros and ones, for `find_head` with `for_segment`.
 
     Its grid is of 1 mm along RAS, whatever grid the Segment Editor has given the segment. It
@@ -65,22 +97,13 @@ def volume_of_segment(node: Any, segment_id: str) -> Volume:
     where the segment ends higher by now, just above that end.
 
     Raises:
-        InputError: the segment is empty or not there, or its transform is not linear.
+        InputError: the segment is empty.
     """
-    image = slicer.vtkOrientedImageData()
-    if not segment_id or not node.GetBinaryLabelmapRepresentation(segment_id, image):
-        raise InputError("The segment of the head is not there; choose another, or make it anew.")
-    array = image.GetPointData().GetScalars()
-    if array is None or not vtk_to_numpy(array).any():
+    inside = segment.labels.values > 0
+    if not inside.any():
         raise InputError("The segment of the head is empty.")
-    matrix = vtk.vtkMatrix4x4()
-    image.GetImageToWorldMatrix(matrix)
-    first = np.array(image.GetExtent()[::2], dtype=float)
-    to_ras = to_world(node) @ matrix_of(matrix)
-    to_ras[:3, 3] += to_ras[:3, :3] @ first
-    values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    bare = Volume((values > 0).astype(np.float32), to_ras)
-    return _from_base(on_ras_grid(_in_air(bare), SPACING_MM), _base_of(node, segment_id))
+    bare = Volume(inside.astype(np.float32), segment.labels.ijk_to_ras)
+    return _from_base(on_ras_grid(_in_air(bare), SPACING_MM), segment.base_mm)
 
 
 def for_segment(settings: HeadSettings) -> HeadSettings:

@@ -8,7 +8,7 @@ from scipy import ndimage
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh
 from rastrainer.slicer.head import mask, surface
-from rastrainer.slicer.head.extraction import SPACING_MM, HeadBody
+from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody
 from rastrainer.slicer.head.volume import Volume, on_ras_grid
 
 CT_BONE = 300.0

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import slicer
 import vtk
-from scipy import ndimage
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.cut_files import is_cut_nifti
+
+if TYPE_CHECKING:
+    import slicer
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,14 @@ class Volume:
 
 
 def volume_from_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
-    """Return the image of a volume node where its transforms place it.
+    """Return the image of a volume node where its transforms place it; see `image_of_node`."""
+    return as_float(image_of_node(node))
+
+
+def image_of_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
+    """Return the image of a volume node where its transforms place it, at once: it is not copied.
+
+    Its values are of the node's own type; `as_float` copies them, in any thread.
 
     Raises:
         InputError: it has none, or one with colors, or its transform is not linear.
@@ -43,7 +52,12 @@ def volume_from_node(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
     if array is None or array.GetNumberOfComponents() != 1:
         raise InputError("The volume must have one value a voxel, not none and not a color.")
     values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    return Volume(values.astype(np.float32), to_world(node) @ matrix_of(matrix))
+    return Volume(values, to_world(node) @ matrix_of(matrix))
+
+
+def as_float(volume: Volume) -> Volume:
+    """Return a volume of its own whose values are of type float32."""
+    return Volume(volume.values.astype(np.float32), volume.ijk_to_ras)
 
 
 def to_world(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
@@ -78,6 +92,9 @@ def read_volume(path: Path) -> Volume:
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
     if str(path).endswith((".nii", ".nii.gz")) and is_cut_nifti(path):
         raise InputError(f"{path} is cut short; copy the file again.")
+    # Only here: the process that makes heads does without MRML.
+    import slicer
+
     scene = slicer.vtkMRMLScene()
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
     storage = slicer.vtkMRMLVolumeArchetypeStorageNode()
@@ -102,10 +119,20 @@ def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
     grid_to_ras = np.diag([spacing_mm] * 3 + [1.0])
     grid_to_ras[:3, 3] = origin
     volume = _repeated(volume, axis, end, float(np.ptp(heights)))
-    grid_to_ijk = np.linalg.inv(volume.ijk_to_ras) @ grid_to_ras
     shape = tuple(int(n) for n in np.floor((top - origin) / spacing_mm + 1e-6) + 1)
-    # What the volume does not cover is taken for air, its lowest value: 0 HU would be tissue.
-    values = ndimage.affine_transform(
+    return Volume(sampled(volume, grid_to_ras, shape), grid_to_ras)
+
+
+def sampled(volume: Volume, grid_to_ras: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return a volume's values (i, j, k) float at the places of a grid, linearly interpolated.
+
+    What the volume does not cover is taken for air, its lowest value: 0 HU would be tissue.
+    """
+    # Only here: scipy takes time to import.
+    from scipy import ndimage
+
+    grid_to_ijk = np.linalg.inv(volume.ijk_to_ras) @ grid_to_ras
+    return ndimage.affine_transform(
         volume.values,
         grid_to_ijk[:3, :3],
         grid_to_ijk[:3, 3],
@@ -113,7 +140,6 @@ def on_ras_grid(volume: Volume, spacing_mm: float) -> Volume:
         order=1,
         cval=float(volume.values.min()),
     )
-    return Volume(values, grid_to_ras)
 
 
 def lowest_slice(volume: Volume) -> tuple[int, int]:

@@ -1,0 +1,191 @@
+"""The line at the top: how the link is, who trains what, and the one thing to do now."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import qt
+
+from rastrainer.errors import InputError
+from rastrainer.panels.plain_text import buttonTitle, shortName
+from rastrainer.panels.section_folding import SectionFolding
+from rastrainer.panels.widgets import LINK_COLORS, setLight, setSentence, setText, setUsable
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
+from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.next_step import Action, NextStep, Section, Situation, nextStep
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.translation import _
+from rastrainer.slicer.trial_desk import ScoredTrial
+
+SHORTCUT = "Ctrl+Return"
+THIS_COMPUTER = ("", "127.0.0.1", "localhost", "::1")
+WORDS = {
+    LinkState.OFF: _("Not connected"),
+    LinkState.NOT_INSTALLED: _("Not installed"),
+    LinkState.LOOKING: _("Looking"),
+    LinkState.ABSENT: _("No answer"),
+    LinkState.OTHER_PROGRAM: _("No simulator"),
+    LinkState.GREETING: _("Connecting"),
+    LinkState.CONNECTED: _("Connected"),
+    LinkState.STALE: _("Silent"),
+    LinkState.WRONG_VERSION: _("Wrong version"),
+}
+
+
+class NextStepPanel:
+    """Leads through a session: it draws what `nextStep` says, and lets the sections do it."""
+
+    def __init__(
+        self, ui: Any, session: Session, actions: Mapping[Action, Callable[[], None]]
+    ) -> None:
+        """`actions` does what belongs to a section: all but waiting and looking at something."""
+        self._ui = ui
+        self._session = session
+        self._actions = actions
+        self._folding = SectionFolding(ui)
+        self._seen: Situation | None = None
+        self._step: NextStep | None = None
+        self._trainee = ""
+        self._hasTrainees = self._hasPracticed = False
+        self._isUnscored = self._hasNewResult = self._isResultShown = False
+        self._studyStep: Any = None
+        self._needsSetup = session.simulator.needsSetup
+        ui.nextStepButton.connect("clicked()", self.do)
+        ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
+        self._listening = (
+            (session.link.statusChanged, self.showState),
+            (session.link.stateChanged, self._followTrial),
+            (session.simulator.program.changed, self.showState),
+            (session.simulator.setup.changed, self._lookAtSetup),
+            (session.simulator.setup.finished, self._lookAtSetup),
+            (session.simulator.running.changed, self.showState),
+            (session.trainees.changed, self._lookUp),
+            (session.study.changed, self._lookUp),
+            (session.trials.trialScored, self._takeResult),
+            (session.trials.problemFound, self._noteProblem),
+        )
+        for signal, slot in self._listening:
+            signal.connect(slot)
+        self._lookUp()
+
+    def close(self) -> None:
+        """Listen to the session no more."""
+        for signal, slot in self._listening:
+            signal.disconnect(slot)
+
+    def do(self) -> None:
+        """Do what comes next."""
+        action = self._step.action
+        if action in self._actions:
+            self._actions[action]()
+        elif action is Action.CHOOSE_TRAINEE:
+            self._folding.open(Section.TRAINEES)
+            self._ui.traineeComboBox.showPopup()
+        elif action is Action.ANSWER:
+            self._folding.open(Section.STUDY)
+        elif action is Action.SHOW_RESULT:
+            self._hasNewResult, self._isResultShown = False, True
+        self.showState()
+
+    def showState(self, *_arguments: Any) -> None:
+        """Show where the session stands; called about ten times a second."""
+        now = self._situation()
+        if now != self._seen:
+            self._seen, self._step = now, nextStep(now)
+            self._show(now, self._step)
+
+    def _situation(self) -> Situation:
+        session, ui = self._session, self._ui
+        simulator, trial, study = session.simulator, session.training.progress, self._studyStep
+        return Situation(
+            link=session.link.status,
+            program=simulator.program.state,
+            programSentence=simulator.program.sentence,
+            needsSetup=self._needsSetup and not ui.programPathLineEdit.currentPath,
+            isBeingSetUp=simulator.setup.isRunning,
+            isElsewhere=ui.hostLineEdit.text.strip() not in THIS_COMPUTER,
+            runningSentence=simulator.running.sentence if simulator.running.canConnect else "",
+            trainee=self._trainee,
+            hasTrainees=self._hasTrainees,
+            hasPracticed=self._hasPracticed,
+            taskTitle=session.taskTitle,
+            phase=trial.phase,
+            touched=trial.touched,
+            total=trial.total,
+            isUnscored=self._isUnscored,
+            hasNewResult=self._hasNewResult,
+            isResultShown=self._isResultShown,
+            studyStep=None if study is None else study.kind,
+            studySentence="" if study is None else study.sentence,
+        )
+
+    def _show(self, now: Situation, step: NextStep) -> None:
+        ui = self._ui
+        setLight(ui.linkLight, LINK_COLORS[now.link.state])
+        setText(ui.linkText, WORDS[now.link.state])
+        trainee, task = self._trainee, now.taskTitle
+        if now.link.state is LinkState.CONNECTED and now.phase in OPEN_PHASES:
+            trial = self._session.training.progress
+            trainee, task = trial.trainee, self._titleOf(trial.task)
+        setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))
+        setText(ui.nowTaskText, shortName(task))
+        ui.nextStepButton.text = buttonTitle(step.title)
+        # A new text takes the shortcut away.
+        ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
+        isPossible = step.action is not Action.WAIT
+        tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
+        setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
+        setSentence(ui.nextStepText, step.sentence)
+        self._folding.follow(step.section)
+
+    def _titleOf(self, task: str) -> str:
+        if task == TRIAL_RUN:
+            return _("Trial run")
+        return self._session.taskTitle if task == self._session.task else task
+
+    def _lookUp(self, *_arguments: Any) -> None:
+        """Look up in the study who is chosen, and what is known of them."""
+        trainees = self._session.trainees
+        if trainees.chosen != self._trainee:
+            self._trainee = trainees.chosen
+            self._hasPracticed = self._hasNewResult = self._isResultShown = False
+        self._studyStep = None
+        # The section Trainees tells what is wrong with the study.
+        with contextlib.suppress(InputError):
+            self._hasTrainees = bool(trainees.trainees())
+            self._hasPracticed = self._hasPracticed or bool(trainees.history())
+            progress = self._session.study.progress()
+            self._studyStep = None if progress is None else progress.next_step
+        self.showState()
+
+    def _lookAtSetup(self, _error: str = "") -> None:
+        # It stands in a file, which is not read ten times a second.
+        self._needsSetup = self._session.simulator.needsSetup
+        self.showState()
+
+    def _followTrial(self, state: Mapping[str, Any]) -> None:
+        if state.get("phase") == Phase.RUNNING.value:
+            self._isUnscored = self._hasNewResult = self._isResultShown = False
+            self._hasPracticed = self._hasPracticed or state.get("trainee") == self._trainee
+        self.showState()
+
+    def _takeResult(self, trial: ScoredTrial) -> None:
+        # The sections show it each in a turn of its own; only then is there something to look at.
+        self._session.work.later(lambda: self._noteResult(trial.analysis.record.trainee))
+
+    def _noteResult(self, trainee: str) -> None:
+        if trainee == self._trainee:
+            self._hasNewResult = True
+        self.showState()
+
+    def _noteProblem(self, _sentence: str) -> None:
+        self._isUnscored = True
+        self.showState()
+
+    def _noteScoreSeen(self, isFolded: bool) -> None:
+        """Take a result for seen whose section was opened by hand."""
+        if not isFolded and self._hasNewResult:
+            self._hasNewResult, self._isResultShown = False, True
+            self.showState()

@@ -1,0 +1,161 @@
+"""The section Set-up: where the simulator comes from, what it takes, and that it goes again."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import slicer
+
+from rastrainer.panels.kept_choices import keepPath, keepText
+from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.widgets import setText, setUsable
+from rastrainer.slicer.session import Session
+from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS
+from rastrainer.slicer.simulator_setup import SimulatorSetup
+from rastrainer.slicer.translation import _
+
+
+class SetupPanel:
+    """Wires the section's widgets to the session; open while there is something to set up."""
+
+    def __init__(self, ui: Any, session: Session) -> None:
+        self._ui = ui
+        self._simulator = session.simulator
+        keepText(ui.indexLineEdit, session.settings, INDEX)
+        keepPath(ui.wheelsPathLineEdit, session.settings, WHEELS)
+        keepPath(ui.programPathLineEdit, session.settings, PROGRAM)
+        ui.indexLineEdit.connect("textChanged(QString)", self._showSetup)
+        ui.wheelsPathLineEdit.connect("currentPathChanged(QString)", self._showSetup)
+        ui.setupButton.connect("clicked()", self.setUpOrCancel)
+        ui.removeSetupButton.connect("clicked()", self.remove)
+        setup = self._simulator.setup
+        self._listening = (
+            (setup.progressed, self._follow),
+            (setup.changed, self._showSetup),
+            (setup.finished, self._finish),
+            (self._simulator.program.changed, self._showSetup),
+        )
+        for signal, slot in self._listening:
+            signal.connect(slot)
+        self._showSetup()
+        ui.setupCollapsibleButton.collapsed = not self._isNeeded()
+
+    def close(self) -> None:
+        """Listen to the session no more."""
+        for signal, slot in self._listening:
+            signal.disconnect(slot)
+
+    def setUpOrCancel(self) -> None:
+        """Begin the set-up, or break it off."""
+        with slicer.util.tryWithErrorDisplay(_("The simulator could not be set up.")):
+            if self._simulator.setup.isRunning:
+                self._simulator.setup.cancel()
+                return
+            self._ui.setupLogEdit.clear()
+            self._simulator.beginSetup(
+                self._ui.indexLineEdit.text, self._ui.wheelsPathLineEdit.currentPath
+            )
+
+    def remove(self) -> None:
+        """Remove what was set up, after asking."""
+        with slicer.util.tryWithErrorDisplay(_("The simulator could not be removed.")):
+            question = _(
+                "Remove the simulator, the folder {folder}, from this computer? Trials, studies "
+                "and scenarios stay. It can be set up again at any time."
+            ).format(folder=self._simulator.setup.folder)
+            if slicer.util.confirmYesNoDisplay(toolTip(question), _("Remove the simulator")):
+                self._simulator.removeSetup()
+                self._ui.setupCollapsibleButton.collapsed = False
+
+    def _isNeeded(self) -> bool:
+        return self._simulator.needsSetup and not self._ui.programPathLineEdit.currentPath
+
+    def _showSetup(self, _text: str = "") -> None:
+        ui, setup = self._ui, self._simulator.setup
+        runs = self._simulator.program.isRunning
+        self._showProgress()
+        ui.setupProgressBar.visible = setup.isRunning
+        ui.setupButton.text = _("Cancel") if setup.isRunning else _("Set up")
+        setUsable(
+            ui.setupButton,
+            not runs,
+            _("Install the simulator into a folder of its own, by Slicer's own Python."),
+            _("Stop the simulator first."),
+        )
+        setUsable(
+            ui.removeSetupButton,
+            setup.isInstalled and not (runs or setup.isRunning),
+            _("Remove the simulator's folder from this computer. Trials and studies stay."),
+            _("Stop the simulator first.") if runs else _("There is nothing to remove."),
+        )
+
+    def _showProgress(self) -> None:
+        ui, setup = self._ui, self._simulator.setup
+        setText(ui.setupText, self._sentence())
+        isFetching = setup.isRunning and not setup.progress.isInstalling
+        # Nought of nought shows that something is going on.
+        ui.setupProgressBar.maximum = setup.progress.count if isFetching else 0
+        ui.setupProgressBar.value = setup.progress.done if isFetching else 0
+
+    def _sentence(self) -> str:
+        setup = self._simulator.setup
+        if setup.isEnding:
+            return _("The set-up is ending.")
+        if setup.isRunning:
+            return self._progressSentence()
+        if setup.isCurrent:
+            size = setup.installedMB
+            sentence = _("The simulator is set up in {folder}.").format(folder=setup.folder)
+            return sentence if size is None else f"{sentence} {self._holds(size)}"
+        old = setup.installedVersion
+        need = _("The simulator is not set up on this computer yet: press Set up, once.")
+        if old:
+            need = _(
+                "The simulator that is set up, version {old}, is not this module's: set it up anew."
+            ).format(old=old)
+        return f"{need} {costSentence(self._ui, setup)}"
+
+    def _holds(self, size: int) -> str:
+        return _("It takes {size} MB; Remove deletes it.").format(size=size)
+
+    def _progressSentence(self) -> str:
+        progress = self._simulator.setup.progress
+        if progress.isInstalling:
+            return _("All packages are there and are being put into their folder.")
+        return _("Package {number} of {count} is being fetched.").format(
+            number=progress.done, count=progress.count
+        )
+
+    def _follow(self, line: str) -> None:
+        self._log(line)
+        self._showProgress()
+
+    def _finish(self, error: str) -> None:
+        self._log(error or _("The simulator is set up."))
+        self._showSetup()
+        if error:
+            setText(self._ui.setupText, error)
+        self._ui.setupCollapsibleButton.collapsed = not self._isNeeded()
+
+    def _log(self, line: str) -> None:
+        self._ui.setupLogEdit.appendPlainText(line)
+
+
+def costSentence(ui: Any, setup: SimulatorSetup) -> str:
+    """Tell from where, how much and into which folder, before anything is done."""
+    source = _("the public package index of Python")
+    if ui.wheelsPathLineEdit.currentPath:
+        source = _("the folder {path}").format(path=ui.wheelsPathLineEdit.currentPath)
+    elif ui.indexLineEdit.text:
+        source = _("the package index {address}").format(address=ui.indexLineEdit.text)
+    where = _(
+        "The simulator itself comes with this module. What it needs comes from {source}, each "
+        "file known by its hash, and goes into {folder}."
+    ).format(source=source, folder=setup.folder)
+    sizes = setup.package.sizes()
+    if sizes is None:
+        return where
+    size = _("About {download} MB are fetched, and {kept} MB stay.").format(
+        download=sizes.downloadMB, kept=sizes.keptMB
+    )
+    return f"{where} {size}"

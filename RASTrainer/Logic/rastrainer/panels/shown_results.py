@@ -1,0 +1,27 @@
+"""Brings a plot or a table into view, where Slicer has views."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import slicer
+
+from rastrainer.slicer.borrowed_layout import WITH_PLOT, WITH_TABLE, BorrowedLayout
+
+CURVE, TABLES = "learning curve", "tables"
+
+
+def showChart(layout: BorrowedLayout, chart: Any) -> None:
+    """Show a `vtkMRMLPlotChartNode` in a layout that has a plot view."""
+    layout.show(CURVE, WITH_PLOT)
+    logic = slicer.app.applicationLogic()
+    logic.GetSelectionNode().SetActivePlotChartID(chart.GetID())
+    logic.PropagatePlotChartSelection()
+
+
+def showTable(layout: BorrowedLayout, table: Any) -> None:
+    """Show a `vtkMRMLTableNode` in a layout that has a table view, where others can be chosen."""
+    layout.show(TABLES, WITH_TABLE)
+    logic = slicer.app.applicationLogic()
+    logic.GetSelectionNode().SetActiveTableID(table.GetID())
+    logic.PropagateTableSelection()

@@ -1,0 +1,78 @@
+"""What the user has chosen in the panels, kept from one start of Slicer to the next.
+
+It belongs to the user and this computer, not to the scene: a scene that is closed, or opened from
+elsewhere, changes none of it. In particular, no scene says which computer is connected to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, Mode
+from rastrainer.registration import RIGID
+
+Value = TypeVar("Value", str, int, bool)
+
+
+@dataclass(frozen=True)
+class Setting(Generic[Value]):
+    """One choice: the key under which it is kept, and what holds until the user chooses."""
+
+    key: str
+    usual: Value
+
+
+HOST = Setting("RASTrainer/Host", DEFAULT_HOST)
+PORT = Setting("RASTrainer/Port", DEFAULT_PORT)
+HAS_WINDOW = Setting("RASTrainer/HasWindow", True)
+HAS_NETWORK = Setting("RASTrainer/HasNetwork", False)
+PROGRAM = Setting("RASTrainer/Program", "")
+WHEELS = Setting("RASTrainer/Wheels", "")
+INDEX = Setting("RASTrainer/Index", "")
+STUDY = Setting("RASTrainer/Study", "")
+MODE = Setting("RASTrainer/Mode", Mode.DESKTOP.value)
+SCENARIO = Setting("RASTrainer/Scenario", "")
+TASK = Setting("RASTrainer/Task", "")
+SLICES_SHOW_NEXT_POINT = Setting("RASTrainer/SlicesShowNextPoint", True)
+SLICES_FOLLOW_TOOL = Setting("RASTrainer/SlicesFollowTool", False)
+FIT = Setting("RASTrainer/Fit", RIGID)
+IS_HEAD_COLORED = Setting("RASTrainer/IsHeadColored", False)
+
+
+class Settings:
+    """Reads and writes settings in a store such as `slicer.app.settings()`."""
+
+    def __init__(self, store: Any | None = None) -> None:
+        """Use a store with Qt's `value(key)` and `setValue`; without one nothing is kept."""
+        self._store = _Memory() if store is None else store
+
+    def get(self, setting: Setting[Value]) -> Value:
+        """Return what was chosen; what is usual where nothing was, or nothing that can be read."""
+        value = self._store.value(setting.key)
+        if value is None:
+            return setting.usual
+        if isinstance(setting.usual, bool):
+            # A file of settings holds texts only.
+            return str(value).lower() == "true"
+        try:
+            return type(setting.usual)(value)
+        except ValueError:
+            return setting.usual
+
+    def set(self, setting: Setting[Value], value: Value) -> None:
+        """Keep a choice."""
+        self._store.setValue(setting.key, value)
+
+
+class _Memory:
+    """Forgets with the program."""
+
+    def __init__(self) -> None:
+        self._values: dict[str, Any] = {}
+
+    def value(self, key: str) -> Any | None:
+        return self._values.get(key)
+
+    def setValue(self, key: str, value: Any) -> None:
+        self._values[key] = value

@@ -1,0 +1,195 @@
+"""How long the module keeps Slicer's window from answering: the longest stall of each step.
+
+The host plays Slicer, whose main thread keeps Python's lock while it waits for events.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import uuid
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.study import Study
+from rastrainer.tasks import LABELS
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+from Testing.benchmarks.row import row
+from Testing.end_to_end.module.installed_simulator import write_program
+from Testing.slicer.head.debian_heads import COLIN27
+from Testing.slicer.head.phantoms import phantom
+from Testing.slicer.head.volume_file import write_volume
+from Testing.slicer.host.host import Host
+from Testing.slicer.host.stall_watch import StallWatch
+from Testing.slicer.recorded_trial import write_recorded_trial
+from Testing.slicer.simulator_double import SimulatorDouble
+
+TRAINEE, TASK, SEED = "T-001", "task-1", 3
+TRIAL_S = 300.0
+EARLIER_TRIALS = 40
+SECTIONS = ("trainees", "scenario", "newScenario", "training", "registration", "score", "simulator")
+
+
+def rows(quick: bool) -> list[dict]:
+    """Return the rows `stalls.*`, the longest stall of the main thread in each step."""
+    longest: dict[str, list[float]] = {}
+    for _ in range(1 if quick else 3):
+        with tempfile.TemporaryDirectory() as folder:
+            for step, seconds in _Steps(Path(folder)).measured().items():
+                longest.setdefault(step, []).append(1e3 * seconds)
+    return [row(f"stalls.{step}", values, "ms") for step, values in longest.items()]
+
+
+class _Steps:
+    """A session in which each step is watched."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._longest: dict[str, float] = {}
+        self._colin = load_scenario(asset_path("scenarios", "colin27"))
+        self._touches = transforms.apply(
+            self._colin.perturbed_head_to_world(SEED),
+            self._colin.task(TASK).fiducials
+            + np.random.default_rng(SEED).normal(0.0, 0.7, (len(LABELS), 3)),
+        )
+
+    def measured(self) -> dict[str, float]:
+        """Return the longest stall of each step, s."""
+        self._host = host = Host(self._folder / "slicer")
+        with SimulatorDouble(self._answer) as self._simulator:
+            try:
+                self._prepare()
+                host.keeps_lock = True
+                self._play()
+                self._build()
+            finally:
+                host.keeps_lock = False
+                host.close()
+        assert not host.errors, "\n".join(host.errors)
+        return self._longest
+
+    def _prepare(self) -> None:
+        host = self._host
+        host.open()
+        for section in SECTIONS:
+            host.find(f"{section}CollapsibleButton").collapsed = False
+        for group in ("setupGroupBox", "adjustHeadGroupBox"):
+            host.find(group).collapsed = False
+        host.process_events()
+        self._trial = self._record(1000)
+        write_recorded_trial(
+            Path.home() / "RASTrainer" / "trials",
+            self._trial["trialId"],
+            TRIAL_S,
+            TRAINEE,
+            touch_every_s=20,
+        )
+        with Study.open(host.find("studyPathLineEdit").currentPath) as study:
+            for number in range(EARLIER_TRIALS):
+                record = self._record(number)
+                analysis = analyze_trial(TrialRecord.from_json(record), self._colin)
+                study.add_trial(
+                    record, analysis.fits.values(), analysis.target_errors, analysis.score
+                )
+                study.set_truth(record["trialId"], 1.0, np.eye(4).ravel().tolist())
+        host.press("createTraineeButton")
+        host.choose("traineeComboBox", TRAINEE)
+        program = write_program(self._folder / "rastrainer", self._folder / "pid", [])
+        host.type("programPathLineEdit", str(program))
+        host.type("portSpinBox", str(self._simulator.port))
+        host.press("connectButton")
+        host.wait_until(lambda: self._simulator.commands, "it is connected")
+
+    def _play(self) -> None:
+        host = self._host
+        self._watch("show_scenario", lambda: host.press("showScenarioButton"))
+        self._watch("trial", self._touch)
+        self._watch("scoring", self._score)
+        self._watch("replay", lambda: host.press("replayButton"))
+        self._watch("worst_touch", lambda: host.press("worstTouchButton"))
+        host.check("consentCheckBox")
+        host.answer("Export all trials", self._folder / "trials.csv")
+        self._watch("export", lambda: host.press("exportScoresButton"))
+        host.answer("Folder for the report", self._folder / "report")
+        self._watch("report", lambda: host.press("reportButton"))
+
+    def _touch(self) -> None:
+        for count in range(1, len(LABELS) + 1):
+            setPoints(capturedPointsNode(self._host.scene), LABELS[:count], self._touches[:count])
+            self._host.let_pass(0.3)
+
+    def _score(self) -> None:
+        self._simulator.send_command("TrialCompleted", self._trial)
+        host = self._host
+        host.wait_until(
+            lambda: host.find("historyTable").rowCount == EARLIER_TRIALS + 1, "it is in the history"
+        )
+        host.wait_until(lambda: "LC-CUSUM" in host.text("feedbackText"), "the feedback is shown")
+        host.press("learningCurveButton")
+
+    def _build(self) -> None:
+        host = self._host
+        path = self._volume()
+        node = host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Head")
+        storage = host.scene.AddNewNodeByClass("vtkMRMLVolumeArchetypeStorageNode")
+        storage.SetFileName(str(path))
+        assert storage.ReadData(node)
+        host.choose("scanComboBox", node)
+        self._watch("preview", lambda: host.press("previewHeadButton"))
+        self._watch("building", lambda: host.press("makeScenarioButton"))
+
+    def _volume(self) -> Path:
+        """Return Colin's head as it came from the scanner, or a phantom where it is not here."""
+        if COLIN27.is_file():
+            return COLIN27
+        scan = phantom(spacing=(1.0, 1.0, 1.2), noise=2.0)
+        return write_volume(self._folder / "head.nrrd", scan)
+
+    def _watch(self, step: str, work: Callable[[], object]) -> None:
+        with StallWatch() as watch:
+            work()
+            self._host.let_pass(0.5)
+        self._longest[step] = watch.longest_s
+        for stall in sorted(watch.stalls, key=lambda stall: -stall.seconds)[:3]:
+            print(f"    {step}: {1e3 * stall.seconds:.0f} ms  {stall.ran}")
+
+    def _answer(self, name: str, arguments: dict) -> dict:
+        if name != "TrialScored":
+            return {}
+        head_to_world = self._colin.perturbed_head_to_world(SEED)
+        target = self._colin.target_position
+        found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
+        error = float(np.linalg.norm(transforms.apply(found, target) - target))
+        return {"headToWorld": head_to_world.ravel().tolist(), "trueTreMm": error}
+
+    def _record(self, number: int) -> dict:
+        points = [
+            {
+                "label": label,
+                "positionMm": position.tolist(),
+                "simTime": 6.0 * (place + 1),
+                "utc": f"2026-03-02T10:00:{place:02d}Z",
+            }
+            for place, (label, position) in enumerate(zip(LABELS, self._touches, strict=True))
+        ]
+        return {
+            "trialId": str(uuid.UUID(int=number + 1)),
+            "trainee": TRAINEE,
+            "task": TASK,
+            "mode": "desktop",
+            "scenario": self._colin.name,
+            "startedUtc": f"2026-03-02T{9 + number // 3600:02d}:{number // 60 % 60:02d}:00Z",
+            "completedUtc": "2026-03-02T12:00:20Z",
+            "completionTimeS": 90.0,
+            "points": points,
+            "rejectedTouches": 1,
+            "undoneTouches": 1,
+            "versions": {"simulator": "0.1.0"},
+        }

@@ -1,0 +1,34 @@
+"""The last millimeters over OpenIGTLink: the tip is lowered until it is told to be in contact."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.message import Message
+from rastrainer.protocol import CommandName, Device, Proximity
+
+SINK_MM = 1.0
+"""How far below the skin the tip is sent: it stops on the skin."""
+PATIENCE_S = 30.0
+
+
+def lowered(place: np.ndarray, center: np.ndarray) -> list[float]:
+    """Return where the tip is sent to for a place on the skin, World, mm."""
+    inward = (center - place) / np.linalg.norm(center - place)
+    return (place + SINK_MM * inward).tolist()
+
+
+def lower_onto_skin(client: Client, place: np.ndarray, center: np.ndarray) -> None:
+    """Lower the tip onto a place of the skin, with `center` beneath: (3,) float, World, mm."""
+    arguments = {"positionMm": lowered(place, center), "speedMmS": 300}
+    reply = client.send_command(CommandName.MOVE_TIP_TO, arguments, PATIENCE_S)
+    assert reply.ok, reply.error
+    client.wait_for(Device.SIM_STATE, is_in_contact, PATIENCE_S)
+
+
+def is_in_contact(state: Message) -> bool:
+    """Tell whether a SimState says that the tool touches the head."""
+    return json.loads(state.content.text)["proximity"] == Proximity.CONTACT.value

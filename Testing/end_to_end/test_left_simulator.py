@@ -1,0 +1,57 @@
+"""A simulator that a crash of Slicer has left behind: the module finds it, joins it or ends it."""
+
+import pytest
+
+from rastrainer.slicer.child_process import ChildProcess
+from Testing.end_to_end.module.story import Story, free_port
+from Testing.slicer.host.host import Host
+from Testing.slicer.simulator_double import wait_until
+
+
+@pytest.fixture
+def story(tmp_path):
+    """A session about to open the module; a slot that raised fails the test."""
+    host = Host(tmp_path / "slicer")
+    try:
+        yield Story(host, tmp_path)
+    finally:
+        host.close()
+    assert host.errors == []
+
+
+@pytest.fixture
+def left(story):
+    """A simulator that another Slicer has started, which is gone."""
+    story.write_program()
+    words = ["simulator", "--port", str(free_port()), "--records", str(story.records)]
+    child = ChildProcess([story.program, *words])
+    wait_until(lambda: any("ready" in line for line in child.takeLines()), lambda: None, 60.0)
+    yield child
+    child.close()
+
+
+def test_it_is_found_when_the_module_is_opened_and_connected_to_and_ended(story, left):
+    host = story.host
+    story.choose_own_program()
+    assert "was not started from here is running" in host.text("runningSimulatorText")
+    host.press("connectToRunningButton")
+    story.wait_until_connected()
+    host.press("endRunningButton")
+    host.wait_until(lambda: not host.find("runningSimulatorFrame").visible, "it has ended")
+    host.wait_until(left.poll, "its process, too")
+    assert host.text("stateText") == "Not connected."
+    story.start_simulator()
+    assert not host.find("runningSimulatorFrame").visible
+
+
+def test_it_is_found_when_another_is_started_in_place_of_a_sentence_of_the_command_line(
+    story, request
+):
+    host = story.host
+    story.choose_own_program()
+    assert not host.find("runningSimulatorFrame").visible
+    request.getfixturevalue("left")
+    host.press("startSimulatorButton")
+    assert host.find("runningSimulatorFrame").visible
+    assert host.text("programText") == "No simulator was started from here."
+    assert "--records" not in host.find("simulatorLogEdit").plainText

@@ -1,0 +1,128 @@
+"""Connected to a real simulator, Slicer renders only while somebody sees the robot move."""
+
+import pytest
+import slicer
+
+from rastrainer.igtl.client import Client
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.slicer.heartbeat import LinkState
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
+
+PAUSE_S = 1.0
+"""Much longer than a pose or a poll takes."""
+STROKE_S = 2.0
+
+
+@pytest.fixture(scope="module")
+def simulator(tmp_path_factory):
+    records = tmp_path_factory.mktemp("lab") / "records"
+    with SimulatorProcess(records) as simulator:
+        yield simulator
+
+
+@pytest.fixture
+def arm(simulator):
+    """The arm in a trial, moved by another client of the simulator."""
+    with Client(port=simulator.port) as client:
+        arm = Arm(client)
+        arm.do("Hello", protocolVersion=PROTOCOL_VERSION, client="player")
+        arm.do("StartTask", task="task-1", trainee="T-001")
+        yield arm
+        arm.do("Abort")
+
+
+class Arm:
+    def __init__(self, client):
+        self._client = client
+        self._direction = 1.0
+
+    def do(self, name, **arguments):
+        reply = self._client.send_command(name, arguments, timeout=20)
+        assert reply.ok, f"{name}: {reply.error}"
+
+    def move(self):
+        """Begin to move, up or down, for a while."""
+        self.do("Jog", velocityMmS=[0, 0, 20.0 * self._direction], durationS=STROKE_S)
+        self._direction = -self._direction
+
+
+@pytest.fixture
+def connected(host, module_widget, simulator):  # noqa: F811
+    host.type("portSpinBox", str(simulator.port))
+    host.press("connectButton")
+    link = module_widget.logic.session.link
+    host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it connects")
+    host.let_pass(PAUSE_S)
+    return host
+
+
+def renders_in_a_while(host):  # noqa: F811
+    before = host.renders
+    host.let_pass(PAUSE_S)
+    return host.renders - before
+
+
+def show_robot(host):  # noqa: F811
+    host.check("robotCheckBox")
+    host.let_pass(PAUSE_S)
+
+
+def wait_for_renders(host, arm, count=10):  # noqa: F811
+    arm.move()
+    before = host.renders
+    host.wait_until(lambda: host.renders >= before + count, "the robot is seen to move")
+
+
+def set_layout(name):
+    layout = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{name}")
+    slicer.app.layoutManager().setLayout(layout)
+
+
+def test_connected_and_idle_nothing_is_rendered(connected):
+    assert renders_in_a_while(connected) == 0
+
+
+def test_with_the_robot_shown_and_at_rest_nothing_is_rendered(connected):
+    show_robot(connected)
+    assert renders_in_a_while(connected) == 0
+
+
+def test_while_the_arm_moves_and_the_robot_is_not_shown_nothing_is_rendered(connected, arm):
+    connected.let_pass(PAUSE_S)
+    arm.move()
+    assert renders_in_a_while(connected) == 0
+
+
+def test_the_robot_that_is_shown_is_rendered_as_it_moves_until_it_is_hidden(connected, arm):
+    show_robot(connected)
+    wait_for_renders(connected, arm)
+    connected.check("robotCheckBox", False)
+    connected.let_pass(PAUSE_S)
+    arm.move()
+    assert renders_in_a_while(connected) == 0
+    show_robot(connected)
+    wait_for_renders(connected, arm)
+
+
+def test_whoever_leaves_the_module_sees_the_robot_move_in_a_3d_view_alone(connected, arm):
+    show_robot(connected)
+    connected.leave()
+    connected.let_pass(PAUSE_S)
+    wait_for_renders(connected, arm)
+    set_layout("OneUpRedSliceView")
+    connected.let_pass(PAUSE_S)
+    arm.move()
+    assert renders_in_a_while(connected) == 0
+    set_layout("FourUpView")
+    wait_for_renders(connected, arm)
+
+
+def test_in_a_minimized_window_nothing_is_rendered(connected, arm):
+    show_robot(connected)
+    connected.minimize()
+    connected.let_pass(PAUSE_S)
+    arm.move()
+    assert renders_in_a_while(connected) == 0
+    connected.minimize(False)
+    wait_for_renders(connected, arm)

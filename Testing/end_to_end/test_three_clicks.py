@@ -1,0 +1,109 @@
+"""From an empty Slicer to a running trial: three clicks, with the real simulator's process."""
+
+import pytest
+import slicer
+
+from rastrainer.slicer.settings import PORT, PROGRAM
+from Testing.end_to_end.module.installed_simulator import brought_along, write_program
+from Testing.end_to_end.module.player import Player
+from Testing.end_to_end.module.story import FAST, free_port
+from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
+
+SCREEN_HEIGHT = 730
+"""Pixels of the dock on a laptop."""
+
+
+@pytest.fixture
+def options(host, tmp_path):  # noqa: ARG001 (the settings are the host's)
+    # The usual port may be another test's, which runs beside this one.
+    slicer.app.settings().setValue(PORT.key, free_port())
+    return (*FAST, "--records", str(tmp_path / "trials"))
+
+
+@pytest.fixture
+def set_up_slicer(host, tmp_path, options):
+    """A Slicer in which the module has never been opened, on a computer with the simulator."""
+    program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", options)
+    slicer.app.settings().setValue(PROGRAM.key, str(program))
+    host.open()
+    return host
+
+
+def press_next(host, title, until):
+    """Press the button at the top, which says `title`, and wait until it says something else."""
+    assert host.text("nextStepButton") == title
+    host.press("nextStepButton")
+    host.wait_until(lambda: host.text("nextStepButton") == until, f"it says {until}")
+
+
+def height(host, folder):
+    host.screenshot(folder / "panel.png", width=470)
+    return host.find("RASTrainer").height
+
+
+def play(player, host):
+    """Let a trainee touch all points and register them, and wait for the result."""
+    player.touch(1, 15)
+    host.wait_until(lambda: host.text("nextStepButton") == "Waiting…", "all points are touched")
+    assert open_sections(host) == ["registration"]
+    host.wait_until(lambda: player.is_done, "the trainee has let go")
+    player.register()
+    host.wait_until(lambda: host.text("nextStepButton") == "Show result", "the trial is scored")
+
+
+def open_sections(host):
+    names = ("setup", "simulator", "trainees", "scenario", "newScenario", "study", "training")
+    names += ("registration", "plan", "score")
+    return [name for name in names if not host.find(f"{name}CollapsibleButton").collapsed]
+
+
+def test_three_clicks_lead_from_an_empty_slicer_to_a_running_trial(set_up_slicer):
+    host = set_up_slicer
+    assert open_sections(host) == ["simulator"]
+    press_next(host, "Start and connect", until="New trainee")
+    assert open_sections(host) == ["trainees"]
+    press_next(host, "New trainee", until="Start the trial run")
+    assert open_sections(host) == ["training"]
+    press_next(host, "Start the trial run", until="Pause")
+    assert host.clicks == 3 * ["nextStepButton"]
+    assert "running" in host.text("phaseText")
+    assert [host.text(name) for name in ("linkText", "nowTraineeText", "nowTaskText")] == [
+        "Connected",
+        "T001",
+        "Trial run",
+    ]
+
+
+def test_the_button_leads_on_through_the_trial_to_its_score_and_the_next_task(
+    set_up_slicer, tmp_path
+):
+    host = set_up_slicer
+    press_next(host, "Start and connect", until="New trainee")
+    press_next(host, "New trainee", until="Start the trial run")
+    press_next(host, "Start the trial run", until="Pause")
+    press_next(host, "Pause", until="Resume")
+    press_next(host, "Resume", until="Pause")
+    port = host.widget.logic.session.simulator.program.port
+    player = Player(port, tmp_path / "trials")
+    play(player, host)
+    press_next(host, "Show result", until="Start Task 1")
+    assert open_sections(host) == ["score"]
+    host.wait_until(lambda: "Score" in host.text("feedbackText"), "it is told what there is to say")
+    assert height(host, tmp_path) <= SCREEN_HEIGHT
+    assert host.find("scoreTable").rowCount > 0
+    press_next(host, "Start Task 1", until="Pause")
+    assert open_sections(host) == ["training"]
+    play(player, host)
+    press_next(host, "Show result", until="Start Task 1")
+    assert "task-1" in host.find("trialComboBox").currentText
+
+
+def test_the_simulator_is_set_up_first_after_asking(host, tmp_path, options):
+    setup = host.open().logic.session.simulator.setup
+    setup.package = brought_along(tmp_path / "module", tmp_path / "simulator.pid", options)
+    host.answer("not set up on this computer yet", "Cancel")
+    host.press("nextStepButton")
+    assert host.text("nextStepButton") == "Start and connect"
+    host.answer("not set up on this computer yet", "Ok")
+    press_next(host, "Start and connect", until="New trainee")
+    assert host.clicks == 2 * ["nextStepButton"]

@@ -1,0 +1,44 @@
+"""The tour for a real Slicer, unmodified, in the host: every section by its widgets."""
+
+import json
+from pathlib import Path
+
+import pytest
+import slicer
+
+from rastrainer.slicer.settings import PORT, PROGRAM
+from Testing.end_to_end.module.installed_simulator import write_program
+from Testing.end_to_end.module.story import FAST, free_port
+from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
+
+TOUR = Path(__file__).parents[1] / "slicer" / "real" / "tour.py"
+
+
+@pytest.fixture
+def program(tmp_path):
+    """A simulator that is installed elsewhere, quick and without a window."""
+    return write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", FAST)
+
+
+def test_the_tour_of_a_release_goes_well_in_the_host(host, program, tmp_path):
+    slicer.app.settings().setValue(PROGRAM.key, str(program))
+    # The usual port may be another test's, which runs beside this one.
+    slicer.app.settings().setValue(PORT.key, free_port())
+    status = host.run_script(TOUR, "--", "--output", str(tmp_path / "tour"))
+    told = json.loads((tmp_path / "tour" / "tour.json").read_text())
+    assert [step["note"] for step in told["steps"] if not step["ok"]] == []
+    assert told["errors"] == []
+    assert status == 0
+    assert len(list((tmp_path / "tour").glob("*.png"))) == len(told["steps"])
+
+
+def test_a_step_that_fails_and_an_error_in_the_log_end_slicer_with_an_error(host, tmp_path):
+    host.scene.AddNewNodeByClass("vtkMRMLModelNode", "A node of the user's")
+    status = host.run_script(
+        TOUR, "--output", str(tmp_path / "tour"), "--program", str(tmp_path / "nowhere")
+    )
+    told = json.loads((tmp_path / "tour" / "tour.json").read_text())
+    assert [step["ok"] for step in told["steps"]] == [True, True, False]
+    assert "There is no program" in told["errors"][0]
+    assert "| Start and connect | NO |" in (tmp_path / "tour" / "tour.md").read_text()
+    assert status == 1

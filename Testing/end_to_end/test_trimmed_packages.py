@@ -1,0 +1,97 @@
+"""What a set-up from Slicer keeps is enough: trials, the window and planning run on it."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.private_folder import private_words
+from rastrainer.protocol import DEFAULT_HOST
+from rastrainer.scenario import load_scenario
+from rastrainer.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.private_packages import SIMULATOR, fill, run, trim
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.virtual_display import VirtualDisplay
+from Testing.end_to_end.window_process import wait_until
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="Linux tells")
+KEY = "0" * 32
+NEVER_IMPORTED = ("matplotlib", "embreex", "fontTools", "scipy", "networkx", "PIL", "Cython")
+
+
+@pytest.fixture(scope="module")
+def trimmed(built_wheel, tmp_path_factory):
+    """A filled and trimmed folder, the sizes that were noted, and what was said."""
+    folder = tmp_path_factory.mktemp("private") / "simulator"
+    fill(folder, built_wheel)
+    return folder, *trim(folder)
+
+
+@pytest.fixture
+def simulator(trimmed, tmp_path):
+    """The simulator on the packages of that folder alone, with views."""
+
+    class TrimmedSimulator(ViewedSimulator):
+        command = tuple(private_words(Path(sys.executable), trimmed[0], SIMULATOR, "simulator"))
+
+    arguments = ("--speed", "20", "--view-port", "0", "--log-folder", str(tmp_path / "logs"))
+    with TrimmedSimulator(tmp_path / "records", *arguments, key=KEY) as process:
+        yield process
+
+
+def test_what_is_never_opened_goes_and_700_mb_hold_the_rest(trimmed):
+    folder, sizes, said = trimmed
+    assert "that are never opened were removed" in said
+    assert sizes["removedBytes"] > 400e6
+    assert sizes["keptBytes"] < 700e6
+    assert [name for name in NEVER_IMPORTED if (folder / name).exists()] == []
+    assert not (folder / "cmeel.prefix" / "include").exists()
+    assert not list(folder.rglob("*.a"))
+
+
+def test_the_doctor_finds_all_packages_in_what_is_kept(trimmed):
+    done = run(trimmed[0], "doctor")
+    assert "All packages can be loaded" in done.stdout
+    assert "cannot be loaded" not in done.stdout
+    assert f"page for browsers and headsets is in {trimmed[0]}" in done.stdout
+
+
+def test_a_trial_is_played_on_what_is_kept(simulator):
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    with Client(DEFAULT_HOST, simulator.port) as client:
+        say_hello(client, "scripted trainee")
+        trial = play_trial(client, scenario, "trial-run", "trainee-01", 7)
+    assert trial.last_state["nextPoint"] is None
+
+
+def has_drawn(log):
+    return log.exists() and log.read_text() != ""
+
+
+def test_the_window_draws_on_what_is_kept(trimmed, simulator, tmp_path):
+    log = tmp_path / "frames.jsonl"
+    words = ["--connect", simulator.url, "--frame-log", str(log), "--pictures", str(tmp_path)]
+    command = private_words(Path(sys.executable), trimmed[0], SIMULATOR, "window", *words)
+    with VirtualDisplay((640, 480)) as display, (tmp_path / "said.txt").open("w") as said:
+        environment = {
+            **os.environ,
+            "DISPLAY": display.name,
+            "RASTRAINER_VIEW_KEY": KEY,
+            "SDL_AUDIODRIVER": "dummy",
+        }
+        window = subprocess.Popen(command, env=environment, stdout=said, stderr=said)
+        try:
+            wait_until(lambda: has_drawn(log) or window.poll() is not None, "a picture")
+            assert has_drawn(log), (tmp_path / "said.txt").read_text()
+        finally:
+            window.kill()
+            window.wait()
+
+
+def test_a_scenario_is_checked_on_what_is_kept(trimmed):
+    done = run(trimmed[0], "scenario", "check", str(asset_path("scenarios", "colin27")))
+    assert done.returncode == 0, done.stdout + done.stderr

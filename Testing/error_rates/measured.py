@@ -1,0 +1,74 @@
+"""One figure of a simulation, with what is asked of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from rastrainer.number_text import fixed
+
+
+@dataclass(frozen=True)
+class Measured:
+    """How often something happened in simulated data sets.
+
+    Attributes:
+        case: What was simulated, in words.
+        share: From 0 to 1.
+        sets: Of how many data sets.
+        at_most: What the share may not exceed; None where it is only told.
+        at_least: What it may not fall below; None where it is only told.
+        beside: Further figures of the same data sets, as text.
+    """
+
+    case: str
+    share: float
+    sets: int
+    at_most: float | None = None
+    at_least: float | None = None
+    beside: tuple[str, ...] = ()
+
+    def holds(self, standard_errors: float = 0.0) -> bool:
+        """Return whether the share is as asked, give or take so many of its standard errors."""
+        limit = self.at_most if self.at_most is not None else self.at_least
+        if limit is None:
+            return True
+        slack = standard_errors * np.sqrt(limit * (1 - limit) / self.sets)
+        over = self.at_most is None or self.share <= self.at_most + slack
+        return over and (self.at_least is None or self.share >= self.at_least - slack)
+
+    def cells(self) -> list[str]:
+        """Return the row of a table."""
+        asked = "–"
+        if self.at_most is not None:
+            asked = f"≤ {share_text(self.at_most, 0)}"
+        elif self.at_least is not None:
+            asked = f"≥ {share_text(self.at_least, 0)}"
+        return [self.case, share_text(self.share), asked, *self.beside]
+
+
+def share_of(happened: Sequence[bool] | np.ndarray) -> float:
+    """Return the share of what is true."""
+    return float(np.mean(happened))
+
+
+def share_text(share: float, digits: int = 1) -> str:
+    """Return a share in percent."""
+    return f"{fixed(100 * share, digits)} %"
+
+
+class Row(Protocol):
+    """What a table is made of."""
+
+    def cells(self) -> list[str]:
+        """Return case, figure, what is asked of it, and further figures."""
+
+
+def markdown(header: Sequence[str], found: Sequence[Row]) -> str:
+    """Return a table; `header` names the case, the figure and the further figures."""
+    lines = [[header[0], header[1], "asked", *header[2:]], ["---"] * (len(header) + 1)]
+    lines += [one.cells() for one in found]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)

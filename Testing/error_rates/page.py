@@ -1,0 +1,48 @@
+"""The tables of docs/error-rates.md, computed, and where they stand in it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from Testing.error_rates import effect_sizes, groups, learning, modes, recovery, throughput
+from Testing.error_rates.measured import Measured, markdown
+from Testing.error_rates.recovery import Recovered
+
+PAGE = Path(__file__).parents[2] / "docs" / "error-rates.md"
+SETS = 2000
+TABLES: dict[str, tuple[Sequence[str], Callable[[int], list[Measured] | list[Recovered]]]] = {
+    "learning": (learning.HEADER, learning.series),
+    "cohorts": (learning.COHORT_HEADER, learning.cohorts),
+    "groups": (groups.HEADER, groups.one_population),
+    "several groups": (groups.POWER_HEADER, groups.several_populations),
+    "sequences": (modes.HEADER, modes.sequences),
+    "studies": (modes.STUDY_HEADER, modes.studies),
+    "effect sizes": (effect_sizes.HEADER, effect_sizes.coverage),
+    "recovery": (recovery.HEADER, recovery.parameters),
+    "throughput": (throughput.HEADER, throughput.offsets),
+}
+
+
+def computed(name: str, sets: int = SETS) -> str:
+    """Return a table as Markdown."""
+    header, simulate = TABLES[name]
+    return markdown(header, simulate(sets))
+
+
+def printed(name: str, text: str) -> str:
+    """Return the table that a page's text holds under this name."""
+    return _place(name).search(text)[2].strip()
+
+
+def with_table(name: str, text: str, table: str) -> str:
+    """Return the text with another table under this name."""
+    replaced, places = _place(name).subn(lambda found: f"{found[1]}{table}\n{found[3]}", text)
+    if places != 1:
+        raise ValueError(f"The page must have one place for the table {name!r}, not {places}.")
+    return replaced
+
+
+def _place(name: str) -> re.Pattern[str]:
+    return re.compile(rf"(<!-- {name} -->\n)(.*?)(<!-- end -->)", re.DOTALL)

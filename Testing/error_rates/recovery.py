@@ -1,0 +1,135 @@
+"""Whether a report gives back what is true of the studies that it is made from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.cohort.drawn_study import draw_protocol_study
+from rastrainer.cohort.outcome_model import DOF, OutcomeModel
+from rastrainer.experiment.study_protocol import StudyProtocol
+from rastrainer.number_text import fixed
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.report.study_data import StudyData
+from rastrainer.report.study_variation import study_variation
+from rastrainer.scipy_modules import scipy_module
+
+HEADER = ("parameter", "off by standard errors", "truth", "mean", "standard error")
+MOST = 3.0
+"""Standard errors; of 15 unbiased estimates one is off by more in 1 of 25 tables.
+
+By 2 one is off in every other table.
+"""
+TRAINEES = 12
+PROTOCOL = StudyProtocol(
+    "recovery",
+    "Recovery",
+    ("desktop", "hmd"),
+    "balanced",
+    ("task-1", "task-2", "task-3", "task-4", "task-5"),
+    "balanced",
+)
+MODEL = OutcomeModel(
+    task_times_s=[105.0, 125.0, 130.0, 135.0, 140.0],
+    task_fle_mm=[1.2, 1.4, 1.5, 1.6, 1.8],
+    learning=0.15,
+    accuracy_learning=0.08,
+    trade_off=0.5,
+    carries_practice=True,
+    mode_time={"hmd": 1.1},
+    mode_fle={"hmd": 1.2},
+    lapses=0.2,
+    lapse_time=1.05,
+    mode_bias_mm={"desktop": 0.5, "hmd": 1.0},
+)
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """One parameter: its truth, and the mean of its estimates over all data sets."""
+
+    case: str
+    truth: float
+    mean: float
+    standard_error: float
+    at_most: float = MOST
+    at_least: None = None
+
+    @property
+    def off(self) -> float:
+        """By how many standard errors the mean is off the truth."""
+        return abs(self.mean - self.truth) / self.standard_error
+
+    def holds(self, standard_errors: float = 0.0) -> bool:
+        """Return whether it is off by at most 3 standard errors, or so many if they are more."""
+        return self.off <= max(self.at_most, standard_errors)
+
+    def cells(self) -> list[str]:
+        """Return the row of a table."""
+        numbers = (self.truth, self.mean, self.standard_error)
+        asked = f"≤ {self.at_most:g}"
+        return [self.case, fixed(self.off, 1), asked, *(fixed(number, 5) for number in numbers)]
+
+
+def parameters(sets: int, seed: int = 9) -> list[Recovered]:
+    """Return every parameter of the model, estimated from so many studies."""
+    random = np.random.default_rng(seed)
+    drawn = (draw_protocol_study(MODEL, PROTOCOL, TRAINEES, random) for _ in range(sets))
+    found = np.array([list(_estimates(study).values()) for study in drawn])
+    errors = found.std(axis=0, ddof=1) / math.sqrt(sets)
+    truths = _truths()
+    return [
+        Recovered(name, truth, float(mean), float(error))
+        for (name, truth), mean, error in zip(
+            truths.items(), found.mean(axis=0), errors, strict=True
+        )
+    ]
+
+
+def _truths() -> dict[str, float]:
+    """Return what each estimate is of; squares, since a standard deviation's root is biased."""
+    of_residual = float(scipy_module("special").polygamma(1, DOF / 2)) / 4
+    haste = MODEL.trial_time_sd
+    return {
+        "practice, time: b": MODEL.learning,
+        "practice, accuracy: b": MODEL.accuracy_learning,
+        "speed and accuracy: k": MODEL.trade_off,
+        "headset, time: ln factor": math.log(MODEL.mode_time["hmd"]),
+        "headset, localization error: ln factor": math.log(MODEL.mode_fle["hmd"]),
+        "between trainees, time: SD²": MODEL.trainee_time_sd**2,
+        "between trainees, accuracy: SD²": MODEL.trainee_fle_sd**2,
+        "trainee × mode, time: SD²": MODEL.interaction_sd**2,
+        "trainee × mode, accuracy: SD²": MODEL.interaction_sd**2,
+        "from trial to trial, time: SD²": haste**2,
+        "from trial to trial, RMSE: SD²": (MODEL.trade_off * haste) ** 2 + of_residual,
+        "lapses: share of trials": MODEL.lapses,
+        "lapses, time: ln factor": math.log(MODEL.lapse_time),
+        **{
+            f"bias of the view, {mode}: mm²": MODEL.mode_bias_mm[mode] ** 2
+            for mode in PROTOCOL.modes
+        },
+    }
+
+
+def _estimates(study: StudyData) -> dict[str, float]:
+    """Return the estimates of one study, in the order of the truths."""
+    found = study_variation(study)
+    time, error = found.time, found.error
+    estimates = [time.learning, error.learning, found.trade_off[0], time.modes[1], error.modes[1]]
+    for name in ("trainee_variance", "interaction_variance", "trial_variance"):
+        estimates += [getattr(time, name), getattr(error, name)]
+    estimates += [found.lapses, time.lapse]
+    estimates += [_squared_bias(study, mode) for mode in PROTOCOL.modes]
+    return dict(zip(_truths(), estimates, strict=True))
+
+
+def _squared_bias(study: StudyData, mode: str) -> float:
+    """Return the squared common offset: true error, less what FRE says of the scatter."""
+    trials = study.of_mode(mode)
+    true, fre = (
+        np.mean([trial.values[name] ** 2 for trial in trials])
+        for name in ("true_tre_mm", "rmse_mm")
+    )
+    return float(true - fre / (1 - 2 / FIDUCIAL_COUNT) / FIDUCIAL_COUNT)

@@ -1,0 +1,30 @@
+"""Whether a process runs, and which it has started; on Linux."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+def runs(pid: int) -> bool:
+    """Return whether a process runs; one that only waits to be noticed by its parent does not."""
+    fields = _fields(Path("/proc", str(pid)))
+    return bool(fields) and fields[0] != "Z"
+
+
+def started_by(pid: int) -> list[int]:
+    """Return the processes that a process has started and that run, and theirs."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        fields = _fields(place)
+        if fields and int(fields[1]) == pid and fields[0] != "Z":
+            child = int(place.name)
+            found += [child, *started_by(child)]
+    return found
+
+
+def _fields(place: Path) -> list[str]:
+    """Return what /proc says of a process from its state on; nothing where it has gone."""
+    try:
+        return (place / "stat").read_text().rpartition(")")[2].split()
+    except (FileNotFoundError, ProcessLookupError):
+        return []

@@ -1,0 +1,92 @@
+"""The MRI of the default scenario lies where its head does, as VTK and Slicer see it."""
+
+import zipfile
+
+import numpy as np
+import pytest
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+from rastrainer.head_mesh import read_head_mesh
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.head.volume import read_volume
+from rastrainer_simulator.assets import asset_path
+
+SCENARIO = load_scenario(asset_path("scenarios", "colin27"))
+SKIN = 48.6
+"""The threshold that the head was made with."""
+
+COVERED_MM = ((-88.0, 88.0), (-123.0, 89.0), (-69.0, 107.0))
+"""Where the scan covers the head: beyond, nose and ears go on by their own trend."""
+
+
+@pytest.fixture(scope="module")
+def volume():
+    """The volume as Slicer's own reader has it."""
+    return read_volume(SCENARIO.volume.path)
+
+
+@pytest.fixture(scope="module")
+def skin():
+    """Places (n, 3), RAS mm, of the head's skin that the scan covers."""
+    vertices = read_head_mesh(SCENARIO.head_mesh).vertices.astype(float)
+    low, high = np.array(COVERED_MM).T
+    return vertices[((vertices > low) & (vertices < high)).all(axis=1)]
+
+
+def image_of(volume):
+    image = vtk.vtkImageData()
+    image.SetDimensions(volume.values.shape)
+    image.SetOrigin(volume.ijk_to_ras[:3, 3])
+    image.GetPointData().SetScalars(numpy_to_vtk(volume.values.ravel(order="F"), deep=True))
+    return image
+
+
+def test_the_skin_in_the_mri_is_within_a_millimeter_of_the_head(volume, skin):
+    contour = vtk.vtkFlyingEdges3D()
+    contour.SetInputData(image_of(volume))
+    contour.SetValue(0, SKIN)
+    contour.Update()
+    locator = vtk.vtkStaticCellLocator()
+    locator.SetDataSet(contour.GetOutput())
+    locator.BuildLocator()
+    found, cell, part, squared = [0.0] * 3, vtk.reference(0), vtk.reference(0), vtk.reference(0.0)
+    distances = []
+    for place in skin[::10]:
+        locator.FindClosestPoint(place, found, cell, part, squared)
+        distances.append(float(squared) ** 0.5)
+    assert np.mean(distances) < 1.0
+    assert np.percentile(distances, 95) < 2.0
+
+
+def test_across_the_head_s_surface_the_mri_goes_from_dark_to_bright(volume, skin):
+    mesh = read_head_mesh(SCENARIO.head_mesh)
+    vertices = mesh.vertices.astype(float)
+    low, high = np.array(COVERED_MM).T
+    covered = ((vertices > low + 4) & (vertices < high - 4)).all(axis=1)
+    places, normals = vertices[covered], mesh.vertex_normals[covered]
+    first = volume.ijk_to_ras[:3, 3]
+
+    def brightness(offset_mm):
+        i, j, k = np.rint(places + offset_mm * normals - first).astype(int).T
+        return np.median(volume.values[i, j, k])
+
+    assert brightness(2.5) < 0.4 * SKIN
+    assert brightness(-2.5) > 1.5 * SKIN
+    assert len(places) > 0.8 * len(skin)
+
+
+def test_the_wheel_carries_it(built_wheel):
+    with zipfile.ZipFile(built_wheel) as wheel:
+        packed = wheel.read("rastrainer_simulator/assets/scenarios/colin27/volume.nrrd")
+    assert packed == SCENARIO.volume.path.read_bytes()
+
+
+def test_it_is_small_of_1_mm_and_shown_from_air_to_the_brightest_tissue(volume):
+    assert SCENARIO.volume.path.stat().st_size < 6_000_000
+    assert np.array_equal(volume.ijk_to_ras[:3, :3], np.eye(3))
+    white = SCENARIO.volume.level + SCENARIO.volume.window / 2
+    assert SCENARIO.volume.level == SCENARIO.volume.window / 2
+    head = volume.values[volume.values > SKIN]
+    assert 0.98 < (head <= white).mean() < 1.0
+    assert vtk_to_numpy(image_of(volume).GetPointData().GetScalars()).max() <= 255

@@ -1,0 +1,104 @@
+"""The images that a scenario carries lie where the head does, small, and of the head alone."""
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer.head_volume import KEPT_MM
+from rastrainer.nrrd import MOST_FILE_BYTES, write_nrrd
+from rastrainer.slicer.head.extraction import find_head, skin_of
+from rastrainer.slicer.head.head_body import HeadSettings
+from rastrainer.slicer.head.head_draft import make_draft
+from rastrainer.slicer.head.head_image import HOUNSFIELD, image_of
+from rastrainer.slicer.head.volume import Volume, read_volume
+from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
+
+
+def images(scan):
+    """The images of a scan, the sentence on them, and the head in it."""
+    head = find_head(scan, HeadSettings(), lambda _step, _share: None)
+    return *image_of(scan, head), head
+
+
+def depths(volume):
+    """How deep below the skin of the phantom each voxel is, (i, j, k), mm."""
+    indices = np.indices(volume.values.shape).reshape(3, -1).T
+    places = indices @ volume.ijk_to_ras[:3, :3].T + volume.ijk_to_ras[:3, 3]
+    return depth_mm(places).reshape(volume.values.shape)
+
+
+@pytest.mark.parametrize(
+    "scan",
+    [
+        phantom(spacing=(2.0, 2.0, 2.0)),
+        phantom(spacing=(1.5, 2.0, 3.0), axes=DOUBLE_OBLIQUE),
+    ],
+    ids=["RAS", "oblique"],
+)
+def test_mri_lies_on_a_grid_of_1_mm_where_the_head_is(scan):
+    made, told, _head = images(scan)
+    assert np.array_equal(made.ijk_to_ras[:3, :3], np.eye(3))
+    assert made.values.dtype == np.uint8
+    depth = depths(made)
+    assert np.median(made.values[(depth > 2) & (depth < 4)]) > 200
+    assert np.median(made.values[depth > 20]) == pytest.approx(255 * 0.75, abs=12)
+    assert made.values[(depth < -3) & (depth > -50)].mean() < 5
+    assert told == "Images: MRI, 1 mm, values from 0 to 100 as 0 to 255."
+    assert 150 < made.window <= 255
+    assert made.level == made.window / 2
+
+
+def test_mri_whose_values_are_bytes_keeps_them():
+    scan = phantom()
+    scan = Volume(np.rint(scan.values), scan.ijk_to_ras)
+    made, told, _head = images(scan)
+    assert told == "Images: MRI, 1 mm, its own values, 0 to 255."
+    assert np.median(made.values[depths(made) > 20]) == MRI["brain"]
+
+
+def test_ct_keeps_its_hounsfield_units_within_their_usual_range():
+    scan = phantom({**CT, "bone": 9000.0}, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
+    made, told, _head = images(scan)
+    assert made.values.dtype == np.int16
+    assert made.values.max() == HOUNSFIELD[1]
+    depth = depths(made)
+    assert np.median(made.values[depth > 20]) == CT["brain"]
+    assert np.median(made.values[(depth < -3) & (depth > -50)]) == -1000
+    assert told == "Images: CT, 1 mm, Hounsfield units from -1024 to 3071."
+
+
+def test_what_is_far_from_the_head_is_air():
+    scan = phantom(noise=2.0)
+    scan.values[2:8, 2:8, 20:90] = 60.0
+    made, _told, head = images(scan)
+    far = depths(made) < -KEPT_MM - 3.0
+    assert not made.values[far & (np.indices(made.values.shape)[2] > 20)].any()
+    skin = skin_of(head, HeadSettings(), lambda _step, _share: None)
+    corners = np.array([made.ijk_to_ras[:3, 3], (made.ijk_to_ras @ [*made.values.shape, 1])[:3]])
+    assert (corners[0][:2] > skin.vertices.min(axis=0)[:2] - KEPT_MM - 2).all()
+    assert (corners[1] < skin.vertices.max(axis=0) + KEPT_MM + 3).all()
+
+
+def test_slicer_reads_the_file_as_it_was_written(tmp_path):
+    made, _told, _head = images(phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0))
+    path = tmp_path / "volume.nrrd"
+    write_nrrd(path, made.values, made.ijk_to_ras)
+    assert path.stat().st_size < MOST_FILE_BYTES / 2
+    read = read_volume(path)
+    assert np.array_equal(read.values, made.values)
+    assert np.allclose(read.ijk_to_ras, made.ijk_to_ras)
+    storage = slicer.vtkMRMLNRRDStorageNode()
+    storage.SetFileName(str(path))
+    node = slicer.vtkMRMLScene().AddNewNodeByClass("vtkMRMLScalarVolumeNode")
+    assert storage.ReadData(node)
+    assert np.array_equal(slicer.util.arrayFromVolume(node).T, made.values)
+
+
+def test_the_draft_has_the_images_unless_they_are_not_wanted():
+    scan = phantom(spacing=(3.0, 3.0, 3.0))
+    draft, _warnings = make_draft(scan, has_skull=False)
+    assert draft.volume is not None
+    assert "Images: MRI, 1 mm" in draft.method
+    bare, _warnings = make_draft(scan, has_skull=False, has_volume=False)
+    assert bare.volume is None
+    assert "Images" not in bare.method

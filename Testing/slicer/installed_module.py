@@ -1,0 +1,36 @@
+"""Open an installed module in the host, in a process that finds our package there alone.
+
+    PYTHONPATH=<tree>/Logic python -m Testing.slicer.installed_module <tree>/RASTrainer.py FOLDER
+
+Prints one JSON object: where the package was found, and what the module shows.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import rastrainer
+from Testing.slicer.host.host import Host
+
+
+def main() -> None:
+    """Open the module, show its scenario, and print what was seen."""
+    host = Host(Path(sys.argv[2]), Path(sys.argv[1]))
+    package = host.open().logic.session.simulator.setup.package
+    seen = {
+        "package": str(Path(rastrainer.__file__).parent),
+        "checkout": package.checkout is not None,
+        "setup": host.text("setupText"),
+        "requirements": package.requirements().count("--hash=sha256:"),
+    }
+    host.find("scenarioCollapsibleButton").collapsed = False
+    host.press("showScenarioButton")
+    seen["fiducials"] = host.scene.GetFirstNodeByName("Task 1 fiducials") is not None
+    host.close()
+    print(json.dumps(seen | {"errors": host.errors}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+"""Wheels, and a simulator that comes with a module, as small as a test needs them."""
+
+from __future__ import annotations
+
+import hashlib
+import zipfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import rastrainer
+from rastrainer import __version__
+from rastrainer.slicer.simulator_package import LOCK, WHEEL, SimulatorPackage
+
+NOTHING = "# Nothing of others.\n"
+OURS = ("__init__.py", "clean_environment.py", "private_folder.py", "trim_packages.py")
+"""Of the real wheel: what runs a program on the packages of its folder, and trims them."""
+
+
+def write_wheel(folder: Path, name: str, version: str, files: Mapping[str, str]) -> Path:
+    """Write a wheel of these texts into a folder, which is made for it, and return its path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    info = f"{name}-{version}.dist-info"
+    texts = {
+        **files,
+        f"{info}/METADATA": f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n",
+        f"{info}/WHEEL": "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\n"
+        "Tag: py3-none-any\n",
+    }
+    texts[f"{info}/RECORD"] = "".join(f"{path},,\n" for path in [*texts, f"{info}/RECORD"])
+    path = folder / f"{name}-{version}-py3-none-any.whl"
+    with zipfile.ZipFile(path, "w") as wheel:
+        for place, text in texts.items():
+            wheel.writestr(place, text)
+    return path
+
+
+def simulator_files(cli: str) -> dict[str, str]:
+    """Return the files of a simulator whose `cli.py` has this text."""
+    source = Path(rastrainer.__file__).parent
+    ours = {f"rastrainer/{name}": (source / name).read_text(encoding="utf-8") for name in OURS}
+    return {**ours, "rastrainer_simulator/__init__.py": "", "rastrainer_simulator/cli.py": cli}
+
+
+def lock_entry(package: Path, marker: str = "") -> str:
+    """Return the line of a lock that fixes a wheel or sources, for where the marker holds."""
+    name, version = package.name.removesuffix(".zip").split("-")[:2]
+    digest = hashlib.sha256(package.read_bytes()).hexdigest()
+    condition = f" ; {marker}" if marker else ""
+    return f"{name}=={version}{condition} \\\n    --hash=sha256:{digest}\n"
+
+
+def write_package(folder: Path, cli: str, lock: Sequence[str] = ()) -> SimulatorPackage:
+    """Write what an installed module brings along: a wheel with its SHA-256, and a lock.
+
+    Args:
+        folder: that is made for them.
+        cli: text of the simulator's `cli.py`.
+        lock: entries of others' packages.
+    """
+    wheel = write_wheel(folder, "rastrainer", __version__, simulator_files(cli))
+    assert wheel.name == WHEEL
+    digest = hashlib.sha256(wheel.read_bytes()).hexdigest()
+    (folder / f"{WHEEL}.sha256").write_text(f"{digest}  {WHEEL}\n", encoding="utf-8")
+    (folder / LOCK).write_text("".join(lock) or NOTHING, encoding="utf-8")
+    return SimulatorPackage(folder)
+
+
+def write_checkout(folder: Path, cli: str) -> SimulatorPackage:
+    """Write a repository with the simulator's sources, and an empty lock beside its module."""
+    roots = {"rastrainer": "RASTrainer/Logic", "rastrainer_simulator": "RASTrainerSimulatorServer"}
+    for place, text in simulator_files(cli).items():
+        path = folder / roots[place.split("/")[0]] / place
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    (folder / "pyproject.toml").touch()
+    package = SimulatorPackage.of(folder / "RASTrainer")
+    package.folder.mkdir(parents=True)
+    (package.folder / LOCK).write_text(NOTHING, encoding="utf-8")
+    return package

@@ -1,0 +1,52 @@
+"""Takes a real Slicer through the whole module, and says what does not work; made for a release.
+
+    Slicer --python-script Testing/slicer/real/tour.py -- --output DIR
+
+Every section is worked by its real widgets: simulator, trainee, a trial that a scripted trainee
+plays, registration, plan, score, replay, report, scenes, a scenario from a volume, a study. DIR
+gets a picture of each step, and a table of them as `tour.json` and `tour.md`, with what Slicer has
+logged as an error meanwhile. The exit status is 0 where all is well. It takes some minutes.
+
+The module must be installed with SlicerOpenIGTLink. The simulator is set up first where it is not
+yet. Without a main window (`--no-main-window`) the pictures show the panel alone; with `--testing`
+Slicer answers all questions with no, so that the tour refuses to begin.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+import slicer
+
+
+def main(words: list[str]) -> int:
+    """Take the tour; return the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--output", type=Path, required=True, help="folder of the pictures")
+    parser.add_argument("--program", default="", help="a rastrainer that is installed elsewhere")
+    parser.add_argument("--window", action="store_true", help="open the trainee's window, too")
+    # Slicer hands on the dashes that separate its own arguments from those of the script.
+    arguments = parser.parse_args([word for word in words if word != "--"])
+    if slicer.app.testingEnabled():
+        print("Start Slicer without --testing: with it, all questions are answered with no.")
+        return 2
+
+    from tour_record import Record
+    from tour_stage import Tour
+    from tour_steps import NEEDED, STEPS
+
+    tour = Tour(arguments.output, arguments.program, arguments.window)
+    record = Record(arguments.output, tour.panel)
+    try:
+        for name, step in STEPS:
+            if not record.do(name, lambda step=step: step(tour)) and step in NEEDED:
+                break
+    finally:
+        tour.close()
+    return 0 if record.write() else 1
+
+
+if __name__ == "__main__":
+    slicer.util.exit(main(sys.argv[1:]))

@@ -1,0 +1,104 @@
+"""Works the module by its real widgets, found by their names."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import slicer
+
+PATIENCE_S = 120.0
+
+
+class TourError(Exception):
+    """Something is not as it should be; the sentence says what."""
+
+
+class Hands:
+    """Clicks, types and waits.
+
+    Attributes:
+        module: the module's widget, as its Python class.
+    """
+
+    def __init__(self, module: Any, unexpected: list[str]) -> None:
+        """`unexpected` grows by what each dialog says that nobody has expected."""
+        self.module = module
+        self._unexpected = unexpected
+        self._known = 0
+
+    def find(self, name: str) -> Any:
+        """Return the widget of that name."""
+        return slicer.util.findChild(self.module.parent, name)
+
+    def text(self, name: str) -> str:
+        """Return the text of a widget."""
+        return self.find(name).text
+
+    def open(self, *names: str) -> None:
+        """Open sections and groups, from without to within."""
+        for name in names:
+            self.find(name).collapsed = False
+        self.let_pass(0.1)
+
+    def click(self, name: str) -> None:
+        """Click a button or a check box, which must be usable."""
+        widget = self.find(name)
+        if not widget.enabled:
+            raise TourError(f"{name} is disabled: {widget.toolTip}")
+        widget.click()
+        self.let_pass(0.1)
+        self._heed_dialogs()
+
+    def check(self, name: str, wanted: bool = True) -> None:
+        """Check a box, or uncheck it."""
+        if self.find(name).checked != wanted:
+            self.click(name)
+
+    def choose(self, name: str, part: str) -> None:
+        """Choose the entry of a combo box that contains `part`, as a user does."""
+        combo = self.find(name)
+        texts = [combo.itemText(index) for index in range(combo.count)]
+        found = [index for index, text in enumerate(texts) if part in text]
+        if not found:
+            raise TourError(f"{name} offers no “{part}”, only: {', '.join(texts)}.")
+        combo.setCurrentIndex(found[0])
+        combo.activated.emit(found[0])
+        self.let_pass(0.1)
+
+    def let_pass(self, seconds: float) -> None:
+        """Let Slicer do what is due for some time."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            slicer.app.processEvents()
+            # Threads of Python run only while the main thread waits in Python.
+            time.sleep(0.005)
+
+    def wait_until(
+        self, condition: Callable[[], Any], what: str, timeout_s: float = PATIENCE_S
+    ) -> None:
+        """Let Slicer do what is due until something is so.
+
+        Raises:
+            TourError: it is not so in time, or a dialog has opened that nobody has expected; `what`
+                says what was awaited.
+        """
+        end = time.monotonic() + timeout_s
+        while not condition():
+            self._heed_dialogs()
+            if time.monotonic() > end:
+                raise TourError(f"In {timeout_s:g} s it did not happen: {what}.")
+            self.let_pass(0.02)
+
+    def _heed_dialogs(self) -> None:
+        """Raise `TourError` where a dialog has opened that nobody has expected."""
+        said = self._unexpected[self._known :]
+        self._known = len(self._unexpected)
+        if said:
+            raise TourError(f"A dialog has opened that nobody expected: {'; '.join(said)}")
+
+    def must(self, condition: Any, sentence: str) -> None:
+        """Raise `TourError` with a sentence unless something is so."""
+        if not condition:
+            raise TourError(sentence)

@@ -1,0 +1,37 @@
+"""The steps of the tour in their order: one story through every section of the module."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import tour_afterward
+import tour_trial
+from tour_stage import Tour
+
+STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
+    ("Open the module", tour_trial.open_module),
+    ("Connect to a web page", tour_trial.meet_web_page),
+    ("Start and connect", tour_trial.start_and_connect),
+    ("Create a trainee", tour_trial.create_trainee),
+    ("Show scenario and robot", tour_trial.show_scenario),
+    ("Start task 1", tour_trial.start_task),
+    ("Touch points 1 to 7", tour_trial.touch_some),
+    ("Pause and resume", tour_trial.pause_and_resume),
+    ("Close the scene in mid-trial", tour_trial.close_scene_in_mid_trial),
+    ("Touch points 8 to 15", tour_trial.touch_the_others),
+    ("Mend the registration", tour_trial.mend_registration),
+    ("Register and score", tour_trial.score),
+    ("Plan a target", tour_afterward.plan),
+    ("Replay the trial", tour_afterward.replay),
+    ("Show tables and learning curve", tour_afterward.tables_and_curve),
+    ("Export", tour_afterward.export),
+    ("Write the report", tour_afterward.report),
+    ("Save and load the scene", tour_afterward.save_and_load_scene),
+    ("Make a scenario from a volume", tour_afterward.scenario_from_volume),
+    ("Lead through a study", tour_afterward.study),
+    ("Delete every node", tour_afterward.delete_every_node),
+    ("Delete the trainee and stop", tour_afterward.delete_trainee_and_stop),
+)
+
+NEEDED = (tour_trial.open_module, tour_trial.start_and_connect)
+"""Without these none of the others makes sense."""

@@ -1,0 +1,158 @@
+"""The tour's first half: from an empty Slicer to the score of a trial."""
+
+from __future__ import annotations
+
+import subprocess
+
+import slicer
+from tour_hands import PATIENCE_S
+from tour_stage import SLIP_AT, Tour
+
+TRAINEE = "TOUR-1"
+STUDY = "study.db"
+SETUP_PATIENCE_S = 1800.0
+WEB_PAGE = """
+import http.server, os, threading
+server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), http.server.SimpleHTTPRequestHandler)
+# Whoever ends Slicer's launcher of Python leaves Python itself alone: it ends by itself.
+threading.Timer(60.0, os._exit, (0,)).start()
+print(server.server_port, flush=True)
+server.serve_forever()
+"""
+
+
+def open_module(tour: Tour) -> str:
+    hands = tour.hands
+    hands.must(hands.module._timer.isActive(), "The module's timer does not run.")
+    if tour.program:
+        hands.find("programPathLineEdit").currentPath = tour.program
+    hands.find("windowCheckBox").checked = tour.has_window
+    tour.choose_study(tour.fresh(STUDY))
+    hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it begins")
+    return hands.text("nextStepText")
+
+
+def meet_web_page(tour: Tour) -> str:
+    """Connect to a port that speaks HTTP, which once ended Slicer."""
+    hands = tour.hands
+    hands.open("simulatorCollapsibleButton", "advancedGroupBox")
+    port = hands.find("portSpinBox")
+    former = port.value
+    page = subprocess.Popen(
+        [str(tour.session.places.python), "-c", WEB_PAGE],
+        cwd=tour.folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    try:
+        port.value = int(page.stdout.readline())
+        hands.click("probeButton")
+        hands.wait_until(lambda: "web page" in hands.text("stateText"), "it is recognized")
+        hands.click("connectButton")
+        hands.wait_until(lambda: hands.text("linkText") == "No simulator", "it is told")
+        told = hands.text("stateText")
+        hands.let_pass(3.0)
+        hands.click("connectButton")
+        hands.wait_until(lambda: hands.text("linkText") == "Not connected", "it is given up")
+    finally:
+        page.kill()
+        port.value = former
+    return told
+
+
+def start_and_connect(tour: Tour) -> str:
+    hands = tour.hands
+    tour.dialogs.answer("not set up on this computer yet", "Ok")
+    hands.click("nextStepButton")
+    patience = SETUP_PATIENCE_S if tour.session.simulator.setup.isRunning else PATIENCE_S
+    hands.wait_until(lambda: hands.text("linkText") == "Connected", "it connects", patience)
+    tour.dialogs.forget()
+    return hands.text("stateText")
+
+
+def create_trainee(tour: Tour) -> str:
+    hands = tour.hands
+    hands.find("pseudonymLineEdit").text = TRAINEE
+    hands.check("newConsentCheckBox")
+    hands.click("nextStepButton")
+    hands.must(TRAINEE in hands.find("traineeComboBox").currentText, "Nobody is chosen.")
+    return hands.text("traineeText")
+
+
+def show_scenario(tour: Tour) -> str:
+    hands = tour.hands
+    hands.open("scenarioCollapsibleButton")
+    hands.choose("taskComboBox", "Task 1")
+    hands.click("showScenarioButton")
+    hands.check("robotCheckBox")
+    hands.must(slicer.util.getNode("Robot link 7"), "There is no robot.")
+    return hands.text("scenarioText")
+
+
+def start_task(tour: Tour) -> str:
+    hands = tour.hands
+    hands.open("trainingCollapsibleButton")
+    hands.click("startTaskButton")
+    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial runs")
+    return hands.text("phaseText")
+
+
+def touch_some(tour: Tour) -> str:
+    return tour.touch(1, 7)
+
+
+def pause_and_resume(tour: Tour) -> None:
+    hands = tour.hands
+    hands.click("nextStepButton")
+    hands.wait_until(lambda: hands.text("nextStepButton") == "Resume", "the trial is paused")
+    hands.click("nextStepButton")
+    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial is resumed")
+
+
+def close_scene_in_mid_trial(tour: Tour) -> str:
+    hands = tour.hands
+    slicer.mrmlScene.Clear(0)
+    hands.wait_until(lambda: hands.text("linkText") == "Connected", "it is connected again")
+    hands.wait_until(lambda: slicer.util.getNodes("*fiducials"), "the trial is shown again")
+    return hands.text("phaseText")
+
+
+def touch_the_others(tour: Tour) -> str:
+    told = tour.touch(8, 15)
+    tour.hands.wait_until(
+        lambda: tour.hands.find("residualsTable").rowCount == 15, "15 pairs are registered"
+    )
+    return told
+
+
+def mend_registration(tour: Tour) -> str:
+    hands = tour.hands
+    hands.open("registrationCollapsibleButton", "residualsGroupBox", "pointListsGroupBox")
+    told = hands.text("warning0Text")
+    hands.must(f"Point {SLIP_AT}" in told, f"The slip is not found: {told}")
+    hands.click("remedy0Button")
+    table = hands.find("residualsTable")
+    hands.wait_until(lambda: table.rowCount == 14, "the point is left out")
+    hands.click("undoButton")
+    hands.wait_until(lambda: table.rowCount == 15, "it is back")
+    table.selectRow(3)
+    hands.click("excludeButton")
+    hands.wait_until(lambda: table.rowCount == 14, "another point is left out")
+    hands.click("undoButton")
+    hands.choose("kindComboBox", "Affine")
+    hands.choose("kindComboBox", "Rigid")
+    hands.check("headColoredCheckBox")
+    hands.check("headColoredCheckBox", wanted=False)
+    return told
+
+
+def score(tour: Tour) -> str:
+    hands = tour.hands
+    tour.play("--register")
+    hands.wait_until(lambda: hands.text("nextStepButton") == "Show result", "it is scored")
+    hands.click("nextStepButton")
+    hands.open("measuresGroupBox")
+    hands.wait_until(lambda: hands.find("scoreTable").rowCount, "the score is shown")
+    hands.wait_until(lambda: "Score" in hands.text("feedbackText"), "the feedback is there")
+    return hands.text("feedbackText").splitlines()[0]

@@ -1,0 +1,116 @@
+"""Servers that are no simulator, on real sockets, for the tests of whom the module connects to."""
+
+from __future__ import annotations
+
+import contextlib
+import http.server
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+Behavior = Callable[[socket.socket], None]
+
+SLOW_S = 30.0
+
+
+@contextlib.contextmanager
+def stranger(behavior: Behavior, port: int = 0) -> Iterator[int]:
+    """Let `behavior` serve each connection in a thread of its own; gives the port."""
+    over = threading.Event()
+    peers = []
+
+    def serve() -> None:
+        while not over.is_set():
+            try:
+                peer = listener.accept()[0]
+            except OSError:
+                return
+            peers.append(peer)
+            threading.Thread(target=_behave, args=(behavior, peer), daemon=True).start()
+
+    with socket.create_server(("127.0.0.1", port)) as listener:
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        try:
+            yield listener.getsockname()[1]
+        finally:
+            over.set()
+            for each in (listener, *peers):
+                with contextlib.suppress(OSError):
+                    each.shutdown(socket.SHUT_RDWR)
+                each.close()
+            thread.join()
+
+
+@contextlib.contextmanager
+def web_server(port: int = 0) -> Iterator[int]:
+    """Serve pages as Python's own server does; gives the port."""
+
+    class Quiet(http.server.BaseHTTPRequestHandler):
+        def log_message(self, *_arguments: object) -> None:
+            """Stay quiet."""
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", port), Quiet) as server:
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
+        thread.start()
+        try:
+            yield server.server_address[1]
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def says(data: bytes) -> Behavior:
+    """Say something at once, and then nothing more."""
+
+    def behave(peer: socket.socket) -> None:
+        peer.sendall(data)
+        peer.recv(65536)
+        time.sleep(SLOW_S)
+
+    return behave
+
+
+def says_in_answer(data: bytes) -> Behavior:
+    """Say something to whoever has said something."""
+
+    def behave(peer: socket.socket) -> None:
+        peer.recv(65536)
+        peer.sendall(data)
+
+    return behave
+
+
+def is_silent(peer: socket.socket) -> None:
+    """Take the connection and say nothing."""
+    peer.recv(65536)
+    time.sleep(SLOW_S)
+
+
+def trickles(data: bytes) -> Behavior:
+    """Say the same again and again, a byte at a time."""
+
+    def behave(peer: socket.socket) -> None:
+        while True:
+            for byte in data:
+                peer.sendall(bytes([byte]))
+                time.sleep(0.01)
+
+    return behave
+
+
+def floods(data: bytes) -> Behavior:
+    """Say the same without end, as fast as it is taken."""
+
+    def behave(peer: socket.socket) -> None:
+        while True:
+            peer.sendall(data)
+
+    return behave
+
+
+def _behave(behavior: Behavior, peer: socket.socket) -> None:
+    with contextlib.suppress(OSError):
+        behavior(peer)
+        peer.shutdown(socket.SHUT_RDWR)

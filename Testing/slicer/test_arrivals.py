@@ -1,0 +1,61 @@
+"""However much a peer sends at once, a turn of the main loop hands over only so much of it."""
+
+import json
+
+import pytest
+
+from rastrainer.slicer.arrivals import (
+    CHARACTERS_A_TURN,
+    COMMANDS_A_TURN,
+    MOST_KEPT,
+    Arrivals,
+)
+from rastrainer.slicer.contained import Contained
+from rastrainer.slicer.signal import Signal
+
+
+@pytest.fixture
+def told():
+    return []
+
+
+@pytest.fixture
+def arrivals(scene, told):
+    known = Signal()
+    known.connect(told.append)
+    return Arrivals(scene, Contained(), Signal(), Signal(), {"Known": known})
+
+
+def test_commands_are_handed_over_a_few_a_turn_in_their_order(arrivals, told):
+    for number in range(3 * COMMANDS_A_TURN):
+        arrivals.keepCommand("Known", json.dumps({"number": number}))
+    for turn in range(1, 4):
+        arrivals.handOverCommands()
+        assert len(told) == turn * COMMANDS_A_TURN
+    assert [each["number"] for each in told] == list(range(3 * COMMANDS_A_TURN))
+
+
+def test_long_commands_are_handed_over_fewer_a_turn(arrivals, told):
+    for _ in range(4):
+        arrivals.keepCommand("Known", json.dumps({"text": CHARACTERS_A_TURN * "x"}))
+    for turn in range(1, 5):
+        arrivals.handOverCommands()
+        assert len(told) == turn
+
+
+def test_of_a_flood_no_more_is_kept_than_can_wait(arrivals, told):
+    for number in range(10 * MOST_KEPT):
+        arrivals.keepCommand("Known", json.dumps({"number": number}))
+    for _ in range(10 * MOST_KEPT):
+        arrivals.handOverCommands()
+    assert [each["number"] for each in told] == list(range(MOST_KEPT))
+
+
+def test_unknown_commands_count_as_well(arrivals, told):
+    for _ in range(COMMANDS_A_TURN):
+        arrivals.keepCommand("Unknown", "{}")
+    arrivals.keepCommand("Known", "{}")
+    arrivals.handOverCommands()
+    assert told == []
+    arrivals.handOverCommands()
+    assert told == [{}]

@@ -1,0 +1,160 @@
+"""Work in the background: in order, handed over on the main thread, and never in its way."""
+
+import gc
+import threading
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.background_work import TIME_S, BackgroundWork, Job, inBackground
+from Testing.slicer.host.event_loop import process_events_keeping_lock, wait_keeping_lock
+
+MAIN = threading.get_ident()
+
+
+@pytest.fixture
+def work():
+    work = BackgroundWork()
+    yield work
+    work.close()
+
+
+def run(work):
+    while work.isBusy:
+        work.giveTime()
+        work.process()
+
+
+def test_results_come_on_the_main_thread_in_the_order_of_the_work(work):
+    seen, begun = [], []
+    work.began.connect(lambda: begun.append(True))
+    for number in range(3):
+        work.do(
+            lambda number=number: (number, threading.get_ident()),
+            lambda result: seen.append((*result, threading.get_ident())),
+        )
+    assert seen == []
+    run(work)
+    assert [number for number, _there, _here in seen] == [0, 1, 2]
+    assert all(there != MAIN and here == MAIN for _number, there, here in seen)
+    assert begun == [True]
+
+
+def test_what_the_work_refuses_is_told_and_the_next_is_done(work):
+    told = []
+
+    def refuse():
+        raise InputError("The disk is full.")
+
+    work.do(refuse, told.append, lambda error: told.append(str(error)))
+    work.do(lambda: "done", told.append)
+    run(work)
+    assert told == ["The disk is full.", "done"]
+
+
+def test_a_mistake_of_ours_is_raised_and_the_next_is_done(work):
+    told = []
+    work.do(lambda: 1 // 0, told.append, lambda error: told.append(type(error)))
+    work.do(lambda: "done", told.append)
+    with pytest.raises(ZeroDivisionError):
+        run(work)
+    run(work)
+    assert told == [ZeroDivisionError, "done"]
+
+
+def test_what_takes_a_result_may_have_more_done(work):
+    told = []
+    work.do(lambda: "first", lambda _result: work.do(lambda: "third", told.append))
+    work.do(lambda: "second", told.append)
+    run(work)
+    assert told == ["second", "third"]
+
+
+def test_closing_hands_over_what_ends_soon_and_begins_nothing_more(work):
+    may_end, told = threading.Event(), []
+    work.do(lambda: may_end.wait(10.0), lambda _result: work.do(lambda: 3, told.append))
+    work.do(lambda: told.append("begun"), told.append)
+    may_end.set()
+    work.close()
+    work.do(lambda: told.append("begun"), told.append)
+    assert told == []
+    assert not work.isBusy
+
+
+def test_closing_does_not_wait_for_ever(work):
+    may_end, told = threading.Event(), []
+    work.do(may_end.wait, told.append)
+    work.close()
+    may_end.set()
+    work.process()
+    assert told == []
+
+
+def test_the_main_thread_waits_for_a_worker_only_for_moments(monkeypatch):
+    waited, may_end = [], threading.Event()
+    join = threading.Thread.join
+    monkeypatch.setattr(
+        threading.Thread, "join", lambda self, time: (waited.append(time), join(self, time))
+    )
+    job = Job(may_end.wait)
+    for _ in range(3):
+        job.giveTime()
+    may_end.set()
+    assert waited == [TIME_S] * 3
+    assert TIME_S <= 0.05
+    while not job.isDone:
+        job.giveTime()
+    assert job.result()
+
+
+@pytest.mark.usefixtures("host")
+def test_work_gets_done_though_slicer_keeps_pythons_lock_while_it_waits_for_events():
+    turns = []
+
+    def count():
+        return sum(number % 7 for number in range(2_000_000))
+
+    def turn(_step, _share):
+        turns.append(True)
+        process_events_keeping_lock()
+        wait_keeping_lock()
+
+    assert inBackground(lambda _tell: count(), turn) == count()
+    assert turns
+
+
+def test_no_garbage_is_collected_in_a_workers_thread(work):
+    was_enabled, seen = gc.isenabled(), []
+    gc.enable()
+    may_end = [threading.Event(), threading.Event()]
+    jobs = [Job(lambda each=each: (seen.append(gc.isenabled()), each.wait())) for each in may_end]
+    while len(seen) < 2:
+        work.giveTime()
+    for job, each in zip(jobs, may_end, strict=True):
+        assert not gc.isenabled()
+        each.set()
+        while not job.isDone:
+            job.giveTime()
+    assert seen == [False, False]
+    assert gc.isenabled()
+    if not was_enabled:
+        gc.disable()
+
+
+def test_work_whose_user_has_canceled_is_broken_off():
+    ended = threading.Event()
+
+    def work(tell):
+        try:
+            while True:
+                tell("Counting", 0.5)
+        finally:
+            ended.set()
+
+    def cancel(step, _share):
+        if step:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        inBackground(work, cancel)
+    assert ended.wait(30.0)

@@ -1,0 +1,93 @@
+"""Tables and the learning curve are seen, and the user's own layout comes back after them."""
+
+import uuid
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer import transforms
+from rastrainer.scenario import load_scenario
+from rastrainer.study import Study
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+
+OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
+
+
+@pytest.fixture
+def looking(host, make_record):
+    """The module with a trainee who has a trial, in a layout of the user's own."""
+    host.open()
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
+    fiducials = colin.task("task-1").fiducials
+    noise = np.random.default_rng(2).normal(0.0, 0.6, (15, 3))
+    touched = transforms.apply(colin.perturbed_head_to_world(2), fiducials + noise)
+    for point, position in zip(record["points"], touched.tolist(), strict=True):
+        point["positionMm"] = position
+    analysis = analyze_trial(TrialRecord.from_json(record), colin)
+    with Study.open(host.find("studyPathLineEdit").currentPath) as study:
+        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    host.press("createTraineeButton")
+    host.choose("traineeComboBox", "T001")
+    slicer.app.layoutManager().setLayout(OWN)
+    return host
+
+
+def views():
+    manager = slicer.app.layoutManager()
+    return manager.layout, manager.tableViewCount, manager.plotViewCount
+
+
+def test_the_score_is_seen_as_a_table_until_the_button_is_pressed_again(looking):
+    looking.press("showTablesButton")
+    assert looking.shown_tables() == ["Score"]
+    looking.let_pass(0.3)
+    assert looking.find("showTablesButton").checked
+    looking.press("showTablesButton")
+    assert views() == (OWN, 0, 0)
+
+
+def test_the_learning_curve_is_seen_until_the_button_is_pressed_again(looking):
+    looking.press("learningCurveButton")
+    plot = slicer.app.layoutManager().plotWidget(0).mrmlPlotViewNode()
+    assert plot.GetPlotChartNode().GetTitle() == "Learning curve of T001"
+    looking.press("learningCurveButton")
+    assert views() == (OWN, 0, 0)
+
+
+def test_of_both_the_last_is_seen_and_after_them_the_users_layout(looking):
+    looking.press("learningCurveButton")
+    looking.press("showTablesButton")
+    looking.wait_until(
+        lambda: not looking.find("learningCurveButton").checked, "the other is not shown any more"
+    )
+    assert views()[1:] == (1, 0)
+    looking.press("showTablesButton")
+    assert views() == (OWN, 0, 0)
+
+
+@pytest.mark.parametrize("how", ["folded", "left", "closed"])
+def test_a_section_that_is_left_gives_the_users_layout_back(looking, how):
+    looking.press("showTablesButton")
+    assert views()[0] != OWN
+    if how == "folded":
+        looking.find("scoreCollapsibleButton").collapsed = True
+        looking.process_events()
+    elif how == "left":
+        looking.leave()
+    else:
+        looking.widget.cleanup()
+    assert views() == (OWN, 0, 0)
+
+
+def test_a_layout_that_the_user_has_chosen_meanwhile_stays(looking):
+    looking.press("showTablesButton")
+    other = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalView
+    slicer.app.layoutManager().setLayout(other)
+    looking.wait_until(lambda: not looking.find("showTablesButton").checked, "the button follows")
+    looking.leave()
+    assert views() == (other, 0, 0)
+    looking.enter()

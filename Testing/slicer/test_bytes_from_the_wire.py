@@ -1,0 +1,187 @@
+"""Texts that are not UTF-8 arrive as bytes, and what fails keeps nothing else from its turn."""
+
+import struct
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.checksum import crc64
+from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.content import String
+from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
+from rastrainer.igtl.points import Point, Points
+from rastrainer.point_list import PointList
+from rastrainer.protocol import Device
+from rastrainer.slicer.contained import Contained
+from rastrainer.slicer.control_points import labelsOf
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.wire_text import decodedText, shownText
+from Testing.slicer.simulator_double import run_link_until
+
+LATIN_1 = "Gehäuse".encode("latin-1")
+
+
+@pytest.fixture
+def link(scene, simulator):
+    link = Link(scene, headlessKit)
+    link.connectTo(port=simulator.port)
+    run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
+    yield link
+    link.disconnect()
+
+
+def with_latin_1(message, placeholder=b"Geh?use"):
+    """Return a message's bytes with one text in Latin 1 in place of the placeholder's."""
+    data = pack(message)
+    assert placeholder in data
+    body = data[HEADER_BYTES:].replace(placeholder, LATIN_1)
+    return data[: HEADER_BYTES - 8] + struct.pack(">Q", crc64(body)) + body
+
+
+POINTS = Points((Point("Geh?use", (1.0, 2.0, 3.0)), Point("2", (4.0, 5.0, 6.0))))
+
+
+def test_a_state_that_is_no_utf_8_is_refused_with_a_sentence_and_the_next_one_is_told(
+    link, simulator, caplog
+):
+    states = []
+    link.stateChanged.connect(states.append)
+    simulator.send_bytes(with_latin_1(Message(Device.SIM_STATE, String('{"phase": "Geh?use"}'))))
+    run_link_until(link, lambda: "cannot be read" in caplog.text)
+    assert "UTF-8" in caplog.text
+    simulator.send(Device.SIM_STATE, String('{"phase": "idle"}'))
+    run_link_until(link, lambda: states)
+    assert states == [{"phase": "idle"}]
+
+
+def test_a_label_that_is_no_utf_8_is_shown_with_a_replacement_and_its_point_registered(
+    link, simulator, scene
+):
+    lists = []
+    link.pointsChanged.connect(lambda node: lists.append(labelsOf(node)))
+    simulator.send_bytes(with_latin_1(Message(Device.CAPTURED_POINTS, POINTS)))
+    run_link_until(link, lambda: lists)
+    assert lists == [("Geh\ufffduse", "2")]
+    node = scene.GetFirstNodeByName(Device.CAPTURED_POINTS)
+    assert node.GetNthControlPointLabel(0) == LATIN_1
+    assert PointList(labelsOf(node), [(1, 2, 3), (4, 5, 6)]).labels == lists[0]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        Command(7, "Geh?use", "{}"),
+        Command(7, "TrialCompleted", '{"trainee": "Geh?use"}'),
+        Command(7, "StepAnswered", "Geh?use"),
+    ],
+)
+def test_a_command_that_is_no_utf_8_is_logged_and_the_one_behind_it_told(
+    link, simulator, caplog, command
+):
+    records = []
+    link.trialCompleted.connect(records.append)
+    simulator.send_bytes(with_latin_1(Message(Device.COMMAND, command)))
+    simulator.send_command("TrialCompleted", {"number": 8})
+    run_link_until(link, lambda: records)
+    assert records == [{"number": 8}]
+    assert "cannot be read" in caplog.text or "unknown command Geh\ufffduse" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("status", "body", "error"),
+    [
+        ("SUCCESS", '{"title": "Geh?use"}', "The simulator's answer cannot be read."),
+        ("FAIL", "{}", "No Geh\ufffduse."),
+    ],
+)
+def test_an_answer_that_is_no_utf_8_is_a_reply_with_a_sentence(
+    link, simulator, monkeypatch, status, body, error
+):
+    def answer(command):
+        reply = CommandReply(command.command_id, command.name, body)
+        metadata = {"Status": status, "ErrorMessage": "No Geh?use."}
+        simulator.send_bytes(with_latin_1(Message(Device.COMMAND, reply, metadata)))
+
+    monkeypatch.setattr(simulator, "_answer", answer)
+    replies = []
+    link.send("ListTasks", onReply=replies.append)
+    run_link_until(link, lambda: replies)
+    assert (replies[0].ok, replies[0].error) == (False, error)
+
+
+def test_a_listener_that_fails_keeps_no_other_from_its_turn(link, simulator, contained_failures):
+    def fail(_value):
+        raise KeyError("a listener's mistake")
+
+    told = []
+    for signal in (link.stateChanged, link.pointsChanged, link.trialCompleted):
+        signal.connect(fail)
+        signal.connect(told.append)
+    for number in range(3):
+        simulator.send_command("TrialCompleted", {"number": number})
+    simulator.send(Device.CAPTURED_POINTS, POINTS)
+    simulator.send(Device.SIM_STATE, String("{}"))
+    run_link_until(link, lambda: len(told) == 5)
+    assert len(contained_failures) == 3
+    assert "a listener's mistake" in contained_failures[0]
+    contained_failures.clear()
+
+
+def test_a_reply_that_fails_keeps_no_other_from_its_turn(link, contained_failures):
+    replies = []
+    link.send("ListTasks", onReply=lambda _reply: 1 / 0)
+    link.send("ListTasks", onReply=replies.append)
+    run_link_until(link, lambda: replies)
+    assert "ZeroDivisionError" in contained_failures.pop()
+
+
+def test_the_same_failure_is_logged_once_and_another_one_too(contained_failures):
+    contained, heard, signal = Contained(), [], Signal()
+    for sentence in ("one", "one", "another", "one"):
+        contained.run("The work", fail_with, sentence)
+    assert [text.splitlines()[-1] for text in contained_failures] == [
+        "ValueError: one",
+        "ValueError: another",
+    ]
+    contained_failures.clear()
+    signal.connect(fail_with)
+    signal.connect(heard.append)
+    contained.emit("A signal", signal, "three")
+    assert heard == ["three"]
+    contained_failures.clear()
+
+
+def fail_with(sentence):
+    raise ValueError(sentence)
+
+
+def test_texts_of_a_peer_are_decoded_at_the_edge():
+    assert (decodedText("ä"), decodedText(None)) == ("ä", "")
+    assert (shownText("ä"), shownText(None), shownText(LATIN_1)) == ("ä", "", "Geh\ufffduse")
+    with pytest.raises(InputError, match="UTF-8"):
+        decodedText(LATIN_1)
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        Message("SimState", String("Geh?use")),
+        Message("command", Command(1, "Geh?use", "Geh?use")),
+        Message("CapturedPoints", POINTS),
+        Message("SimState", String("x"), {"Geh?use": "Geh?use"}),
+    ],
+)
+def test_bytes_can_be_kept_where_texts_are_unpacked(message):
+    data = with_latin_1(message)
+    kept = unpack(read_header(data), data[HEADER_BYTES:], keep_bytes=True)
+    assert LATIN_1 in [text.encode("utf-8", "surrogateescape") for text in texts_of(kept)]
+
+
+def texts_of(message):
+    content = message.content
+    named = [getattr(content, name, "") for name in ("text", "name", "body")]
+    labels = [point.label for point in getattr(content, "points", ())]
+    return [*named, *labels, *message.metadata, *message.metadata.values()]

@@ -1,0 +1,199 @@
+"""What Slicer starts by its Python, a launcher, ends as a whole, and never keeps Slicer waiting."""
+
+import contextlib
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+from rastrainer.slicer import child_process
+from rastrainer.slicer.child_process import ChildProcess, runChild
+from rastrainer.slicer.simulator_program import ProgramState, SimulatorProgram
+from Testing.running_process import runs
+from Testing.slicer.host.python_slicer import write_python_slicer
+from Testing.slicer.simulator_double import wait_until
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="the launcher's double is a POSIX script")
+
+LONG_S = 60.0
+
+WRITER = """
+import os, pathlib, sys, time
+folder = pathlib.Path(sys.argv[1])
+(folder / "pid").write_text(str(os.getpid()))
+(folder / "written").touch()
+print("begun", flush=True)
+while True:
+    (folder / "written").touch()
+    time.sleep(0.005)
+"""
+SIMULATOR = """
+import os, pathlib, signal, subprocess, sys, time
+folder = pathlib.Path(sys.argv[1])
+if "stubborn" in sys.argv:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+window = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+(folder / "window").write_text(str(window.pid))
+(folder / "pid").write_text(str(os.getpid()))
+print("RASTrainer simulator ready on 127.0.0.1:18944")
+print("RASTrainer simulator computes the robot's kinematics by numpy 2.0", flush=True)
+time.sleep(600)
+"""
+
+
+class CanceledError(Exception):
+    """Nobody wants the work any more."""
+
+
+@pytest.fixture
+def python(tmp_path):
+    return write_python_slicer(tmp_path / "Slicer")
+
+
+@pytest.fixture
+def program(python, tmp_path):
+    """A simulator with a window of its own, started by the launcher; killed after the test."""
+    program = SimulatorProgram()
+    program.start([str(python), "-c", SIMULATOR, str(tmp_path)])
+    wait_until(lambda: program.state is ProgramState.READY, program.process, LONG_S)
+    yield program
+    for name in ("pid", "window"):
+        kill(number(tmp_path / name))
+
+
+def number(path):
+    return int(path.read_text())
+
+
+def kill(pid):
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, signal.SIGKILL)
+
+
+def begun(python, folder):
+    child = ChildProcess([python, "-c", WRITER, folder])
+    wait_until(lambda: "begun" in child.takeLines(), lambda: None, LONG_S)
+    return child
+
+
+def test_the_launcher_alone_would_leave_the_real_python_alive(python, tmp_path):
+    child = begun(python, tmp_path)
+    os.kill(child._process.pid, signal.SIGTERM)
+    wait_until(lambda: child.exitStatus is not None, lambda: None, LONG_S)
+    assert runs(number(tmp_path / "pid"))
+    wait_until(child.poll, lambda: None, LONG_S)
+    assert not runs(number(tmp_path / "pid"))
+
+
+def test_what_is_asked_to_end_ends_with_the_real_python_and_writes_no_more(python, tmp_path):
+    child = begun(python, tmp_path)
+    child.end()
+    wait_until(child.poll, lambda: None, LONG_S)
+    assert not runs(number(tmp_path / "pid"))
+    written = (tmp_path / "written").stat().st_mtime_ns
+    time.sleep(0.1)
+    assert (tmp_path / "written").stat().st_mtime_ns == written
+
+
+def test_work_that_is_broken_off_ends_with_the_real_python(python, tmp_path):
+    lines = []
+
+    def rest():
+        if lines:
+            raise CanceledError
+
+    with pytest.raises(CanceledError):
+        runChild([python, "-c", WRITER, tmp_path], lines.append, rest)
+    wait_until(lambda: not runs(number(tmp_path / "pid")), lambda: None, LONG_S)
+
+
+def test_work_is_run_to_its_end_and_each_line_is_told(python):
+    lines = []
+    code = "print('one'); print('two'); raise SystemExit(3)"
+    assert runChild([python, "-c", code], lines.append, lambda: None) == 3
+    assert lines == ["one", "two"]
+
+
+def test_what_computes_the_kinematics_is_told(program):
+    wait_until(lambda: program.kinematics, program.process, LONG_S)
+    assert program.state is ProgramState.READY
+    assert program.sentence == (
+        "The simulator runs on port 18944. numpy 2.0 computes the robot's kinematics."
+    )
+
+
+def test_stop_asks_the_simulator_and_its_window_to_end_and_tells_it(program, tmp_path):
+    program.stop()
+    assert (program.state, program.sentence) == (
+        ProgramState.STOPPING,
+        "The simulator is ending.",
+    )
+    wait_until(lambda: program.state is ProgramState.STOPPED, program.process, LONG_S)
+    assert not runs(number(tmp_path / "pid"))
+    assert not runs(number(tmp_path / "window"))
+
+
+def test_stop_does_not_wait_for_a_simulator_that_does_not_end_and_kills_it_later(
+    python, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(child_process, "KILL_AFTER_S", 0.2)
+    program = SimulatorProgram()
+    program.start([str(python), "-c", SIMULATOR, str(tmp_path), "stubborn"])
+    wait_until(lambda: program.state is ProgramState.READY, program.process, LONG_S)
+    program.stop()
+    assert program.state is ProgramState.STOPPING
+    assert runs(number(tmp_path / "pid"))
+    wait_until(lambda: program.state is ProgramState.STOPPED, program.process, LONG_S)
+    assert not runs(number(tmp_path / "pid"))
+
+
+def test_a_killed_simulator_is_noticed_though_its_window_is_open_and_takes_it_along(
+    program, tmp_path
+):
+    kill(number(tmp_path / "pid"))
+    wait_until(lambda: program.state is ProgramState.FAILED, program.process, LONG_S)
+    assert program.sentence.startswith("The simulator ended by itself (status 1)")
+    assert not runs(number(tmp_path / "window"))
+
+
+def test_a_simulator_is_started_again_once_the_former_has_ended(program, python, tmp_path):
+    former = number(tmp_path / "pid")
+    program.stop()
+    program.start([str(python), "-c", SIMULATOR, str(tmp_path)])
+    assert program.sentence == "The simulator is ending; it starts again then."
+    wait_until(lambda: program.state is ProgramState.READY, program.process, LONG_S)
+    assert not runs(former)
+    assert number(tmp_path / "pid") != former
+
+
+def test_slicer_that_quits_leaves_no_simulator_not_even_one_that_does_not_end(python, tmp_path):
+    program = SimulatorProgram()
+    program.start([str(python), "-c", SIMULATOR, str(tmp_path), "stubborn"])
+    wait_until(lambda: program.state is ProgramState.READY, program.process, LONG_S)
+    program.close()
+    assert (program.state, program.isRunning) == (ProgramState.STOPPED, False)
+    for name in ("pid", "window"):
+        wait_until(lambda name=name: not runs(number(tmp_path / name)), lambda: None, LONG_S)
+
+
+def test_a_crash_of_slicer_leaves_the_simulator_alone(tmp_path):
+    """As the trial that runs is to be finished; Slicer finds the simulator again."""
+    slicer = (
+        "import sys, time\n"
+        "from rastrainer.slicer.child_process import ChildProcess\n"
+        "child = ChildProcess([sys.executable, '-c', sys.argv[1], sys.argv[2]])\n"
+        "time.sleep(600)\n"
+    )
+    child = ChildProcess([sys.executable, "-c", slicer, SIMULATOR, tmp_path])
+    wait_until((tmp_path / "pid").exists, lambda: None, LONG_S)
+    wait_until(lambda: (tmp_path / "pid").read_text(), lambda: None, LONG_S)
+    kill(child._process.pid)
+    wait_until(lambda: child.exitStatus is not None, lambda: None, LONG_S)
+    try:
+        assert runs(number(tmp_path / "pid"))
+        assert runs(number(tmp_path / "window"))
+    finally:
+        kill(number(tmp_path / "pid"))
+        kill(number(tmp_path / "window"))

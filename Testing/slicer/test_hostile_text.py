@@ -1,0 +1,234 @@
+"""What a peer, a file or a user writes is shown as it stands: no HTML, no wider than the dock."""
+
+import json
+import re
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.content import Status, String
+from rastrainer.panels.plain_text import LONGEST_TEXT, toolTip
+from rastrainer.protocol import PROTOCOL_VERSION, Device
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.tasks import LABELS
+from rastrainer_simulator.assets import asset_path
+
+MODULE = Path(__file__).parents[2] / "RASTrainer"
+DOCK_WIDTH = 472
+HTML = "<b>bold</b><img src='http://192.0.2.1/x.png'>&lt;"
+LONG = "W" * 3000
+HOSTILE = f"{HTML}{LONG}"
+PLAIN, RICH = 0, 1
+"""`Qt::PlainText` and `Qt::RichText`."""
+
+
+@pytest.fixture
+def open_module(host):
+    """The module with every section and group open."""
+    host.open()
+    for name in folds():
+        host.find(name).collapsed = False
+    host.process_events()
+    return host
+
+
+@pytest.fixture
+def connected(open_module, simulator):
+    host = open_module
+    host.type("portSpinBox", str(simulator.port))
+    host.press("connectButton")
+    host.wait_until(lambda: simulator.commands, "the module says hello")
+    simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+    host.wait_until(lambda: host.text("stateText").startswith("Connected"), "it is connected")
+    return host
+
+
+def widgets():
+    for path in sorted((MODULE / "Resources" / "UI").glob("*.ui")):
+        yield from ElementTree.parse(path).iter("widget")
+
+
+def labels():
+    return [widget for widget in widgets() if widget.get("class") == "QLabel"]
+
+
+def folds():
+    return [widget.get("name") for widget in widgets() if "Collapsible" in widget.get("class")]
+
+
+def value(widget, name):
+    """Return a property as a `.ui` file has it, empty where it has none."""
+    found = widget.find(f"property[@name='{name}']")
+    return "" if found is None else "".join(found.itertext()).strip()
+
+
+def shows_as_it_stands(host, name, text=HOSTILE):
+    """Check that a label shows a text, or its beginning, literally, and does not widen the dock."""
+    label = host.find(name)
+    shown = label.text.replace("\u200b", "")
+    assert label.textFormat == PLAIN
+    assert text[:100] in shown
+    assert len(shown) <= LONGEST_TEXT
+    assert host.minimum_width() <= DOCK_WIDTH
+    return True
+
+
+# The files
+
+
+def test_each_label_of_a_ui_file_says_how_its_text_is_read():
+    for label in labels():
+        is_light = label.get("name").endswith("Light")
+        expected = "Qt::RichText" if is_light else "Qt::PlainText"
+        assert value(label, "textFormat") == expected, label.get("name")
+
+
+def test_labels_that_are_filled_at_run_time_wrap_and_may_be_narrow():
+    for label in labels():
+        if label.get("name").endswith("Text"):
+            assert value(label, "wordWrap") == "true", label.get("name")
+            assert value(label, "minimumSize").split() == ["1", "0"], label.get("name")
+
+
+def test_boxes_of_choices_are_not_as_wide_as_their_longest_entry():
+    policy = "QComboBox::AdjustToMinimumContentsLengthWithIcon"
+    for box in widgets():
+        if box.get("class") == "QComboBox":
+            assert value(box, "sizeAdjustPolicy") == policy, box.get("name")
+        elif box.get("class") == "qMRMLNodeComboBox":
+            assert value(box, "minimumSize"), box.get("name")
+
+
+def test_panels_fill_labels_by_the_functions_that_bound_the_text():
+    sources = {path.name: path.read_text() for path in (MODULE / "Logic").rglob("panels/*.py")}
+    widgets_file = sources.pop("widgets.py")
+    assert "qt.QLabel()" in widgets_file
+    for name, source in sources.items():
+        assert not re.findall(r"\w+Text\.(?:text|setText)\b *[=(]", source), name
+        assert "QLabel(" not in source, name
+
+
+# The ways in
+
+
+def test_no_label_grows_with_a_long_word(open_module):
+    host, before = open_module, open_module.minimum_width()
+    from rastrainer.panels.widgets import setSentence
+
+    for label in labels():
+        if label.get("name").endswith("Text"):
+            setSentence(host.find(label.get("name")), HOSTILE)
+            shows_as_it_stands(host, label.get("name"))
+    assert host.minimum_width() == before
+
+
+def test_what_the_simulator_tells_of_its_trial(connected, simulator):
+    host = connected
+    state = dict.fromkeys(("instruction", "trainee", "task", "phase", "nextPoint"), HOSTILE)
+    state |= {"trialId": "", "mode": HOSTILE, "proximity": HOSTILE, "clearanceMm": 1.0}
+    simulator.send(Device.SIM_STATE, String(json.dumps(state)))
+    host.wait_until(lambda: host.text("trainingText"), "the instruction is shown")
+    host.wait_until(lambda: "bold" in host.text("phaseText"), "the phase is shown")
+    for name in ("trainingText", "instructionText", "phaseText", "nextPointText", "clearanceText"):
+        shows_as_it_stands(host, name)
+    shows_as_it_stands(host, "trialText", HTML)
+
+
+def test_why_the_simulator_refuses_a_trial(connected, simulator):
+    host = connected
+    simulator.responder = lambda name, _arguments: HOSTILE if name == "StartTask" else {}
+    host.press("createTraineeButton")
+    host.press("startTrialRunButton")
+    host.wait_until(lambda: "bold" in host.text("trainingMessageText"), "the refusal is shown")
+    shows_as_it_stands(host, "trainingMessageText")
+
+
+def test_whether_the_robot_can_carry_out_a_plan(connected, simulator):
+    host = connected
+    simulator.responder = lambda _name, _arguments: {"reachable": False, "reason": HOSTILE}
+    host.press("showScenarioButton")
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
+    touches = transforms.apply(
+        colin.perturbed_head_to_world(3), colin.task("task-1").fiducials + noise
+    )
+    setPoints(capturedPointsNode(host.scene), LABELS, touches)
+    host.press("placeTargetButton")
+    host.place(0.0, 0.0, 20.0)
+    host.wait_until(lambda: host.find("sendPlanButton").enabled, "the plan can be sent")
+    host.press("sendPlanButton")
+    host.wait_until(lambda: "bold" in host.text("reachableText"), "the reason is shown")
+    shows_as_it_stands(host, "reachableText")
+    assert host.find("reachableLight").textFormat == RICH
+
+
+def test_a_host_name_that_is_none(open_module):
+    host = open_module
+    host.find("hostLineEdit").text = HTML
+    host.press("probeButton")
+    shows_as_it_stands(host, "stateText", HTML)
+
+
+def test_how_the_simulators_program_ends_and_pairs(open_module, tmp_path):
+    host = open_module
+    program = tmp_path / "rastrainer"
+    address = f"<b>bold</b>{LONG[:1500]}"
+    program.write_text(
+        "#!/bin/sh\n"
+        f'echo "RASTrainer simulator serves views on {address}, pairing code 012345"\n'
+        f'until test -e "{tmp_path}/over"; do sleep 0.1; done\n'
+        f'echo "{HTML}{LONG[:1500]}"\nexit 3\n'
+    )
+    program.chmod(0o755)
+    host.type("programPathLineEdit", str(program))
+    host.press("startSimulatorButton")
+    host.wait_until(lambda: "bold" in host.text("pairingText"), "the address is shown")
+    shows_as_it_stands(host, "pairingText", "<b>bold</b>")
+    (tmp_path / "over").touch()
+    host.wait_until(lambda: "ended by itself" in host.text("programText"), "the end is told")
+    shows_as_it_stands(host, "programText", HTML)
+
+
+def test_a_node_with_a_name_that_is_html(open_module):
+    host = open_module
+    model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", HOSTILE)
+    host.choose("headModelComboBox", model)
+    host.press("useHeadButton")
+    host.wait_until(lambda: host.messages or "bold" in host.text("otherHeadText"), "it is told")
+    assert host.minimum_width() <= DOCK_WIDTH
+
+
+def test_a_scenario_with_a_long_title(open_module, tmp_path):
+    host = open_module
+    host.answer("Save the scenario", str(tmp_path / "copy.zip"))
+    host.press("exportScenarioButton")
+    assert host.minimum_width() <= DOCK_WIDTH
+    host.widget.logic.session.chooseTask("task-1", HOSTILE)
+    assert host.text("startTaskButton").startswith("Start <b>bold</b>")
+    assert len(host.text("startTaskButton")) < 80
+    assert host.minimum_width() <= DOCK_WIDTH
+
+
+# Tool tips and questions
+
+
+def test_a_tool_tip_is_never_taken_for_html():
+    assert toolTip("Choose a trainee first.") == "Choose a trainee first."
+    assert toolTip("<b>bold</b>") == "<qt>&lt;b&gt;bold&lt;/b&gt;</qt>"
+    assert toolTip("&lt;") == "<qt>&amp;lt;</qt>"
+    assert len(toolTip(HTML * 1000)) < 40_000
+
+
+def test_a_question_about_a_trainee_shows_the_name_as_it_stands(connected, simulator):
+    host = connected
+    state = {"trialId": "", "phase": "running", "trainee": HTML, "task": "task-1"}
+    simulator.send(Device.SIM_STATE, String(json.dumps(state)))
+    host.wait_until(lambda: host.find("abortButton").enabled, "a trial runs")
+    host.answer("Abort the trial", "No")
+    host.press("abortButton")
+    assert "&lt;b&gt;bold" in host.messages[-1].text

@@ -1,0 +1,171 @@
+"""What CMake installs, by the extension's own lists: complete, and it opens."""
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from rastrainer import __version__
+from rastrainer.slicer.simulator_package import WHEEL, SimulatorPackage
+
+ROOT = Path(__file__).parents[2]
+STUB = Path(__file__).parent / "cmake"
+MODULES = Path("lib", "Slicer-5.13", "qt-scripted-modules")
+PARTS = ("RASTrainer", "assets/robots/iiwa7", "assets/scenarios/colin27", "assets/studies")
+FILES = ("CMakeLists.txt", "LICENSE.txt", "NOTICE.md")
+sys.path.insert(0, str(ROOT / "tools"))
+simulator_wheel = import_module("simulator_wheel")
+
+LARGER_APPLICATION = """
+cmake_minimum_required(VERSION 3.20)
+project(LargerApplication)
+add_subdirectory("{source}" extension)
+"""
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A fresh clone of what CMake reads, without the simulator's wheel."""
+    folder = tmp_path / "clone"
+    without = shutil.ignore_patterns("*.whl*", "__pycache__")
+    for part in PARTS:
+        shutil.copytree(ROOT / part, folder / part, ignore=without)
+    for name in FILES:
+        shutil.copy(ROOT / name, folder / name)
+    return folder
+
+
+@pytest.fixture
+def with_wheel(checkout, built_wheel):
+    """A clone in which `make extension` has run."""
+    simulator_wheel.put_beside_module(
+        built_wheel, checkout / "RASTrainer" / "Resources" / "RASTrainerSimulator"
+    )
+    return checkout
+
+
+def configure(source, build, *options):
+    """Run CMake and return its status and what it said."""
+    command = ["cmake", "-S", str(source), "-B", str(build), f"-DSlicer_DIR={STUB}", *options]
+    done = subprocess.run(command, capture_output=True, text=True)
+    return done.returncode, " ".join(f"{done.stdout}\n{done.stderr}".split())
+
+
+def install(build, tree):
+    command = ["cmake", "--install", str(build), "--prefix", str(tree)]
+    subprocess.run(command, check=True, capture_output=True)
+    return tree / MODULES
+
+
+@pytest.fixture
+def tree(with_wheel, tmp_path):
+    """The folder of modules in an installed tree."""
+    status, said = configure(with_wheel, tmp_path / "build")
+    assert status == 0, said
+    return install(tmp_path / "build", tmp_path / "tree")
+
+
+def relative(folder, pattern="*"):
+    return sorted(
+        path.relative_to(folder).as_posix() for path in folder.rglob(pattern) if path.is_file()
+    )
+
+
+def test_without_the_simulators_wheel_there_is_no_package_and_a_sentence_says_how_to_build_it(
+    checkout, tmp_path
+):
+    status, said = configure(checkout, tmp_path / "build")
+    assert status != 0
+    assert f"The simulator's wheel {WHEEL} is missing. Build it, in {checkout}, by:" in said
+    assert "make extension" in said
+
+
+def test_a_wheel_that_is_not_the_one_that_was_built_is_refused(with_wheel, tmp_path):
+    wheel = with_wheel / "RASTrainer" / "Resources" / "RASTrainerSimulator" / WHEEL
+    wheel.write_bytes(wheel.read_bytes() + b"more")
+    status, said = configure(with_wheel, tmp_path / "build")
+    assert status != 0
+    assert f"is not the file that {WHEEL}.sha256 notes" in said
+
+
+def test_slicers_build_takes_the_released_wheel_by_its_hash(checkout, built_wheel, tmp_path):
+    digest = hashlib.sha256(built_wheel.read_bytes()).hexdigest()
+    address = f"-DRASTrainer_SIMULATOR_WHEEL_URL={built_wheel.as_uri()}"
+    hashed = "-DRASTrainer_SIMULATOR_WHEEL_SHA256="
+    status, said = configure(checkout, tmp_path / "other", address, f"{hashed}{'0' * 64}")
+    assert status != 0, said
+    status, said = configure(checkout, tmp_path / "build", address, f"{hashed}{digest}")
+    assert status == 0, said
+    modules = install(tmp_path / "build", tmp_path / "tree")
+    package = SimulatorPackage.of(modules)
+    assert package.digest() == digest
+    assert "rastrainer @ file://" in package.requirements()
+
+
+def test_the_installed_tree_holds_the_whole_module(tree):
+    assert relative(tree, "*.py") == relative(ROOT / "RASTrainer", "*.py")
+    ours = relative(ROOT / "RASTrainer" / "Resources")
+    assert {name for name in ours if ".whl" not in name} <= set(relative(tree / "Resources"))
+
+
+def test_the_installed_tree_holds_all_that_the_scenario_and_the_robot_name(tree):
+    installed = tree / "Resources" / "RASTrainer"
+    for part in PARTS[1:]:
+        assert relative(installed / part.removeprefix("assets/")) == relative(ROOT / part)
+    scenario = installed / "scenarios" / "colin27"
+    described = json.loads((scenario / "scenario.json").read_text(encoding="utf-8"))
+    files = [described["head"], described["volume"]["file"]]
+    files += [f"tasks/{task}" for task in relative(ROOT / PARTS[2] / "tasks")]
+    assert [name for name in files if not (scenario / name).is_file()] == []
+
+
+def test_the_installed_tree_holds_the_simulator_and_the_rights_in_all_of_it(tree):
+    package = SimulatorPackage.of(tree)
+    assert package.checkout is None
+    assert f"/{WHEEL} \\\n    --hash=sha256:{package.digest()}\n" in package.requirements()
+    assert f"rastrainer-{__version__}-" in WHEEL
+    for name in ("LICENSE.txt", "NOTICE.md"):
+        installed = tree / "Resources" / "RASTrainer" / name
+        assert installed.read_bytes() == (ROOT / name).read_bytes()
+
+
+def test_as_a_part_of_a_larger_application_all_lies_beside_the_module(with_wheel, tmp_path):
+    larger = tmp_path / "larger"
+    larger.mkdir()
+    text = LARGER_APPLICATION.format(source=with_wheel)
+    (larger / "CMakeLists.txt").write_text(text, encoding="utf-8")
+    status, said = configure(larger, tmp_path / "build")
+    assert status == 0, said
+    for modules in (tmp_path / "build" / MODULES, install(tmp_path / "build", tmp_path / "tree")):
+        assert (modules / "RASTrainer.py").is_file()
+        resources = modules / "Resources"
+        assert (resources / "RASTrainer" / "scenarios" / "colin27" / "scenario.json").is_file()
+        assert (resources / "RASTrainerSimulator" / WHEEL).is_file()
+
+
+def test_the_module_opens_from_the_installed_tree(tree, tmp_path):
+    command = [sys.executable, "-m", "Testing.slicer.installed_module", str(tree / "RASTrainer.py")]
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(tree / "Logic"),
+        "QT_QPA_PLATFORM": "offscreen",
+    }
+    done = subprocess.run(
+        [*command, str(tmp_path / "slicer")],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env=environment,
+    )
+    assert done.returncode == 0, done.stderr
+    seen = json.loads(done.stdout.splitlines()[-1])
+    assert seen["package"] == str(tree / "Logic" / "rastrainer")
+    assert (seen["checkout"], seen["fiducials"], seen["errors"]) == (False, True, [])
+    assert "press Set up, once" in seen["setup"]
+    assert seen["requirements"] > 100

@@ -1,0 +1,82 @@
+"""What the user has chosen in the panels is there after Slicer was closed and started again."""
+
+import pytest
+import slicer
+
+from rastrainer.slicer.settings import HOST, PORT
+from Testing.slicer.host.host import Host
+
+SECTIONS = ("setup", "simulator", "trainees", "scenario", "training", "registration")
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Returns a function that starts Slicer, after closing the one before."""
+    running = []
+
+    def start():
+        if running:
+            running.pop().close()
+        running.append(Host(tmp_path / "slicer"))
+        running[0].open()
+        for section in SECTIONS:
+            running[0].find(f"{section}CollapsibleButton").collapsed = False
+        running[0].find("setupGroupBox").collapsed = False
+        running[0].process_events()
+        return running[0]
+
+    yield start
+    errors = list(running[0].errors)
+    running.pop().close()
+    assert not errors, "\n".join(errors)
+
+
+def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
+    host = start()
+    host.type("hostLineEdit", "10.0.0.7")
+    host.type("portSpinBox", "18999")
+    host.check("windowCheckBox", False)
+    host.check("networkCheckBox")
+    host.choose("modeComboBox", "Headset")
+    host.choose("taskComboBox", "Task 3")
+    host.choose("kindComboBox", "Affine")
+    host.check("headColoredCheckBox")
+    host.check("slicesNextPointCheckBox", False)
+    host.check("slicesToolCheckBox")
+    host.type("studyPathLineEdit", str(tmp_path / "mine.db"))
+    host.type("wheelsPathLineEdit", str(tmp_path / "wheels"))
+    host.type("programPathLineEdit", str(tmp_path / "rastrainer"))
+    host = start()
+    assert host.text("hostLineEdit") == "10.0.0.7"
+    assert host.find("portSpinBox").value == 18999
+    assert not host.find("windowCheckBox").checked
+    assert host.find("networkCheckBox").checked
+    assert host.find("modeComboBox").currentText == "Headset"
+    assert host.find("taskComboBox").currentText == "Task 3"
+    assert host.find("kindComboBox").currentText == "Affine"
+    assert host.widget.logic.session.registration.kind == "affine"
+    assert host.find("headColoredCheckBox").checked
+    slices = host.widget.logic.session.slices
+    assert not slices.showsNextPoint
+    assert slices.followsTool
+    assert host.find("studyPathLineEdit").currentPath == str(tmp_path / "mine.db")
+    assert host.find("wheelsPathLineEdit").currentPath == str(tmp_path / "wheels")
+    assert host.find("programPathLineEdit").currentPath == str(tmp_path / "rastrainer")
+
+
+def test_settings_that_cannot_be_used_leave_what_is_usual(start):
+    host = start()
+    slicer.app.settings().setValue(PORT.key, "a lot")
+    slicer.app.settings().setValue("RASTrainer/Mode", "telepathy")
+    host = start()
+    assert host.find("portSpinBox").value == PORT.usual
+    assert host.find("modeComboBox").currentText == "Desktop screen"
+
+
+def test_the_self_tests_change_no_setting(start):
+    host = start()
+    host.type("hostLineEdit", "10.0.0.7")
+    before = sorted(slicer.app.settings().allKeys())
+    host.run_self_tests()
+    assert sorted(slicer.app.settings().allKeys()) == before
+    assert slicer.app.settings().value(HOST.key) == "10.0.0.7"

@@ -1,0 +1,141 @@
+"""What comes next: one thing to do at each point of a session."""
+
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.experiment.steps import StepKind
+from rastrainer.slicer.free_port import ANY, freePort
+from rastrainer.slicer.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.next_step import Action, Section, Situation, nextStep
+from rastrainer.slicer.simulator_program import ProgramState
+from Testing.slicer.simulator_double import SimulatorDouble
+
+
+def link(state):
+    return LinkStatus(state, f"The link is {state.value}.", "Do something.")
+
+
+OFF = Situation(link(LinkState.OFF))
+CONNECTED = Situation(link(LinkState.CONNECTED), ProgramState.READY, taskTitle="Task 1", total=15)
+CHOSEN = replace(CONNECTED, trainee="T001", hasTrainees=True)
+PRACTICED = replace(CHOSEN, hasPracticed=True)
+
+
+def step_of(situation, **changes):
+    return nextStep(replace(situation, **changes))
+
+
+def test_a_session_leads_from_an_empty_slicer_to_the_next_trial():
+    seen = [
+        nextStep(situation).title
+        for situation in (
+            OFF,
+            replace(OFF, program=ProgramState.STARTING),
+            replace(OFF, link=link(LinkState.GREETING), program=ProgramState.READY),
+            CONNECTED,
+            CHOSEN,
+            replace(CHOSEN, phase="running"),
+            replace(CHOSEN, phase="paused"),
+            replace(CHOSEN, phase="complete"),
+            replace(CHOSEN, phase="registered"),
+            replace(PRACTICED, phase="scored", hasNewResult=True),
+            replace(PRACTICED, phase="scored", isResultShown=True),
+        )
+    ]
+    assert seen == [
+        "Start and connect",
+        "Starting…",
+        "Connecting…",
+        "New trainee",
+        "Start the trial run",
+        "Pause",
+        "Resume",
+        "Waiting…",
+        "Scoring…",
+        "Show result",
+        "Start Task 1",
+    ]
+
+
+def test_the_section_of_a_step_is_that_in_which_it_can_be_done():
+    assert step_of(OFF, needsSetup=True).section is Section.SETUP
+    assert step_of(OFF).section is Section.SIMULATOR
+    assert step_of(CONNECTED).section is Section.TRAINEES
+    assert step_of(CHOSEN).section is Section.TRAINING
+    assert step_of(CHOSEN, phase="running").section is Section.TRAINING
+    assert step_of(CHOSEN, phase="complete").section is Section.REGISTRATION
+    assert step_of(PRACTICED, hasNewResult=True).section is Section.REGISTRATION
+    assert step_of(PRACTICED, isResultShown=True).section is Section.SCORE
+
+
+@pytest.mark.parametrize("state", list(LinkState))
+@pytest.mark.parametrize("program", list(ProgramState))
+def test_there_is_a_next_step_whatever_the_link_and_the_program_do(state, program):
+    step = nextStep(Situation(link(state), program, "Something happened."))
+    assert step.title
+    assert step.sentence
+
+
+def test_what_ended_by_itself_is_told_and_can_be_started_again():
+    ended = step_of(OFF, program=ProgramState.FAILED, programSentence="It ended: no screen.")
+    assert (ended.action, ended.sentence) == (Action.START_SIMULATOR, "It ended: no screen.")
+
+
+def test_a_port_that_is_taken_by_something_else_does_not_keep_from_starting():
+    assert step_of(OFF, link=link(LinkState.OTHER_PROGRAM)).action is Action.START_SIMULATOR
+    assert step_of(OFF, link=link(LinkState.ABSENT)).action is Action.START_SIMULATOR
+
+
+def test_a_simulator_of_another_computer_is_only_connected_to():
+    assert step_of(OFF, isElsewhere=True).action is Action.CONNECT
+    assert step_of(OFF, isElsewhere=True, needsSetup=True).action is Action.CONNECT
+    absent = step_of(OFF, isElsewhere=True, link=link(LinkState.ABSENT))
+    assert (absent.action, absent.sentence) == (
+        Action.WAIT,
+        "The link is absent. Do something.",
+    )
+
+
+def test_who_has_disconnected_from_a_simulator_that_runs_here_can_connect_again():
+    assert step_of(OFF, program=ProgramState.READY).action is Action.CONNECT
+
+
+def test_a_simulator_that_runs_already_is_connected_to_rather_than_started_beside():
+    found = step_of(OFF, runningSentence="One runs already.")
+    assert (found.action, found.sentence) == (Action.CONNECT_TO_RUNNING, "One runs already.")
+
+
+def test_nothing_can_be_pressed_while_the_simulator_is_set_up():
+    assert step_of(OFF, isBeingSetUp=True).action is Action.WAIT
+
+
+def test_a_trial_stays_in_sight_while_the_simulator_is_silent():
+    silent = step_of(CHOSEN, link=link(LinkState.STALE), phase="running")
+    assert (silent.action, silent.section) == (Action.WAIT, Section.TRAINING)
+
+
+def test_a_study_with_trainees_lets_choose_one():
+    assert step_of(CONNECTED, hasTrainees=True).action is Action.CHOOSE_TRAINEE
+
+
+def test_a_study_decides_what_its_trainee_does_next():
+    actions = {kind: step_of(PRACTICED, studyStep=kind).action for kind in StepKind}
+    assert actions == {
+        StepKind.TRIAL: Action.START_STUDY_STEP,
+        StepKind.TRIAL_RUN: Action.START_STUDY_STEP,
+        StepKind.QUESTIONNAIRE: Action.ANSWER,
+        StepKind.BREAK: Action.WAIT,
+    }
+
+
+def test_a_trial_that_cannot_be_scored_does_not_keep_from_the_next_one():
+    stuck = step_of(PRACTICED, phase="registered", isUnscored=True)
+    assert stuck.action is Action.START_TASK
+
+
+def test_the_port_is_the_preferred_one_unless_somebody_listens_there():
+    with SimulatorDouble() as listening:
+        taken = listening.port
+        assert freePort(taken) == ANY
+    assert freePort(taken) == taken

@@ -1,0 +1,162 @@
+"""The line at the top: what it tells, and which sections it opens and folds."""
+
+import json
+import uuid
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+from PySide6 import QtCore, QtTest
+
+from rastrainer.igtl.content import Status, String
+from rastrainer.protocol import PROTOCOL_VERSION, Device
+
+UI = Path(__file__).parents[2] / "RASTrainer" / "Resources" / "UI"
+SCREEN_HEIGHT = 730
+"""Pixels of the dock on a laptop."""
+
+
+class Instructor:
+    """The module connected to a simulator double, which is kept alive."""
+
+    def __init__(self, host, simulator):
+        self.host, self.simulator = host, simulator
+        host.open()
+        host.type("portSpinBox", str(simulator.port))
+        host.press("connectButton")
+        self.wait_until(lambda: host.text("linkText") == "Connected", "it is connected")
+
+    def tell(self, **state):
+        told = {"trialId": str(uuid.UUID(int=5)), "trainee": "T001", "task": "task-1", **state}
+        self.simulator.send(Device.SIM_STATE, String(json.dumps(told)))
+
+    def wait_for(self, title):
+        self.wait_until(lambda: self.host.text("nextStepButton") == title, f"it says {title}")
+
+    def wait_until(self, condition, what):
+        def beats():
+            self.simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+            return condition()
+
+        self.host.wait_until(beats, what)
+
+    def open_sections(self):
+        names = [
+            widget.get("name")
+            for path in UI.glob("*.ui")
+            for widget in ElementTree.parse(path).iter("widget")
+            if widget.get("class") == "ctkCollapsibleButton"
+        ]
+        return {
+            name.removesuffix("CollapsibleButton")
+            for name in names
+            if not self.host.find(name).collapsed
+        }
+
+
+@pytest.fixture
+def instructor(host, simulator):
+    return Instructor(host, simulator)
+
+
+def test_at_first_one_section_is_open_and_the_button_says_what_to_do(host):
+    host.open()
+    assert host.text("linkText") == "Not connected"
+    assert host.text("nowTraineeText") == "No trainee"
+    assert host.text("nextStepButton") == "Start and connect"
+    assert host.find("nextStepButton").enabled
+
+
+def test_a_section_opens_when_its_step_comes_and_is_folded_after_it(instructor):
+    assert instructor.open_sections() == {"trainees"}
+    instructor.host.press("nextStepButton")
+    assert instructor.open_sections() == {"training"}
+    instructor.tell(phase="complete")
+    instructor.wait_for("Waiting…")
+    assert instructor.open_sections() == {"registration"}
+
+
+def test_what_is_opened_or_folded_by_hand_stays_so_until_the_next_step(instructor):
+    host = instructor.host
+    host.press("createTraineeButton")
+    host.unfold("residualsTable")
+    host.find("trainingCollapsibleButton").collapsed = True
+    instructor.tell(phase="running")
+    instructor.wait_for("Pause")
+    instructor.tell(phase="paused")
+    instructor.wait_for("Resume")
+    assert instructor.open_sections() == {"registration"}
+    instructor.tell(phase="idle", trialId="")
+    host.choose("traineeComboBox", "Choose a trainee")
+    instructor.wait_for("Choose a trainee")
+    assert instructor.open_sections() == {"trainees"}
+
+
+def test_sections_that_are_no_steps_are_the_users_alone(instructor):
+    host = instructor.host
+    host.unfold("taskComboBox")
+    host.unfold("placeTargetButton")
+    host.press("nextStepButton")
+    assert instructor.open_sections() == {"training", "scenario", "plan"}
+
+
+def test_a_trainee_is_chosen_from_the_list_that_the_button_opens(instructor):
+    host = instructor.host
+    host.press("createTraineeButton")
+    host.choose("traineeComboBox", "Choose a trainee")
+    instructor.wait_for("Choose a trainee")
+    host.find("traineesCollapsibleButton").collapsed = True
+    host.press("nextStepButton")
+    assert instructor.open_sections() >= {"trainees"}
+    host.choose("traineeComboBox", "T001")
+    instructor.wait_for("Start the trial run")
+
+
+def test_while_something_is_awaited_the_button_says_for_what(instructor):
+    instructor.host.press("nextStepButton")
+    instructor.tell(phase="complete")
+    instructor.wait_for("Waiting…")
+    with pytest.raises(AssertionError, match="the trainee registers them"):
+        instructor.host.press("nextStepButton")
+
+
+def test_another_computers_simulator_is_connected_to_by_the_same_button(host):
+    host.open()
+    host.type("hostLineEdit", "localhost.localdomain")
+    host.wait_until(lambda: host.text("nextStepButton") == "Connect", "the button follows")
+    host.press("nextStepButton")
+    host.wait_until(lambda: host.text("linkText") != "Not connected", "it is looked for")
+
+
+def test_the_button_is_reached_by_the_keyboard(host):
+    host.open()
+    button = host.find("nextStepButton")._qt
+    button.window().activateWindow()
+    host.wait_until(button.window().isActiveWindow, "the window is active")
+    button.window().setFocus()
+    QtTest.QTest.keyClick(button.window(), QtCore.Qt.Key.Key_Tab)
+    assert button.hasFocus()
+    host.answer("not set up on this computer yet", "Cancel")
+    QtTest.QTest.keyClick(
+        button, QtCore.Qt.Key.Key_Return, QtCore.Qt.KeyboardModifier.ControlModifier
+    )
+    host.wait_until(lambda: host.messages, "the shortcut asks whether to set up")
+
+
+def test_the_usual_states_fit_into_one_screen(instructor, tmp_path):
+    host, heights = instructor.host, {}
+
+    def measure(state):
+        host.screenshot(tmp_path / f"{state}.png", width=470)
+        heights[state] = host.find("RASTrainer").height
+
+    measure("trainees")
+    host.press("nextStepButton")
+    measure("ready")
+    instructor.tell(phase="running", instruction="Touch point 3.", nextPoint="3", clearanceMm=4.0)
+    instructor.wait_for("Pause")
+    measure("running")
+    instructor.tell(phase="complete")
+    instructor.wait_for("Waiting…")
+    measure("complete")
+    assert max(heights.values()) <= SCREEN_HEIGHT, heights

@@ -1,0 +1,216 @@
+"""Commands are answered at the connector's event, and a burst of them never blocks."""
+
+import threading
+import time
+
+import pytest
+
+from rastrainer.slicer.headless_crash import takeCrashes
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.link import Link
+from rastrainer.slicer.pending_commands import MOST_AT_ONCE, SENDING_S
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
+
+BURST = 300
+
+
+class Clock:
+    """Runs unless it is `stopped`, and jumps where a test adds to `ahead`."""
+
+    def __init__(self):
+        self.ahead = 0.0
+        self.stopped = False
+
+    def __call__(self):
+        return self.ahead + (0.0 if self.stopped else time.monotonic())
+
+
+class Room:
+    """A link to a simulator double, in a host whose next turn comes when a test says so."""
+
+    def __init__(self, scene, answer):
+        self.clock = Clock()
+        self.soon = []
+        self.replies = []
+        self.simulator = SimulatorDouble(answer)
+        self.link = Link(scene, headlessKit, clock=self.clock, callSoon=self.soon.append)
+        self.link.connectTo(port=self.simulator.port)
+        self.run_until(lambda: self.link.status.state is LinkState.CONNECTED)
+        self.soon.clear()
+
+    def run_until(self, condition):
+        run_link_until(self.link, condition)
+
+    def wait_for_turn(self):
+        """Let the connector work until it has asked for a turn; the link's own poll does not."""
+        wait_until(lambda: self.soon, self.link.connector.PeriodicProcess)
+
+    def ask(self, name="ListTasks", **more):
+        self.link.send(name, onReply=self.replies.append, **more)
+
+    def asked(self):
+        return [name for name, _arguments in self.simulator.commands if name != "Hello"]
+
+    def close(self):
+        self.link.disconnect()
+        self.simulator.close()
+
+
+@pytest.fixture
+def make_room(scene):
+    rooms = []
+
+    def make(answer=lambda _name, _arguments: {}):
+        rooms.append(Room(scene, answer))
+        return rooms[-1]
+
+    yield make
+    for room in rooms:
+        room.close()
+
+
+@pytest.fixture
+def silent(make_room):
+    """A simulator that answers only once `silent.may_answer` is set."""
+    may_answer = threading.Event()
+
+    def answer(name, _arguments):
+        assert name == "Hello" or may_answer.wait(20)
+        return {}
+
+    room = make_room(answer)
+    room.may_answer = may_answer
+    yield room
+    may_answer.set()
+
+
+def test_an_answer_is_handed_over_in_the_next_turn_without_waiting_for_the_poll(make_room):
+    room = make_room()
+    room.ask()
+    room.wait_for_turn()
+    assert room.replies == []  # Inside VTK nothing is handed over.
+    room.soon.pop()()
+    assert [reply.ok for reply in room.replies] == [True]
+
+
+def test_a_finished_trial_is_handed_over_in_the_next_turn(make_room):
+    room, records = make_room(), []
+    room.link.trialCompleted.connect(records.append)
+    room.simulator.send_command("TrialCompleted", {"number": 1})
+    room.wait_for_turn()
+    assert records == []
+    room.soon.pop()()
+    assert records == [{"number": 1}]
+
+
+def test_one_turn_is_asked_for_however_much_arrives(make_room):
+    room = make_room()
+    for _ in range(5):
+        room.ask()
+        room.simulator.send_command("Unknown", {})
+    wait_until(lambda: len(room.asked()) == 5, lambda: None)
+    room.wait_for_turn()
+    for _ in range(100):
+        room.link.connector.PeriodicProcess()
+    assert len(room.soon) == 1
+
+
+def test_a_turn_that_comes_after_the_link_was_closed_does_nothing(make_room):
+    room = make_room()
+    room.ask()
+    room.wait_for_turn()
+    room.link.disconnect()
+    room.soon.pop()()
+    assert len(room.replies) == 1
+
+
+def test_a_burst_is_sent_a_few_at_a_time_and_answered_whole_in_its_order(make_room):
+    room, numbers = make_room(lambda _name, arguments: {"number": arguments.get("folder")}), []
+    for number in range(BURST):
+        room.link.send(
+            "LoadScenario",
+            {"folder": str(number)},
+            lambda reply: numbers.append(reply.data["number"]),
+        )
+    room.run_until(lambda: len(numbers) == BURST)
+    assert numbers == [str(number) for number in range(BURST)]
+
+
+def test_to_a_simulator_that_does_not_answer_no_more_is_sent(silent):
+    for _ in range(BURST):
+        silent.ask()
+    for _ in range(50):
+        silent.link.process()
+    wait_until(lambda: silent.asked(), lambda: None)
+    assert silent.link.connector._nextCommandId - 2 == MOST_AT_ONCE
+    silent.may_answer.set()
+    silent.run_until(lambda: len(silent.replies) == BURST)
+    assert all(reply.ok for reply in silent.replies)
+
+
+def test_sending_stops_for_this_turn_when_its_time_is_over(make_room, monkeypatch):
+    room = make_room()
+    connector = room.link.connector
+    send = connector.SendCommand
+
+    def send_slowly(command):
+        room.clock.ahead += 0.6 * SENDING_S
+        send(command)
+
+    monkeypatch.setattr(connector, "SendCommand", send_slowly)
+    room.link.process()
+    room.clock.ahead, room.clock.stopped = time.monotonic(), True
+    first = connector._nextCommandId
+    sent = []
+    for _ in range(5):
+        room.ask()
+    for _ in range(3):
+        sent.append(connector._nextCommandId - first)
+        room.link.process()
+    assert sent == [2, 4, 5]
+    assert room.soon
+    room.run_until(lambda: len(room.replies) == 5)
+
+
+def test_what_still_waited_when_the_connection_was_lost_is_refused(silent):
+    for _ in range(BURST):
+        silent.ask()
+    silent.simulator.close()
+    silent.run_until(lambda: len(silent.replies) == BURST)
+    assert {reply.error for reply in silent.replies} == {
+        "The connection to the simulator was lost."
+    }
+
+
+def test_a_command_that_was_given_up_lives_until_the_connector_is_done_with_it(silent):
+    silent.ask(timeoutS=2.0)
+    wait_until(lambda: silent.asked(), lambda: None)
+    silent.clock.ahead += 3.0
+    silent.link.process()
+    assert "no answer" in silent.replies[0].error
+    silent.may_answer.set()
+    silent.ask()
+    silent.run_until(lambda: len(silent.replies) == 2)
+    assert silent.replies[1].ok
+
+
+def test_the_stand_in_tells_of_a_command_that_died_too_early(silent):
+    command = headlessKit().makeCommand()
+    command.SetName("ListTasks")
+    silent.link.connector.SendCommand(command)
+    del command
+    silent.may_answer.set()
+    with pytest.raises(RuntimeError, match="deleted before"):
+        wait_until(lambda: False, silent.link.connector.PeriodicProcess)
+    assert takeCrashes()
+
+
+def test_in_the_module_an_answer_needs_no_poll(host, module_widget, simulator):
+    link, replies = module_widget.logic.session.link, []
+    link.connectTo(port=simulator.port)
+    host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it connects")
+    module_widget._timer.stop()
+    link.send("ListTasks", onReply=replies.append)
+    host.wait_until(lambda: replies, "the answer is handed over")
+    assert replies[0].ok

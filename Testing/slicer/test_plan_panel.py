@@ -1,0 +1,52 @@
+"""The section Plan while a simulator is connected: what it says of the plan that is looked at."""
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.content import Status
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.tasks import LABELS
+from rastrainer_simulator.assets import asset_path
+from Testing.slicer.simulator_double import SimulatorDouble
+
+ANSWERS = {CommandName.PLAN_TARGET: {"reachable": True, "reason": ""}}
+
+
+@pytest.fixture
+def planner(host):
+    """The module, connected, with a registered head and a planned target."""
+    with SimulatorDouble(lambda name, _arguments: ANSWERS.get(name, {})) as simulator:
+        host.open()
+        host.type("portSpinBox", str(simulator.port))
+        host.press("connectButton")
+        host.wait_until(lambda: simulator.commands, "the module says hello")
+        simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+        host.wait_until(lambda: host.text("stateText").startswith("Connected"), "the heartbeat")
+        host.press("showScenarioButton")
+        colin = load_scenario(asset_path("scenarios", "colin27"))
+        noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
+        fiducials = colin.task("task-1").fiducials
+        touched = transforms.apply(colin.perturbed_head_to_world(3), fiducials + noise)
+        setPoints(capturedPointsNode(host.scene), LABELS, touched)
+        host.press("placeTargetButton")
+        host.place(10.0, 20.0, 0.0)
+        host.wait_until(lambda: "target x" in host.text("planWorldText"), "the plan is mapped")
+        yield host
+
+
+def test_reachable_is_told_of_what_was_sent_and_of_nothing_else(planner):
+    planner.press("sendPlanButton")
+    planner.wait_until(lambda: "can carry it out" in planner.text("reachableText"), "the answer")
+    planner.let_pass(0.3)
+    assert "can carry it out" in planner.text("reachableText")
+    planner.press("placeTargetButton")
+    planner.place(-30.0, 10.0, 5.0)
+    planner.wait_until(lambda: "show it again" in planner.text("reachableText"), "it is told")
+    planner.press("sendPlanButton")
+    planner.wait_until(lambda: "can carry it out" in planner.text("reachableText"), "the answer")
+    planner.choose("planTargetComboBox", 0)
+    planner.wait_until(lambda: "show it again" in planner.text("reachableText"), "it is told")

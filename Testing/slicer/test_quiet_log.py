@@ -1,0 +1,71 @@
+"""A user's whole work leaves no error and no warning in Slicer's log: the host fails at each."""
+
+import uuid
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.control_points import setPoints
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.slicer.trial_replay import findReplay
+from rastrainer.study import Study
+from rastrainer.tasks import LABELS
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+from Testing.slicer.recorded_trial import write_recorded_trial
+
+SECTIONS = ("trainees", "scenario", "registration", "plan", "score")
+
+
+@pytest.fixture
+def at_work(host, make_record):
+    """The module with a recorded trial in the study, and its touches in the scene."""
+    host.open()
+    for section in SECTIONS:
+        host.find(f"{section}CollapsibleButton").collapsed = False
+    host.process_events()
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
+    fiducials = colin.task("task-1").fiducials
+    noise = np.random.default_rng(5).normal(0.0, 0.6, (15, 3))
+    touched = transforms.apply(colin.perturbed_head_to_world(5), fiducials + noise)
+    for point, position in zip(record["points"], touched.tolist(), strict=True):
+        point["positionMm"] = position
+    analysis = analyze_trial(TrialRecord.from_json(record), colin)
+    with Study.open(host.find("studyPathLineEdit").currentPath) as study:
+        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 16.0)
+    host.press("createTraineeButton")
+    host.choose("traineeComboBox", "T001")
+    host.press("showScenarioButton")
+    setPoints(capturedPointsNode(host.scene), LABELS, touched)
+    host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "touches are registered")
+    return host
+
+
+def test_a_replay_that_is_saved_opened_and_saved_again_leaves_the_log_empty(at_work, tmp_path):
+    at_work.press("replayButton")
+    for name in ("first.mrb", "second.mrb"):
+        at_work.save_scene(tmp_path / name)
+        at_work.load_scene(tmp_path / name)
+    assert findReplay(at_work.scene).GetNumberOfItems() > 100
+    assert at_work.errors == []
+
+
+def test_a_head_that_is_colored_planned_on_plotted_and_closed_leaves_the_log_empty(at_work):
+    for _round in range(2):
+        at_work.check("headColoredCheckBox")
+        at_work.check("headColoredCheckBox", False)
+        at_work.press("placeTrajectoryButton")
+        at_work.place(0.0, 0.0, 90.0)
+        at_work.place(0.0, 0.0, 30.0)
+        at_work.press("learningCurveButton")
+        at_work.press("showTablesButton")
+        at_work.clear_scene()
+        at_work.press("showScenarioButton")
+    at_work.delete_nodes()
+    assert at_work.errors == []

@@ -1,0 +1,118 @@
+"""The connector meets simulators only: anything else could end Slicer."""
+
+import time
+
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.slicer.headless_crash import takeCrashes
+from rastrainer.slicer.headless_kit import headlessKit
+from rastrainer.slicer.heartbeat import RECONNECT_AFTER_S, LinkState
+from rastrainer.slicer.peer_sockets import RETRY_PERIOD_S
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
+from Testing.slicer.strangers import is_silent, says, stranger, web_server
+
+HTTP = b"HTTP/1.1 408 Request Time-out\r\n"
+WEB_PAGE = "is a web page (HTTP), not the OpenIGTLink port of a simulator"
+
+
+def connect(link, simulator):
+    link.connectTo(port=simulator.port)
+    run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
+
+
+def run_until_state(link, state):
+    run_link_until(link, lambda: link.status.state is state)
+
+
+def test_a_web_page_is_named_and_never_connected_to(link):
+    with web_server() as port:
+        link.connectTo(port=port)
+        run_until_state(link, LinkState.OTHER_PROGRAM)
+        assert f"What answers at 127.0.0.1:{port} {WEB_PAGE}" in link.status.sentence
+        assert "18944" in link.status.remedy
+        assert link.connector is None
+
+
+def test_the_stand_in_of_the_connector_would_have_told(scene):
+    connector = headlessKit().makeConnector()
+    scene.AddNode(connector)
+    with stranger(says(HTTP)) as port:
+        connector.SetTypeClient("127.0.0.1", port)
+        connector.Start()
+        while not takeCrashes():
+            time.sleep(0.01)
+        connector.Stop()
+
+
+def test_a_simulator_that_comes_to_the_port_of_a_web_page_is_found(link, clock):
+    with web_server() as port:
+        link.connectTo(port=port)
+        run_until_state(link, LinkState.OTHER_PROGRAM)
+    with SimulatorDouble(port=port):
+        clock.ahead += 5.0
+        run_until_state(link, LinkState.CONNECTED)
+
+
+def test_after_a_loss_it_is_asked_again_who_answers(link):
+    with SimulatorDouble() as simulator:
+        connect(link, simulator)
+    with web_server(simulator.port):
+        run_until_state(link, LinkState.OTHER_PROGRAM)
+        assert WEB_PAGE in link.status.sentence
+
+
+def test_what_comes_to_the_port_while_slicer_stands_still_is_not_connected_to(link):
+    with SimulatorDouble() as simulator:
+        connect(link, simulator)
+    with stranger(says(HTTP), simulator.port):
+        time.sleep(5 * RETRY_PERIOD_S)  # The connector's own thread goes on all the time.
+        run_until_state(link, LinkState.OTHER_PROGRAM)
+
+
+def test_after_the_scene_was_cleared_it_is_asked_again_who_answers(link, scene):
+    with SimulatorDouble() as simulator:
+        connect(link, simulator)
+        scene.Clear(False)
+    with web_server(simulator.port):
+        run_until_state(link, LinkState.OTHER_PROGRAM)
+        assert link.connector is None
+
+
+def test_after_a_half_open_connection_it_is_asked_again_who_answers(link, clock):
+    simulator = SimulatorDouble()
+    connect(link, simulator)
+    simulator.stop_listening()
+    with stranger(is_silent, simulator.port):
+        clock.ahead += RECONNECT_AFTER_S + 1.0
+        link.process()
+        clock.ahead += 4.0
+        run_until_state(link, LinkState.OTHER_PROGRAM)
+        assert "says nothing" in link.status.sentence
+    simulator.close()
+
+
+def test_a_simulator_of_another_version_is_not_connected_to(link):
+    with SimulatorDouble(version=PROTOCOL_VERSION + 1) as simulator:
+        link.connectTo(port=simulator.port)
+        run_until_state(link, LinkState.WRONG_VERSION)
+        assert link.connector is None
+        assert simulator.commands == []
+
+
+def test_a_connection_is_tested_without_being_made(link, simulator):
+    told = []
+    asked = link.testConnection("localhost", simulator.port, told.append)
+    assert asked.state is LinkState.LOOKING
+    run_link_until(link, lambda: told)
+    assert told[0].state is LinkState.CONNECTED
+    assert f"A RASTrainer simulator answers at localhost:{simulator.port}" in told[0].sentence
+    assert link.status.state is LinkState.OFF
+    assert link.connector is None
+
+
+def test_a_test_tells_who_else_answers(link):
+    told = []
+    with web_server() as port:
+        link.testConnection("127.0.0.1", port, told.append)
+        run_link_until(link, lambda: told)
+    assert told[0].state is LinkState.OTHER_PROGRAM
+    assert WEB_PAGE in told[0].sentence

@@ -1,0 +1,89 @@
+"""Reload leaves nothing of the module behind but its new widget: no object, observer or timer."""
+
+import gc
+import threading
+
+import pytest
+from PySide6 import QtWidgets
+
+KEPT = (
+    "RASTrainer.RASTrainerWidget",
+    "rastrainer.panels.panel_stack.PanelStack",
+    "rastrainer.panels.score_panel.ScorePanel",
+    "rastrainer.slicer.link.Link",
+    "rastrainer.slicer.session.Session",
+)
+
+
+def living(host):
+    """Count what must not become more: our objects, observers of the scene, widgets, threads."""
+    for _round in range(3):
+        host.process_events()
+        gc.collect()
+    kinds = [f"{type(one).__module__}.{type(one).__name__}" for one in gc.get_objects()]
+    counts = {name: kinds.count(name) for name in KEPT}
+    nodes = [host.scene.GetNthNode(index) for index in range(host.scene.GetNumberOfNodes())]
+    counts["observers"] = sum(str(one).count("vtkObserver (") for one in (host.scene, *nodes))
+    counts["nodes"] = len(nodes)
+    counts["widgets"] = len(QtWidgets.QApplication.allWidgets())
+    counts["threads"] = threading.active_count()
+    return counts
+
+
+def settled(host, before):
+    """Return what lives once what was under way in the background has ended.
+
+    `before` is what lived before the module was opened: tests of before may have left theirs.
+    """
+
+    def is_one():
+        now = living(host)
+        return all(now[name] - before[name] == 1 for name in KEPT)
+
+    host.wait_until(is_one, "only one module lives")
+    return living(host)
+
+
+@pytest.fixture
+def used(host):
+    """Returns a function that works with the module a little."""
+
+    def use():
+        host.open()
+        host.press("showScenarioButton")
+        host.press("createTraineeButton")
+        host.press("placeTargetButton")
+        host.place(10.0, 20.0, 30.0)
+        host.type("hostLineEdit", "127.0.0.1")
+        host.type("portSpinBox", "1")
+        host.press("connectButton")
+        host.let_pass(0.2)
+
+    return use
+
+
+def test_a_module_that_is_reloaded_many_times_leaves_no_more_behind_than_once(host, used):
+    before = living(host)
+    used()
+    host.reload()
+    once = settled(host, before)
+    for _time in range(4):
+        used()
+        host.reload()
+    many = settled(host, before)
+    nodes = many.pop("nodes"), once.pop("nodes")
+    assert many == once
+    assert {name: many[name] - before[name] for name in KEPT} == dict.fromkeys(KEPT, 1)
+    assert nodes[0] == nodes[1]
+
+
+def test_a_reloaded_module_works_and_the_one_before_does_nothing_more(host, used):
+    used()
+    before = host.widget
+    host.reload()
+    assert host.widget is not before
+    host.enter()
+    host.press("showScenarioButton")
+    assert not before._timer.isActive()
+    host.clear_scene()
+    host.press("showScenarioButton")

@@ -1,0 +1,111 @@
+"""The section Registration follows the trial that is shown: its touches, its task's fiducials."""
+
+import json
+import uuid
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.content import String
+from rastrainer.protocol import Device
+from rastrainer.scenario import load_scenario
+from rastrainer.slicer.link_nodes import capturedPointsNode
+from rastrainer.study import Study
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+from Testing.slicer.recorded_trial import write_recorded_trial
+from Testing.slicer.simulator_double import SimulatorDouble
+
+TASKS = ("task-1", "task-2")
+
+
+@pytest.fixture
+def trials(host, make_record):
+    """The module with a recorded trial of each of two tasks; their own FRE, mm, by task."""
+    host.open()
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    fre = {}
+    for number, task in enumerate(TASKS, start=1):
+        record = make_record(
+            str(uuid.UUID(int=number)),
+            trainee="T001",
+            task=task,
+            scenario="colin27",
+            startedUtc=f"2026-03-02T09:0{number}:00Z",
+        )
+        noise = np.random.default_rng(number).normal(0.0, 0.6, (15, 3))
+        head = colin.perturbed_head_to_world(number)
+        touched = transforms.apply(head, colin.task(task).fiducials + noise)
+        for point, position in zip(record["points"], touched.tolist(), strict=True):
+            point["positionMm"] = position
+        analysis = analyze_trial(TrialRecord.from_json(record), colin)
+        fre[task] = analysis.rigid.fre_mm
+        with Study.open(host.find("studyPathLineEdit").currentPath) as study:
+            study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+        write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 16.0)
+    host.press("createTraineeButton")
+    host.choose("traineeComboBox", "T001")
+    return fre
+
+
+def replay(host, number, task):
+    host.choose("trialComboBox", f"{number}: {task}")
+    host.press("replayButton")
+    host.let_pass(0.3)
+
+
+def shown_fre(host):
+    return float(host.find("fitsTable").item(0, 1).text())
+
+
+def test_a_replay_of_another_task_registers_its_own_touches(host, trials):
+    for number, task in (*enumerate(TASKS, start=1), (1, "task-1")):
+        replay(host, number, task)
+        assert shown_fre(host) == pytest.approx(trials[task], abs=0.01)
+        assert host.find("residualsTable").rowCount == 15
+
+
+@pytest.mark.usefixtures("trials")
+def test_what_was_left_out_of_one_trial_is_not_left_out_of_the_next(host):
+    replay(host, 1, "task-1")
+    host.choose("residualsTable", 3)
+    host.press("excludeButton")
+    assert host.find("residualsTable").rowCount == 14
+    replay(host, 2, "task-2")
+    assert host.find("residualsTable").rowCount == 15
+
+
+@pytest.mark.usefixtures("trials")
+def test_touches_are_not_paired_with_another_tasks_fiducials(host):
+    replay(host, 1, "task-1")
+    host.choose("taskComboBox", "Task 2")
+    host.press("showScenarioButton")
+    host.wait_until(lambda: "show the task" in host.text("registrationText"), "it is said")
+    assert host.find("fitsTable").item(0, 1) is None
+    host.choose("taskComboBox", "Task 1")
+    host.press("showScenarioButton")
+    host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "they are registered")
+
+
+@pytest.mark.usefixtures("trials")
+def test_a_trial_that_is_played_is_not_disturbed_and_begins_without_the_replays_touches(host):
+    replay(host, 1, "task-1")
+    tasks = {"scenario": "colin27", "title": "Colin", "tasks": []}
+    answers = {"ListTasks": tasks}
+    with SimulatorDouble(lambda name, _arguments: answers.get(name, {})) as simulator:
+        host.type("portSpinBox", str(simulator.port))
+        host.press("connectButton")
+        host.wait_until(lambda: simulator.commands, "the module says hello")
+        state = {"trialId": str(uuid.UUID(int=9)), "phase": "running", "task": "task-2"}
+        simulator.send(Device.SIM_STATE, String(json.dumps({**state, "trainee": "T001"})))
+        captured = capturedPointsNode(host.scene)
+        host.wait_until(lambda: captured.GetNumberOfControlPoints() == 0, "the trial begins")
+        assert captured.GetDisplayNode().GetVisibility()
+        host.press("replayButton")
+        assert "A trial is being played" in host.messages[-1].text
+        host.press("connectButton")
+        host.press("replayButton")
+        assert len(host.messages) == 1

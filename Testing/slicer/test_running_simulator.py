@@ -1,0 +1,145 @@
+"""A simulator that a crash of Slicer has left behind is found, and ended only if it is that one."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.folder_holder import STARTED_BY, read_holder
+from rastrainer.slicer import running_simulator
+from rastrainer.slicer.process_group import OPTIONS
+from rastrainer.slicer.running_simulator import RunningSimulator
+from rastrainer_simulator.record.records_folder import RecordsFolder
+from Testing.slicer.simulator_double import wait_until
+
+LONG_S = 60.0
+SIMULATOR = """
+import pathlib, signal, subprocess, sys, time
+from rastrainer_simulator.record.records_folder import RecordsFolder
+if "stubborn" in sys.argv:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+records = RecordsFolder(pathlib.Path(sys.argv[1]))
+subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+records.tell("0.0.0.0", 18999, "http://127.0.0.1:18945")
+print("ready", flush=True)
+time.sleep(600)
+"""
+
+
+class Connections:
+    """Stands in for the link: where it was told to connect to."""
+
+    def __init__(self):
+        self.made = []
+
+    def connectTo(self, host, port):  # noqa: N802 (its name in Slicer)
+        self.made.append((host, port))
+
+    def disconnect(self):
+        self.made.append(None)
+
+
+@pytest.fixture
+def left_behind(tmp_path):
+    """Return what starts a simulator as Slicer does; what is left of it goes after the test."""
+    started = []
+
+    def start(*words):
+        process = subprocess.Popen(
+            [sys.executable, "-c", SIMULATOR, str(tmp_path), *words],
+            stdout=subprocess.PIPE,
+            env={**os.environ, STARTED_BY: "Slicer"},
+            **OPTIONS,
+        )
+        started.append(process)
+        assert process.stdout.readline() == b"ready\n"
+        return process
+
+    yield start
+    for process in started:
+        if process.returncode is None:
+            end_group(process)
+
+
+def end_group(process):
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+
+
+@pytest.fixture
+def running(tmp_path):
+    return RunningSimulator(tmp_path, Connections())
+
+
+def test_none_is_found_where_none_records(running):
+    assert not running.look()
+    assert (running.sentence, running.canConnect, running.canEnd) == ("", False, False)
+    with pytest.raises(InputError, match="no simulator any more"):
+        running.connect()
+
+
+def test_what_was_left_behind_is_found_and_connected_to(left_behind, running):
+    process = left_behind()
+    assert running.look()
+    assert (running.holder.pid, running.holder.started_by) == (process.pid, "Slicer")
+    assert running.sentence.startswith("A simulator that was not started from here is running")
+    assert " since 20" in running.sentence
+    running.connect()
+    assert running._link.made == [("127.0.0.1", 18999)]
+
+
+@pytest.mark.parametrize("words", [(), ("stubborn",)])
+def test_what_was_left_behind_is_ended_with_its_window(left_behind, running, monkeypatch, words):
+    monkeypatch.setattr(running_simulator, "KILL_AFTER_S", 0.2)
+    process = left_behind(*words)
+    running.look()
+    running.connect()
+    running.end()
+    assert running.isEnding
+    assert running.sentence == "The simulator that was running already is ending."
+    assert running._link.made[-1] is None
+    wait_until(lambda: running.holder is None, running.process, LONG_S)
+    # The window holds the other end of this pipe.
+    assert process.stdout.read() == b""
+    assert process.wait() == -(signal.SIGKILL if words else signal.SIGTERM)
+
+
+def test_another_that_has_begun_since_it_was_shown_is_not_ended(left_behind, running):
+    first = left_behind()
+    running.look()
+    end_group(first)
+    second = left_behind()
+    running.end()
+    assert not running.isEnding
+    assert second.poll() is None
+    assert running.holder.pid == second.pid
+
+
+def test_one_that_a_person_has_started_is_ended_alone_without_its_shell(running, tmp_path):
+    shell = f"{sys.executable} -c '{SIMULATOR}' {tmp_path} & wait; echo the shell lives"
+    process = subprocess.Popen(["sh", "-c", shell], stdout=subprocess.PIPE, **OPTIONS)
+    assert process.stdout.readline() == b"ready\n"
+    running.look()
+    assert running.holder.started_by == ""
+    running.end()
+    assert process.stdout.readline() == b"the shell lives\n"
+    wait_until(lambda: running.holder is None, running.process, LONG_S)
+    end_group(process)
+
+
+def test_whoever_looks_keeps_no_simulator_from_starting(tmp_path):
+    look = "import sys, pathlib; from rastrainer.journal.folder_holder import read_holder\n"
+    look += "print(flush=True)\nwhile True: read_holder(pathlib.Path(sys.argv[1]))"
+    RecordsFolder(tmp_path).close()
+    words = [sys.executable, "-c", look, str(tmp_path)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE) as process:
+        process.stdout.readline()
+        for _round in range(50):
+            RecordsFolder(tmp_path).close()
+        process.kill()
+    assert read_holder(tmp_path) is None

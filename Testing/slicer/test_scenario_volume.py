@@ -1,0 +1,191 @@
+"""A scenario's images stand behind all else in the slice views, read once and in the background."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer.head_volume import VolumeFile, write_head_volume
+from rastrainer.slicer import scenario_volume
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.headless_scene import HeadlessScene
+from rastrainer.slicer.scenario import showScenario
+from rastrainer.slicer.scenario_volume import VOLUME, VolumeLoader, showImages
+from rastrainer.slicer.scene import Role, findNode
+from Testing.domain.made_up_scenario import ball_volume
+
+
+class Loading:
+    """A loader and its background work, driven as the module's timer does it."""
+
+    def __init__(self, scene):
+        self.scene = scene
+        self.work = BackgroundWork()
+        self.loader = VolumeLoader(scene, self.work)
+        self.shown, self.problems = [], []
+        self.loader.shown.connect(self.shown.append)
+        self.loader.problemFound.connect(self.problems.append)
+
+    def finish(self):
+        self.loader.process()
+        while self.work.isBusy:
+            self.work.giveTime()
+            self.work.process()
+            self.loader.process()
+
+    @property
+    def node(self):
+        return findNode(self.scene, VOLUME, Role.HEAD_VOLUME)
+
+
+@pytest.fixture
+def loading(scene):
+    return Loading(scene)
+
+
+@pytest.fixture
+def imaged(scenario):
+    """The scenario with images of its ball."""
+    path = scenario.folder / "volume.nrrd"
+    write_head_volume(path, ball_volume())
+    return replace(scenario, volume=VolumeFile(path, 120.0, 60.0))
+
+
+def backgrounds(scene):
+    nodes = scene.GetNodesByClass("vtkMRMLSliceCompositeNode")
+    nodes.UnRegister(None)
+    return [nodes.GetItemAsObject(i).GetBackgroundVolumeID() for i in range(3)]
+
+
+def test_the_images_lie_where_the_head_is_with_their_window_in_all_slice_views(
+    scene, loading, imaged
+):
+    showScenario(scene, imaged)
+    loading.finish()
+    node, images = loading.node, ball_volume()
+    assert np.array_equal(slicer.util.arrayFromVolume(node).T, images.values)
+    bounds, head = [0.0] * 6, [0.0] * 6
+    node.GetRASBounds(bounds)
+    findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetRASBounds(head)
+    assert all(low < other for low, other in zip(bounds[::2], head[::2], strict=True))
+    assert all(high > other for high, other in zip(bounds[1::2], head[1::2], strict=True))
+    display = node.GetDisplayNode()
+    assert not display.GetAutoWindowLevel()
+    assert (display.GetWindow(), display.GetLevel()) == (120.0, 60.0)
+    assert backgrounds(scene) == [node.GetID()] * 3
+    assert loading.shown == [node]
+    assert loading.problems == []
+
+
+def test_nothing_is_read_before_the_loader_is_asked_nor_in_its_own_thread(
+    scene, loading, imaged, monkeypatch
+):
+    def read(_path):
+        raise AssertionError("read on the main thread")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(scenario_volume, "read_nrrd", read)
+        showScenario(scene, imaged)
+        assert loading.node.GetImageData() is None
+    loading.loader.process()
+    assert loading.node.GetImageData() is None
+    loading.finish()
+    assert loading.node.GetImageData() is not None
+
+
+def test_images_that_are_shown_are_not_read_again_and_what_a_user_changed_stays(
+    scene, loading, imaged
+):
+    showScenario(scene, imaged)
+    loading.finish()
+    loading.node.GetDisplayNode().SetWindowLevel(40.0, 20.0)
+    other = scene.AddNewNodeByClass(VOLUME, "Another MRI")
+    nodes = scene.GetNodesByClass("vtkMRMLSliceCompositeNode")
+    nodes.UnRegister(None)
+    nodes.GetItemAsObject(0).SetBackgroundVolumeID(other.GetID())
+    count = scene.GetNumberOfNodes()
+    showScenario(scene, imaged)
+    loading.finish()
+    assert loading.shown == [loading.node]
+    assert scene.GetNumberOfNodes() == count
+    assert loading.node.GetDisplayNode().GetWindow() == 40.0
+    assert backgrounds(scene)[0] == other.GetID()
+    showImages(scene)
+    assert backgrounds(scene) == [loading.node.GetID()] * 3
+
+
+def test_images_that_were_made_anew_are_read_anew(scene, loading, imaged):
+    showScenario(scene, imaged)
+    loading.finish()
+    write_head_volume(imaged.volume.path, ball_volume(60.0))
+    showScenario(scene, imaged)
+    loading.finish()
+    assert np.array_equal(slicer.util.arrayFromVolume(loading.node).T, ball_volume(60.0).values)
+    assert len(loading.shown) == 2
+
+
+def test_a_scenario_without_images_takes_those_of_another_away(scene, loading, imaged, scenario):
+    showScenario(scene, imaged)
+    loading.finish()
+    showScenario(scene, scenario)
+    loading.finish()
+    assert loading.node is None
+    assert not any(backgrounds(scene))
+
+
+def test_of_two_scenarios_shown_at_once_the_last_one_has_its_images(scene, loading, imaged):
+    path = imaged.folder / "other.nrrd"
+    write_head_volume(path, ball_volume(60.0))
+    showScenario(scene, imaged)
+    loading.loader.process()
+    showScenario(scene, replace(imaged, name="other", volume=VolumeFile(path, 10.0, 5.0)))
+    loading.finish()
+    assert np.array_equal(slicer.util.arrayFromVolume(loading.node).T, ball_volume(60.0).values)
+    assert len(loading.shown) == 1
+
+
+@pytest.mark.parametrize("content", [None, b"no image"])
+def test_images_that_cannot_be_used_are_told_and_the_head_is_shown(scene, loading, imaged, content):
+    imaged.volume.path.unlink()
+    if content is not None:
+        imaged.volume.path.write_bytes(content)
+    showScenario(scene, imaged)
+    loading.finish()
+    assert loading.node is None
+    (sentence,) = loading.problems
+    assert sentence.startswith("There are no images in the slice views: ")
+    assert "volume.nrrd" in sentence
+    assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is not None
+
+
+def test_a_node_that_is_deleted_while_it_is_read_stays_away(scene, loading, imaged):
+    showScenario(scene, imaged)
+    loading.loader.process()
+    scene.RemoveNode(loading.node)
+    loading.finish()
+    assert loading.node is None
+    assert loading.problems == loading.shown == []
+
+
+def test_a_node_whose_display_is_deleted_is_filled_all_the_same(scene, loading, imaged):
+    showScenario(scene, imaged)
+    scene.RemoveNode(loading.node.GetDisplayNode())
+    loading.finish()
+    assert loading.node.GetImageData() is not None
+
+
+def test_a_saved_scene_carries_the_images_and_shows_them(imaged, tmp_path):
+    headless = HeadlessScene()
+    saved = Loading(headless.scene)
+    showScenario(headless.scene, imaged)
+    saved.finish()
+    headless.save(tmp_path / "trial.mrb")
+    imaged.volume.path.unlink()
+    opened = HeadlessScene()
+    opened.load(tmp_path / "trial.mrb")
+    node = findNode(opened.scene, VOLUME, Role.HEAD_VOLUME)
+    assert np.array_equal(slicer.util.arrayFromVolume(node).T, ball_volume().values)
+    assert node.GetDisplayNode().GetWindow() == 120.0
+    assert backgrounds(opened.scene) == [node.GetID()] * 3
+    assert str(tmp_path) not in str(node)

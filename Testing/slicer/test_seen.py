@@ -1,0 +1,45 @@
+"""Poses are worth their renderings only where somebody may see them."""
+
+import pytest
+import slicer
+
+from Testing.slicer.host.host import Host
+
+
+@pytest.mark.parametrize(
+    ("layout", "is_entered", "in_slices", "is_seen"),
+    [
+        ("FourUpView", True, False, True),
+        ("FourUpView", False, False, True),
+        ("OneUp3DView", False, False, True),
+        ("OneUp3DView", False, True, True),
+        ("OneUpRedSliceView", True, False, True),
+        ("OneUpRedSliceView", False, False, False),
+        ("OneUpRedSliceView", False, True, True),
+        ("OneUpPlotView", False, True, False),
+        ("OneUpPlotView", True, False, True),
+    ],
+)
+def test_what_is_seen_depends_on_the_layout_and_on_the_module(
+    host, layout, is_entered, in_slices, is_seen
+):
+    from rastrainer.panels.seen import isSomethingSeen
+
+    number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
+    slicer.app.layoutManager().setLayout(number)
+    assert isSomethingSeen(is_entered, in_slices) is is_seen
+    host.minimize()
+    assert not isSomethingSeen(is_entered, in_slices)
+    host.minimize(False)
+    assert isSomethingSeen(is_entered, in_slices) is is_seen
+
+
+def test_without_a_window_the_module_alone_may_be_seen(tmp_path):
+    from rastrainer.panels.seen import isSomethingSeen
+
+    bare = Host(tmp_path, window=False)
+    try:
+        assert isSomethingSeen(True)
+        assert not isSomethingSeen(False, True)
+    finally:
+        bare.close()

@@ -1,0 +1,93 @@
+"""The section Set-up in the host: what it tells before, during and after, and that it removes."""
+
+import pytest
+
+from rastrainer.slicer.simulator_package import SimulatorPackage
+from Testing.slicer.made_up_package import lock_entry, write_package, write_wheel
+
+CLI = """
+import sys
+import threading
+port = sys.argv[sys.argv.index("--port") + 1]
+print(f"RASTrainer simulator ready on 127.0.0.1:{port}", flush=True)
+threading.Event().wait()
+"""
+
+
+@pytest.fixture
+def setup(host, tmp_path):
+    """The set-up of an opened module whose simulator only says that it is ready."""
+    setup = host.open().logic.session.simulator.setup
+    bolt = write_wheel(tmp_path / "wheels", "bolt", "1.0", {"bolt.py": ""})
+    setup.package = write_package(tmp_path / "module", CLI, [lock_entry(bolt)])
+    host.find("setupGroupBox").collapsed = False
+    host.type("wheelsPathLineEdit", str(tmp_path / "wheels"))
+    return setup
+
+
+def set_up(host):
+    host.press("setupButton")
+    host.wait_until(lambda: "is set up in" in host.text("setupText"), "it is set up")
+
+
+def test_source_size_and_folder_are_told_before_anything_is_fetched(host, monkeypatch):
+    setup = host.open().logic.session.simulator.setup
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setattr("platform.machine", lambda: "x86_64")
+    host.find("setupGroupBox").collapsed = False
+    host.type("indexLineEdit", "https://mirror.example/simple")
+    told = host.text("setupText")
+    sizes = setup.package.sizes()
+    assert "comes from the package index https://mirror.example/simple" in told
+    assert str(setup.folder) in told
+    assert f"About {sizes.downloadMB} MB are fetched, and {sizes.keptMB} MB stay." in told
+    host.type("indexLineEdit", "")
+    assert "comes from the public package index of Python" in host.text("setupText")
+    host.type("wheelsPathLineEdit", "/media/wheels")
+    assert "comes from the folder /media/wheels" in host.text("setupText")
+
+
+def test_the_progress_is_shown_in_packages(host, setup):
+    shown = []
+    setup.progressed.connect(
+        lambda _line: shown.append(
+            (host.find("setupProgressBar").value, host.find("setupProgressBar").maximum)
+        )
+    )
+    set_up(host)
+    assert {(1, 2), (2, 2), (0, 0)} <= set(shown)
+    assert not host.find("setupProgressBar").visible
+    assert "Installing collected packages" in host.find("setupLogEdit").plainText
+
+
+def test_the_simulator_is_removed_when_the_user_confirms(host, setup):
+    with pytest.raises(AssertionError, match="There is nothing to remove"):
+        host.press("removeSetupButton")
+    set_up(host)
+    assert host.find("setupCollapsibleButton").collapsed
+    host.find("setupCollapsibleButton").collapsed = False
+    host.answer("Remove the simulator", "No")
+    host.press("removeSetupButton")
+    assert setup.isCurrent
+    host.answer("Remove the simulator", "Yes")
+    host.press("removeSetupButton")
+    assert not setup.folder.exists()
+    assert "press Set up, once" in host.text("setupText")
+    assert "not set up yet" in host.text("programText")
+
+
+def test_the_simulator_is_not_removed_while_it_runs(host, setup):
+    set_up(host)
+    host.press("startSimulatorButton")
+    host.find("setupCollapsibleButton").collapsed = False
+    with pytest.raises(AssertionError, match="Stop the simulator first"):
+        host.press("removeSetupButton")
+    with pytest.raises(AssertionError, match="Stop the simulator first"):
+        host.press("setupButton")
+    assert setup.isCurrent
+
+
+def test_a_module_without_its_simulator_says_to_install_it_anew(host, setup, tmp_path):
+    setup.package = SimulatorPackage(tmp_path)
+    host.press("setupButton")
+    assert "install the extension RASTrainer anew" in host.messages[-1].text

@@ -1,0 +1,70 @@
+"""Two Slicers may work with one study: each sees what the other does, and waits for nobody."""
+
+import sqlite3
+
+import pytest
+
+from rastrainer.slicer.trainee_desk import LOOK_EVERY_S, TraineeDesk
+from rastrainer.study import Study
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "study.db"
+
+
+@pytest.fixture
+def desk(path):
+    """A desk whose time is told by the test."""
+    times = [0.0]
+    desk = TraineeDesk(lambda: Study.open(path), path.parent, clock=lambda: times[0])
+    desk.wait = lambda: times.append(times.pop() + LOOK_EVERY_S)
+    desk.study.trainees()
+    desk.wait()
+    assert not desk.noticesOthers()
+    yield desk
+    desk.close()
+
+
+def test_a_trainee_of_another_slicer_is_noticed_once(desk, path):
+    with Study.open(path) as other:
+        other.create_trainee("Blue")
+    assert not desk.noticesOthers()
+    desk.wait()
+    assert desk.noticesOthers()
+    desk.wait()
+    assert not desk.noticesOthers()
+
+
+def test_what_was_done_here_is_nobody_elses(desk):
+    desk.create("Blue", consent=False)
+    desk.wait()
+    assert not desk.noticesOthers()
+
+
+def test_a_study_that_is_locked_is_looked_at_later(desk, path):
+    other = sqlite3.connect(path, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    desk.wait()
+    assert not desk.noticesOthers()
+    other.execute("INSERT INTO trainees VALUES (NULL, 'Blue', 0, 0, '2026-01-01T00:00:00Z')")
+    other.execute("COMMIT")
+    other.close()
+    desk.wait()
+    assert desk.noticesOthers()
+
+
+def test_the_list_shows_a_trainee_of_another_slicer(host):
+    host.open()
+    path = host.find("studyPathLineEdit").currentPath
+    host.press("createTraineeButton")
+    with Study.open(path) as other:
+        other.create_trainee("Blue")
+    combo = host.find("traineeComboBox")
+    host.wait_until(
+        lambda: "Blue" in [combo.itemText(row) for row in range(combo.count)], "the list shows it"
+    )
+    assert combo.currentText == "T001"
+    with Study.open(path) as other:
+        other.delete_trainee("T001")
+    host.wait_until(lambda: combo.currentText == "Choose a trainee", "who is deleted is gone")

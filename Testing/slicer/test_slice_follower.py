@@ -1,0 +1,152 @@
+"""The slice views go through the next point of a trial, or follow the tool."""
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.protocol import Device
+from rastrainer.slicer.link_nodes import capturedPointsNode, prepareNodes
+from rastrainer.slicer.scenario import showTask
+from rastrainer.slicer.scene import Role, findNode
+from rastrainer.slicer.slice_follower import LEAST_MOVE_MM, PERIOD_S, SliceFollower, toolTip
+from rastrainer.slicer.slice_views import jumpTo
+from rastrainer.slicer.world_placement import showPlannedPlace
+from Testing.slicer.head.placed import vtk_matrix
+from Testing.slicer.training_room import Room
+
+TRANSFORM = "vtkMRMLLinearTransformNode"
+TIP = np.array([480.0, -60.0, 330.0])
+UP = np.array([0.0, 0.0, 20.0])
+
+
+@pytest.fixture
+def room(scene, scenario):
+    room = Room(scene, scenario)
+    yield room
+    room.close()
+
+
+@pytest.fixture
+def follower(room):
+    return SliceFollower(room.scene, room.desk, lambda: room.now)
+
+
+def place(scene):
+    """Where the slice views meet, (3,), RAS mm."""
+    planes = {"Yellow": 0, "Green": 1, "Red": 2}
+    return np.array(
+        [
+            scene.GetNodeByID(f"vtkMRMLSliceNode{name}").GetSliceToRAS().GetElement(axis, 3)
+            for name, axis in planes.items()
+        ]
+    )
+
+
+def play(room, follower, point, task="task-1"):
+    """Let the simulator tell which point is next."""
+    room.tell(nextPoint=point, task=task)
+    told = (point, task)
+    room.run_until(lambda: (room.desk.progress.nextPoint, room.desk.progress.task) == told)
+    room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
+    follower.process()
+
+
+def put_tool(scene, tip):
+    prepareNodes(scene)
+    pose = findNode(scene, TRANSFORM, Device.TOOL_TIP_TO_WORLD)
+    pose.SetMatrixTransformToParent(vtk_matrix(transforms.rigid(np.eye(3), tip)))
+
+
+def stand(room, scenario):
+    """Let the head stand in World where it is planned."""
+    fixed = showTask(room.scene, scenario, "task-1")
+    showPlannedPlace(room.scene, scenario, capturedPointsNode(room.scene), fixed)
+
+
+def test_the_slices_jump_to_each_next_point(room, follower, scenario):
+    fiducials = scenario.task("task-1").fiducials
+    for label in ("1", "2", "15"):
+        play(room, follower, label)
+        np.testing.assert_allclose(place(room.scene), fiducials[int(label) - 1], atol=1e-3)
+
+
+def test_where_a_user_scrolls_to_the_slices_stay_until_another_point_is_next(room, follower):
+    play(room, follower, "1")
+    jumpTo(room.scene, (1.0, 2.0, 3.0))
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), [1, 2, 3])
+    play(room, follower, "2")
+    assert not np.allclose(place(room.scene), [1, 2, 3])
+
+
+def test_the_first_point_of_another_task_is_shown_once_its_fiducials_are(room, follower, scenario):
+    showTask(room.scene, scenario, "task-2")
+    jumpTo(room.scene, (1.0, 2.0, 3.0))
+    room.tell(nextPoint="1", task="task-1", phase="running", trialId="")
+    room.run_until(lambda: room.desk.progress.nextPoint == "1")
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), [1, 2, 3])
+    showTask(room.scene, scenario, "task-1")
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[0], atol=1e-3)
+
+
+def test_the_slices_stay_where_they_are_when_that_is_wished_or_no_trial_runs(room, follower):
+    jumpTo(room.scene, (1.0, 2.0, 3.0))
+    follower.showsNextPoint = False
+    play(room, follower, "1")
+    np.testing.assert_allclose(place(room.scene), [1, 2, 3])
+    follower.showsNextPoint = True
+    room.tell(phase="idle", nextPoint="1")
+    room.run_until(lambda: room.desk.progress.phase == "idle")
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), [1, 2, 3])
+
+
+def test_the_tip_of_the_tool_is_where_the_registration_puts_it_on_the_head(room, scenario):
+    assert toolTip(room.scene) is None
+    prepareNodes(room.scene)
+    assert toolTip(room.scene) is None
+    stand(room, scenario)
+    assert toolTip(room.scene) is None
+    put_tool(room.scene, TIP)
+    wanted = transforms.apply(transforms.inverse(scenario.head_to_world), TIP)
+    np.testing.assert_allclose(toolTip(room.scene), wanted)
+
+
+def test_the_slices_follow_the_tool_in_the_place_of_the_next_point(room, follower, scenario):
+    stand(room, scenario)
+    put_tool(room.scene, TIP)
+    follower.followsTool = True
+    play(room, follower, "1")
+    on_head = toolTip(room.scene)
+    np.testing.assert_allclose(place(room.scene), on_head, atol=1e-3)
+    follower.followsTool = False
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[0], atol=1e-3)
+
+
+def test_following_is_limited_in_rate_and_needs_a_move(room, follower, scenario):
+    stand(room, scenario)
+    put_tool(room.scene, TIP)
+    follower.followsTool = True
+    follower.process()
+    first = place(room.scene)
+    put_tool(room.scene, TIP + UP)
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), first)
+    room.now += PERIOD_S
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), first + UP, atol=1e-3)
+    room.now += PERIOD_S
+    put_tool(room.scene, TIP + UP + [0.9 * LEAST_MOVE_MM, 0.0, 0.0])
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), first + UP, atol=1e-3)
+
+
+def test_a_place_that_was_shown_is_shown_again_after_the_views_were_moved(room, follower):
+    follower.showAgain()
+    follower.show((10.0, 20.0, 30.0))
+    jumpTo(room.scene, (0.0, 0.0, 0.0))
+    follower.showAgain()
+    np.testing.assert_allclose(place(room.scene), [10, 20, 30])

@@ -1,0 +1,31 @@
+"""The watch tells how long the main loop stood still, and what ran then."""
+
+import time
+
+from Testing.slicer.host.stall_watch import LOOK_AFTER_S, StallWatch
+
+STALL_S = 4 * LOOK_AFTER_S
+
+
+def test_a_stall_is_told_with_its_length(host):
+    with StallWatch() as watch:
+        host.let_pass(0.05)
+        time.sleep(STALL_S)
+        host.let_pass(0.05)
+    assert watch.longest_s >= STALL_S
+    assert max(stall.seconds for stall in watch.stalls) == watch.longest_s
+
+
+def test_what_runs_in_a_stall_is_named(host):
+    host.open()
+    process = host.widget.logic.session.process
+
+    def slow():
+        time.sleep(STALL_S)
+        process()
+
+    host.widget.logic.session.process = slow
+    with StallWatch() as watch:
+        host.wait_until(
+            lambda: any("onTimeout" in stall.ran for stall in watch.stalls), "it is named"
+        )

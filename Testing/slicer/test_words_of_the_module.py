@@ -1,0 +1,65 @@
+"""What a user of Slicer reads has no word of the command line: that user has none."""
+
+import ast
+import re
+import socket
+from pathlib import Path
+
+from rastrainer_simulator.cli import main
+from Testing.forked_child import in_child
+
+RASTRAINER = Path(__file__).parents[2] / "RASTrainer"
+LOGIC = RASTRAINER / "Logic" / "rastrainer"
+ON_THE_COMMAND_LINE = ("commands", "headless", "__main__", "scipy_modules")
+"""Parts whose sentences only somebody reads who has typed a command."""
+COMMANDS = "simulator|scenario|demo|doctor|study|head|score|register|export|report"
+WORDS = re.compile(rf"(?<![\w-])--[a-z]|\brastrainer ({COMMANDS})\b|command line|terminal|\bpip\b")
+
+
+def sentences(path):
+    """Yield what is passed to the translation or to an error."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        name = isinstance(node, ast.Call) and ast.unparse(node.func)
+        if name == "_" or (name and name.endswith("Error")):
+            parts = [n for argument in node.args for n in ast.walk(argument)]
+            yield " ".join(
+                part.value
+                for part in parts
+                if isinstance(part, ast.Constant) and isinstance(part.value, str)
+            )
+
+
+def test_no_sentence_of_the_module_speaks_of_the_command_line():
+    said = [
+        f"{path.name}: {sentence}"
+        for path in (RASTRAINER / "RASTrainer.py", *LOGIC.rglob("*.py"))
+        if not any(part in str(path.relative_to(RASTRAINER)) for part in ON_THE_COMMAND_LINE)
+        for sentence in sentences(path)
+        if WORDS.search(sentence)
+    ]
+    assert said == []
+
+
+def test_no_widget_speaks_of_the_command_line():
+    texts = [
+        f"{path.name}: {text}"
+        for path in (RASTRAINER / "Resources" / "UI").glob("*.ui")
+        for text in re.findall(r"<string>(.*?)</string>", path.read_text(encoding="utf-8"))
+        if WORDS.search(text)
+    ]
+    assert texts == []
+
+
+def start_on_a_port_in_use(folder, port):
+    folders = ["--records", str(folder / "records"), "--config", str(folder / "config")]
+    return main(["simulator", "--port", str(port), "--no-views", *folders])
+
+
+def test_a_simulator_that_cannot_start_is_told_without_the_command_line(tmp_path, capfd):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        assert in_child(start_on_a_port_in_use, tmp_path, taken.getsockname()[1]) == 2
+    said = capfd.readouterr().err.splitlines()[-1].removeprefix("rastrainer: ")
+    assert "choose another port" in said
+    assert not WORDS.search(said)
