@@ -16,6 +16,7 @@ from rastrainer.registration import Registration
 from rastrainer.scoring import TrialScore
 from rastrainer.study_database import StudyBusyError, StudyDatabase
 from rastrainer.study_patience import Patience
+from rastrainer.study_reading import ReadOnlyStudyDatabase
 from rastrainer.study_tombstones import DeletedTrialError
 from rastrainer.study_values import (
     PastTrial,
@@ -62,6 +63,18 @@ class Study:
             StudyBusyError: another program has it locked.
         """
         return cls(StudyDatabase(path, patience))
+
+    @classmethod
+    def open_for_reading(
+        cls, path: str | os.PathLike[str], patience: Patience | None = None
+    ) -> Study:
+        """Open the study in a file, which stays as it is; what would change it is refused.
+
+        Raises:
+            InputError: as `open`, or there is no such file.
+            StudyBusyError: another program has it locked.
+        """
+        return cls(ReadOnlyStudyDatabase(path, patience))
 
     def __enter__(self) -> Study:
         return self

@@ -44,12 +44,8 @@ class StudyDatabase:
         self.path = Path(path)
         self._patience = patience or Patience()
         self._check_place()
-        self._keep_private()
         with self._sentences():
-            # Transactions are begun by us alone: `isolation_level=None`.
-            self._connection = sqlite3.connect(
-                self.path, timeout=self._patience.timeout_s, isolation_level=None
-            )
+            self._connection = self._connect()
         try:
             with self._sentences():
                 self._prepare()
@@ -102,6 +98,11 @@ class StudyDatabase:
                 if self._connection.in_transaction:
                     self._connection.execute("ROLLBACK")
 
+    def _connect(self) -> sqlite3.Connection:
+        self._keep_private()
+        # Transactions are begun by us alone: `isolation_level=None`.
+        return sqlite3.connect(self.path, timeout=self._patience.timeout_s, isolation_level=None)
+
     def _check_place(self) -> None:
         if "\0" in str(self.path):
             raise InputError("The name of a study database must not hold a null character.")
@@ -136,6 +137,9 @@ class StudyDatabase:
             is_old = self._number("user_version") < len(MIGRATIONS)
         if is_old:
             self._migrate()
+        self._check_whole()
+
+    def _check_whole(self) -> None:
         if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
             raise sqlite3.DatabaseError("malformed")
         if self._connection.execute("PRAGMA foreign_key_check").fetchone() is not None:

@@ -94,6 +94,6 @@ def _stored(data: StudyData, path: Path) -> Iterator[tuple[TrialRow, StoredTrial
     known = [trial for trial in data.trials if trial.trial_id]
     if not known:
         return
-    with Study.open(path) as study:
+    with Study.open_for_reading(path) as study:
         for trial in known:
             yield trial, study.trial(trial.trial_id)

@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     both = sorted({*arguments.novices} & {*arguments.experts})
     if both:
         raise InputError(f"{both[0]} is named in both groups; name everybody in one, and once.")
-    with Study.open(arguments.study) as study:
+    with Study.open_for_reading(arguments.study) as study:
         novices, experts = (
             [_score(study, pseudonym) for pseudonym in dict.fromkeys(group)]
             for group in (arguments.novices, arguments.experts)

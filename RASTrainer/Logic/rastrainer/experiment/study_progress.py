@@ -152,15 +152,21 @@ class StudyProgress:
         """
         with self._database.reading() as connection:
             progress = _progress(connection, pseudonym)
-            if _played_for(connection, pseudonym, progress) is None:
+            if not _played_next(connection, pseudonym, progress):
                 return progress
         with self._database.writing() as connection:
             progress = _progress(connection, pseudonym)
-            while (found := _played_for(connection, pseudonym, progress)) is not None:
-                checked = {"trialId": found}
-                _store(connection, pseudonym, progress.next_step.name, DONE, checked)
-                progress = _progress(connection, pseudonym)
-            return progress
+            for entry in _played_next(connection, pseudonym, progress):
+                _store(connection, pseudonym, entry.step, entry.outcome, dict(entry.details))
+            return _progress(connection, pseudonym)
+
+    def played(self, pseudonym: str) -> Progress:
+        """Return the progress as `count_played` would leave it, and store nothing."""
+        with self._database.reading() as connection:
+            progress = _progress(connection, pseudonym)
+            further = _played_next(connection, pseudonym, progress)
+            entries = (*progress.entries, *further)
+            return replace(progress, entries=entries) if further else progress
 
     def enrolled(self) -> dict[str, int]:
         """Return the place of each enrolled trainee, in the order of places."""
@@ -222,6 +228,21 @@ def _practiced(connection: sqlite3.Connection, pseudonym: str, step: Step | None
 
 def _is_practice(step: Step) -> bool:
     return step.kind is StepKind.TRIAL_RUN
+
+
+def _played_next(
+    connection: sqlite3.Connection, pseudonym: str, progress: Progress
+) -> list[StepEntry]:
+    """Return the entries of the next steps whose trials were played but not counted yet."""
+    entries = []
+    while (found := _played_for(connection, pseudonym, progress)) is not None:
+        (stored_utc,) = connection.execute(
+            "SELECT stored_utc FROM trials WHERE trial_id = ?", (found,)
+        ).fetchone()
+        entry = StepEntry(progress.next_step.name, DONE, {"trialId": found}, stored_utc)
+        entries.append(entry)
+        progress = replace(progress, entries=(*progress.entries, entry))
+    return entries
 
 
 def _played_for(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -> str | None:

@@ -162,14 +162,14 @@ def _from_csv(path: Path) -> StudyData:
 
 
 def _from_database(path: Path) -> StudyData:
-    with Study.open(path) as study:
+    with Study.open_for_reading(path) as study:
         progress = StudyProgress(study)
         protocol = progress.protocol()
         cohort = CohortStore(study).state()
         everyone = (*study.trainees(), *study.trainees(archived=True))
         consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
         enrolled = [name for name in progress.enrolled() if name in consenting]
-        asked = {name: set(progress.count_played(name).counted_trials) for name in enrolled}
+        asked = {name: set(progress.played(name).counted_trials) for name in enrolled}
         trials, versions, beside = [], defaultdict(set), 0
         for pseudonym in sorted(consenting):
             history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
