@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sqlite3
 from pathlib import Path
 from urllib.parse import quote
@@ -23,7 +22,7 @@ class ReadOnlyStudyDatabase(StudyDatabase):
     def _connect(self) -> sqlite3.Connection:
         if not self.path.is_file():
             raise InputError(f"There is no file {self.path}.")
-        if _is_there(f"{self.path}-journal"):
+        if _holds_something(self.path.with_name(f"{self.path.name}-journal")):
             self._roll_back()
         return sqlite3.connect(
             read_only_uri(self.path),
@@ -65,15 +64,14 @@ class ReadOnlyStudyDatabase(StudyDatabase):
 
 def read_only_uri(path: Path) -> str:
     """Return the URI by which SQLite opens a file without ever writing it."""
-    name = Path(os.path.abspath(path)).as_posix()
+    name = path.absolute().as_posix()
     # `C:/…` needs a slash before it; a share's `//server/…` must not become a host.
     rooted = name if name.startswith("/") else f"/{name}"
     return f"file://{quote(rooted)}?mode=ro"
 
 
-def _is_there(path: str) -> bool:
-    """Return whether there is a rollback journal that holds something."""
+def _holds_something(path: Path) -> bool:
     try:
-        return os.stat(path).st_size > 0
+        return path.stat().st_size > 0
     except OSError:
         return False
