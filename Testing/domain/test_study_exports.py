@@ -63,6 +63,32 @@ def test_the_version_told_of_a_score_is_the_one_that_it_was_computed_with(data):
     assert f"{OLD}, {others[1].score_version}" in report_html(mixed)
 
 
+def test_a_trials_statement_tells_whether_it_passed_and_when_it_was_completed(data):
+    first, second, third = (
+        replace(
+            data.trials[0],
+            trial_id=str(uuid.UUID(int=number)),
+            values={**data.trials[0].values, "score": score, "completion_time_s": 110.0},
+            acceptable=acceptable,
+            started_utc="2026-01-01T10:00:00Z",
+            completed_utc="2026-01-01T10:01:50Z",
+        )
+        for number, (score, acceptable) in enumerate(((80.0, True), (80.0, False), (79.9, True)))
+    )
+    unscored = replace(third, values={"completion_time_s": 110.0})
+    protocol = replace(data.protocol, pass_mark=80.0)
+    told = statements(
+        replace(data, trials=(first, second, third, unscored), protocol=protocol, answers=())
+    )
+    assert [s["result"].get("success") for s in told] == [True, False, False, None]
+    assert {s["version"] for s in told} == {"1.0.0"}
+    assert {s["timestamp"] for s in told} == {"2026-01-01T10:01:50Z"}
+    assert {s["result"]["duration"] for s in told} == {"PT110.00S"}
+    context = told[0]["context"]["extensions"]
+    assert context[f"{HOME_PAGE}/xapi/started"] == "2026-01-01T10:00:00Z"
+    assert context[f"{HOME_PAGE}/xapi/pass-mark"] == 80.0
+
+
 def test_who_did_not_agree_to_research_is_left_out_of_an_export_and_counted(tmp_path, capsys):
     study_with_trials(tmp_path / "study.db", consent=False)
     words = ["export", tmp_path / "study.db", "-o", tmp_path / "out"]

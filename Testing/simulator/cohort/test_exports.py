@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import subprocess
 import sys
 import uuid
@@ -94,9 +95,13 @@ def test_xapi_statements_have_what_the_specification_requires(exported):
         for iri in (statement["verb"]["id"], statement["object"]["id"]):
             assert iri.startswith(("http://", "https://"))
         score = statement["result"]["score"]
+        # A provider that sets the version must set this one, whatever patch it follows.
+        assert statement["version"] == "1.0.0"
+        assert statement["result"]["completion"] is True
+        assert isinstance(statement["result"]["success"], bool)
         assert -1 <= score["scaled"] <= 1
         assert score["min"] <= score["raw"] <= score["max"]
-        assert statement["result"]["duration"].startswith("PT")
+        assert re.fullmatch(r"PT\d+\.\d\dS", statement["result"]["duration"])
         extensions = {**statement["result"]["extensions"], **statement["context"]["extensions"]}
         assert all(key.startswith("https://") for key in extensions)
         assert statement["timestamp"].endswith("Z")

@@ -7,9 +7,13 @@ import uuid
 from typing import Any
 
 from rastrainer.experiment.study_progress import QuestionnaireAnswers
+from rastrainer.experiment.study_protocol import pass_mark_of
 from rastrainer.report.outcomes import mode_title, task_title
 from rastrainer.report.study_data import StudyData, TrialRow
+from rastrainer.scoring import passes
 
+VERSION = "1.0.0"
+"""That of the data model, which every xAPI 1.0.x shares; a provider must not name a later patch."""
 HOME_PAGE = "https://rastrainer.invalid"
 VERBS = {
     "completed": "http://adlnet.gov/expapi/verbs/completed",
@@ -28,7 +32,8 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
         data: The study; a trial's statement has the trial's UUID, so that twice is once.
         home_page: IRL of the lab's system, which makes the pseudonyms unique.
     """
-    trials = [_trial(trial, home_page) for trial in data.trials if trial.trial_id]
+    mark = pass_mark_of(data.protocol)
+    trials = [_trial(trial, mark, home_page) for trial in data.trials if trial.trial_id]
     return trials + [_answers(answered, home_page) for answered in data.answers]
 
 
@@ -37,7 +42,8 @@ def statements_text(data: StudyData, home_page: str = HOME_PAGE) -> str:
     return json.dumps(statements(data, home_page), indent=1, allow_nan=False) + "\n"
 
 
-def _trial(trial: TrialRow, home_page: str) -> dict[str, Any]:
+def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
+    """Return the statement that a trial was completed, at its end; the duration has no pauses."""
     result: dict[str, Any] = {
         "completion": True,
         "duration": f"PT{trial.values['completion_time_s']:.2f}S",
@@ -45,15 +51,21 @@ def _trial(trial: TrialRow, home_page: str) -> dict[str, Any]:
             f"{home_page}/xapi/values/{name}": value for name, value in sorted(trial.values.items())
         },
     }
-    context = {f"{home_page}/xapi/mode": trial.mode, f"{home_page}/xapi/trial-number": trial.number}
+    context = {
+        f"{home_page}/xapi/mode": trial.mode,
+        f"{home_page}/xapi/trial-number": trial.number,
+        f"{home_page}/xapi/started": trial.started_utc,
+    }
     if trial.score_version:
         context[f"{home_page}/xapi/score-version"] = trial.score_version
     if "score" in trial.values:
         score = trial.values["score"]
         result["score"] = {"scaled": round(score / 100, 6), "raw": score, "min": 0, "max": 100}
+        result["success"] = passes(score, trial.acceptable, mark)
+        context[f"{home_page}/xapi/pass-mark"] = mark
     return {
         "id": trial.trial_id,
-        "version": "1.0.3",
+        "version": VERSION,
         "actor": _actor(trial.trainee, home_page),
         "verb": _verb("completed"),
         "object": _activity(f"{home_page}/tasks/{trial.task}", task_title(trial.task), SIMULATION),
@@ -62,7 +74,7 @@ def _trial(trial: TrialRow, home_page: str) -> dict[str, Any]:
             "platform": f"RASTrainer, {mode_title(trial.mode)}",
             "extensions": context,
         },
-        "timestamp": trial.started_utc,
+        "timestamp": trial.completed_utc,
     }
 
 
@@ -72,7 +84,7 @@ def _answers(answered: QuestionnaireAnswers, home_page: str) -> dict[str, Any]:
     name = step.questionnaire
     return {
         "id": str(uuid.uuid5(NAMESPACE, identity)),
-        "version": "1.0.3",
+        "version": VERSION,
         "actor": _actor(answered.trainee, home_page),
         "verb": _verb("answered"),
         "object": _activity(f"{home_page}/questionnaires/{name}", name, SURVEY),

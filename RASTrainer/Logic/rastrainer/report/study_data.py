@@ -36,6 +36,7 @@ class TrialRow:
         score_version: Of our score; "" without one.
         acceptable: Whether the expected target error was within the score's limit; False without
             a score.
+        completed_utc: When the last kept touch was made, ISO 8601; "" where unknown.
     """
 
     trainee: str
@@ -48,6 +49,7 @@ class TrialRow:
     scenario: str = ""
     score_version: str = ""
     acceptable: bool = False
+    completed_utc: str = ""
 
 
 @dataclass(frozen=True)
@@ -237,6 +239,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         scenario=record.scenario,
         score_version="" if score is None else score.version,
         acceptable=score is not None and score.acceptable,
+        completed_utc=record.completed_utc,
     )
 
 
