@@ -12,8 +12,10 @@ from rastrainer.errors import InputError
 from rastrainer.experiment.steps import StepKind, mode_order, steps_for, task_order
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import (
+    pass_mark_of,
     protocol_text,
     read_study_protocol,
+    sets_pass_mark,
     study_protocol_from_json,
 )
 from rastrainer.experiment.study_step import StudyStep
@@ -167,9 +169,16 @@ def test_every_step_can_be_told_to_the_simulator_and_comes_back_the_same(study):
 def test_a_protocol_may_say_its_pass_mark():
     shipped = json.loads(SHIPPED.read_text())
     assert "passMark" not in shipped["scoring"]
-    assert protocol().pass_mark == PASS_MARK
+    silent = protocol()
+    assert (silent.pass_mark, pass_mark_of(silent), sets_pass_mark(silent)) == (
+        None,
+        PASS_MARK,
+        False,
+    )
+    assert study_protocol_from_json(json.loads(protocol_text(silent))) == silent
     own = protocol(scoring=shipped["scoring"] | {"passMark": 62})
-    assert own.pass_mark == 62.0
+    assert own.pass_mark == pass_mark_of(own) == 62.0
+    assert sets_pass_mark(own)
     assert study_protocol_from_json(json.loads(protocol_text(own))) == own
     with pytest.raises(InputError, match="passMark must be a number from 1 to 100"):
         protocol(scoring=shipped["scoring"] | {"passMark": 0})

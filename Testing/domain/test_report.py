@@ -337,11 +337,23 @@ def test_who_reached_the_pass_mark_and_whom_lc_cusum_calls_competent_is_counted(
             rows.append(row)
     protocol = replace(read_study_protocol(STUDIES / "published-protocol.json"), pass_mark=70.0)
     words = words_of(report_html(StudyData("One mode", tuple(rows), protocol=protocol)))
-    assert "passes with 70 of 100 points (of the protocol)" in words
+    assert "passes with 70 of 100 points (set by the protocol)" in words
     assert "Fewer than 11 trials in a mode cannot show it" in words
+    assert "a passed trial adds 0.46, and the limit is 4.60" in words
     shown_at = competence_of([False] * 30).competent_at
     assert 1 < shown_at < 30
     assert f"90 30 (33 %) 1 of 3 {shown_at} " in words
+
+
+@pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])
+def test_a_mark_that_no_protocol_sets_is_called_the_default(has_protocol):
+    published = read_study_protocol(STUDIES / "published-protocol.json")
+    values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 80.0}
+    rows = (TrialRow("A", "hmd", "task-1", 1, values, acceptable=True),)
+    words = words_of(
+        report_html(StudyData("One", rows, protocol=published if has_protocol else None))
+    )
+    assert "70 of 100 points (the default, since the study sets no mark; no data" in words
 
 
 def test_hostile_pseudonyms_and_titles_stay_text():

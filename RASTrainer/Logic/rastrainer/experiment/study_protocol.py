@@ -57,7 +57,7 @@ class StudyProtocol:
         asked: Questionnaires.
         references: Of the score, by task; a task without one has the shipped reference.
         score_version: Version of the score that the study was planned with.
-        pass_mark: Score that passes.
+        pass_mark: Score that passes; None where the protocol sets none and the default holds.
     """
 
     name: str
@@ -73,10 +73,11 @@ class StudyProtocol:
     asked: tuple[Asked, ...] = ()
     references: Mapping[str, ScoreReference] = field(default_factory=dict)
     score_version: str = SCORE_VERSION
-    pass_mark: float = PASS_MARK
+    pass_mark: float | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
+        mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
         return {
             "formatVersion": FORMAT_VERSION,
             "name": self.name,
@@ -97,7 +98,7 @@ class StudyProtocol:
             ],
             "scoring": {
                 "version": self.score_version,
-                "passMark": self.pass_mark,
+                **mark,
                 "references": {
                     task: {"timeS": r.time_s, "treMm": r.tre_mm, "limitMm": r.limit_mm}
                     for task, r in self.references.items()
@@ -107,8 +108,13 @@ class StudyProtocol:
 
 
 def pass_mark_of(protocol: StudyProtocol | None) -> float:
-    """Return the score that passes; that of free practice without a protocol."""
-    return PASS_MARK if protocol is None else protocol.pass_mark
+    """Return the score that passes: the protocol's, or the default where there is none."""
+    return protocol.pass_mark if sets_pass_mark(protocol) else PASS_MARK
+
+
+def sets_pass_mark(protocol: StudyProtocol | None) -> bool:
+    """Return whether there is a protocol that sets a pass mark of its own."""
+    return protocol is not None and protocol.pass_mark is not None
 
 
 def read_study_protocol(path: Path | str) -> StudyProtocol:
@@ -162,10 +168,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
         ),
         references=_references(scoring.fields("references"), tasks),
         score_version=scoring.text("version", 20),
-        # The first protocols had none.
-        pass_mark=scoring.number("passMark", 1, 100)
-        if "passMark" in scoring.names()
-        else PASS_MARK,
+        pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
     )
     if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MOST_STEPS} trials")

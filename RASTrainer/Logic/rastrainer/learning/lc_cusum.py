@@ -15,6 +15,9 @@ from rastrainer.errors import InputError
 from rastrainer.learning.cusum import check_rates
 from rastrainer.number_text import percent
 
+FALSE_DISCOVERY = 0.05
+"""Largest share of inadequate trainees who are called competent within the training."""
+
 
 @dataclass(frozen=True)
 class LcCusum:
@@ -61,7 +64,7 @@ def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit
 
 @functools.lru_cache(maxsize=32)
 def lc_cusum_limit(
-    adequate: float, inadequate: float, trials: int, false_discovery: float = 0.05
+    adequate: float, inadequate: float, trials: int, false_discovery: float = FALSE_DISCOVERY
 ) -> float:
     """Return the least limit that an incompetent trainee reaches too rarely.
 
@@ -92,8 +95,12 @@ def lc_cusum_limit(
 
 def fewest_trials(adequate: float, inadequate: float, limit: float) -> int:
     """Return how many trials show competence at the earliest: successes without a failure."""
-    success, _ = _steps(adequate, inadequate)
-    return math.ceil(limit / success - 1e-12)
+    return math.ceil(limit / success_step(adequate, inadequate) - 1e-12)
+
+
+def success_step(adequate: float, inadequate: float) -> float:
+    """Return what a success adds to the score."""
+    return _steps(adequate, inadequate)[0]
 
 
 def signal_probability(

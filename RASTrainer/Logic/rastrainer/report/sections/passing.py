@@ -6,15 +6,21 @@ from collections import defaultdict
 
 import numpy as np
 
-from rastrainer.experiment.study_protocol import pass_mark_of
+from rastrainer.experiment.study_protocol import pass_mark_of, sets_pass_mark
 from rastrainer.feedback.progress_words import (
     ADEQUATE_FAILURES,
     INADEQUATE_FAILURES,
     TRAINING_TRIALS,
     competence_of,
 )
-from rastrainer.learning.lc_cusum import LcCusum, fewest_trials, lc_cusum_limit
-from rastrainer.number_text import percent
+from rastrainer.learning.lc_cusum import (
+    FALSE_DISCOVERY,
+    LcCusum,
+    fewest_trials,
+    lc_cusum_limit,
+    success_step,
+)
+from rastrainer.number_text import fixed, percent
 from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
 from rastrainer.report.markup import figure, paragraph, section, table
@@ -90,13 +96,20 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
 
 
 def _words(data: StudyData, mark: float) -> str:
-    source = "the default, which stands on no data" if data.protocol is None else "of the protocol"
+    source = (
+        "set by the protocol"
+        if sets_pass_mark(data.protocol)
+        else "the default, since the study sets no mark; no data support it"
+    )
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     fewest = fewest_trials(ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and an expected target error "
-        "within the limit of its task. A trainee is called competent by LC-CUSUM (Biau and "
-        f"Porcher 2010) for failing in {percent(ADEQUATE_FAILURES)} of trials and not in "
-        f"{percent(INADEQUATE_FAILURES)}, over all tasks of a mode. Fewer than {fewest} "
-        "trials in a mode cannot show it, even if all are passed."
+        "within the limit of its task. LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
+        "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
+        f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "
+        f"{fewest} trials in a mode cannot show it, even if all are passed: a passed trial adds "
+        f"{fixed(success_step(ADEQUATE_FAILURES, INADEQUATE_FAILURES), 2)}, and the limit is "
+        f"{fixed(limit, 2)}, by which at most {percent(FALSE_DISCOVERY)} of trainees who fail in "
+        f"{percent(INADEQUATE_FAILURES)} are called competent within {TRAINING_TRIALS} trials."
     )
