@@ -63,6 +63,22 @@ OPEN_PHASES = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
 FINISHED_PHASES = (Phase.REGISTERED, Phase.SCORED)
 
 
+class AbortReason(str, Enum):
+    """Why a trial ended without being registered."""
+
+    TRAINEE = "trainee"
+    CLIENT = "client"
+    PRACTICE_OVER = "practice over"
+    NOT_GONE_ON_WITH = "not gone on with"
+
+
+COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTICE_OVER)
+"""In the simulator's menu, by a client's command, or since the time of a trial run was over. The
+other one is a trial that the simulator's end has cut short and after which another was begun."""
+KEPT_AFTER_S = 10.0
+"""An aborted trial without any touch is kept where it took longer than this."""
+
+
 class Mode(str, Enum):
     """How the trainee sees the scene; the study compares them."""
 
@@ -86,8 +102,9 @@ class StepKind(str, Enum):
     BREAK = "break"
 
 
-ALL_DONE, FREE = "all-done", "free"
-"""In place of a step: none is left, or no study leads the trainee."""
+ALL_DONE, FREE, REPEAT = "all-done", "free", "repeat"
+"""In place of a step: none is left, no study leads the trainee, or the step's trial was aborted and
+is played again only once there is a reason."""
 
 
 class Proximity(str, Enum):
@@ -99,7 +116,7 @@ class Proximity(str, Enum):
 
 
 class CommandName:
-    """Names of the commands; the last two go from the server to its clients."""
+    """Names of the commands; the last three go from the server to its clients."""
 
     HELLO = "Hello"
     LIST_TASKS = "ListTasks"
@@ -120,6 +137,7 @@ class CommandName:
     GET_TRIAL = "GetTrial"
     ACKNOWLEDGE_TRIAL = "AcknowledgeTrial"
     TRIAL_COMPLETED = "TrialCompleted"
+    TRIAL_ABORTED = "TrialAborted"
     STEP_ANSWERED = "StepAnswered"
 
 
@@ -269,7 +287,11 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.CAPTURE: {},
     CommandName.UNDO: {},
     CommandName.REGISTER: {},
-    CommandName.ABORT: {},
+    CommandName.ABORT: {
+        "reason": Argument(
+            one_of(*(reason.value for reason in COMMANDED_ABORTS)), AbortReason.CLIENT.value
+        )
+    },
     CommandName.PAUSE: {},
     CommandName.RESUME: {},
     CommandName.SET_CAMERA: {"camera": Argument(one_of("close-up", "far"))},
@@ -288,7 +310,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     },
     CommandName.STUDY_STEP: {
         "trainee": Argument(text()),
-        "kind": Argument(one_of(*(kind.value for kind in StepKind), ALL_DONE, FREE)),
+        "kind": Argument(one_of(*(kind.value for kind in StepKind), ALL_DONE, FREE, REPEAT)),
         "number": Argument(whole_number(1, 100_000), 0),
         "count": Argument(whole_number(1, 100_000), 0),
         "task": Argument(text(), ""),

@@ -129,4 +129,29 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
         "CREATE TABLE stuck_trials (trial_id TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
     ),
+    (
+        # Trials that were aborted, and why the study's step was then played again.
+        """
+        CREATE TABLE aborted_trials (
+            trial_id TEXT PRIMARY KEY NOT NULL,
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            task TEXT NOT NULL,
+            mode TEXT NOT NULL,
+            scenario TEXT NOT NULL,
+            started_utc TEXT NOT NULL,
+            record_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX aborted_trials_of_trainee ON aborted_trials (trainee_id)",
+        """
+        CREATE TABLE repeats (
+            trial_id TEXT PRIMARY KEY NOT NULL
+                REFERENCES aborted_trials (trial_id) ON DELETE CASCADE,
+            step TEXT NOT NULL,
+            reason TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        ) WITHOUT ROWID
+        """,
+    ),
 )

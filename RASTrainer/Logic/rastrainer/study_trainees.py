@@ -81,20 +81,26 @@ def change(
 
 
 def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
-    """Delete a trainee with all that hangs on it; return how many trials that were.
+    """Delete a trainee with all that hangs on it; return how many finished trials that were.
 
-    The trials cannot be stored again.
+    The trials, aborted ones too, cannot be stored again.
 
     Raises:
         InputError: the study has no such trainee.
     """
     find(connection, pseudonym)
-    trials = connection.execute(
-        f"SELECT trial_id FROM trials WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
-    ).fetchall()
-    bury(connection, (trial_id for (trial_id,) in trials))
+    finished, aborted = (
+        [
+            trial_id
+            for (trial_id,) in connection.execute(
+                f"SELECT trial_id FROM {table} WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+            )
+        ]
+        for table in ("trials", "aborted_trials")
+    )
+    bury(connection, (*finished, *aborted))
     connection.execute("DELETE FROM trainees WHERE pseudonym = ?", (pseudonym,))
-    return len(trials)
+    return len(finished)
 
 
 def next_pseudonym(connection: sqlite3.Connection) -> str:

@@ -116,6 +116,7 @@ class PastTrial:
         completion_time_s: As recorded.
         score: The latest, above 0 up to 100.
         acceptable: Whether the expected target error was within the limit.
+        is_aborted: Whether it was aborted after a touch: not passed, without time or score.
     """
 
     trial_id: str
@@ -124,6 +125,7 @@ class PastTrial:
     completion_time_s: float
     score: float
     acceptable: bool
+    is_aborted: bool = False
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,15 @@ class TouchedPoint:
     sim_time_s: float
     utc: str
 
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `touched_point` reads."""
+        return {
+            "label": self.label,
+            "positionMm": list(self.position_mm),
+            "simTime": self.sim_time_s,
+            "utc": self.utc,
+        }
+
 
 @dataclass(frozen=True)
 class TrialRecord:
@@ -107,9 +116,9 @@ class TrialRecord:
         Raises:
             InputError: a key is missing or holds something else than it should.
         """
-        fields = _checked(value, _RECORD_KEYS, "The trial record")
+        fields = checked_keys(value, _RECORD_KEYS, "The trial record")
         record = cls(**{_PYTHON_NAMES[key]: fields[key] for key in fields})
-        _check_points(record.points)
+        check_points(record.points)
         return record
 
     def to_json(self) -> dict[str, Any]:
@@ -118,15 +127,7 @@ class TrialRecord:
         json_object["versions"] = dict(self.versions)
         json_object["motion"] = dict(self.motion)
         json_object["display"] = dict(self.display)
-        json_object["points"] = [
-            {
-                "label": point.label,
-                "positionMm": list(point.position_mm),
-                "simTime": point.sim_time_s,
-                "utc": point.utc,
-            }
-            for point in self.points
-        ]
+        json_object["points"] = [point.to_json() for point in self.points]
         return json_object
 
 
@@ -146,18 +147,20 @@ def utc_time(value: Any) -> str:
     return value
 
 
-def _touched_point(value: Any) -> TouchedPoint:
-    fields = _checked(value, _POINT_KEYS, "Each point of the trial record")
+def touched_point(value: Any) -> TouchedPoint:
+    """Return the point that a decoded JSON object holds; raise `InputError` where it is none."""
+    fields = checked_keys(value, _POINT_KEYS, "Each point of the trial record")
     return TouchedPoint(fields["label"], fields["positionMm"], fields["simTime"], fields["utc"])
 
 
-def _touched_points(value: Any) -> tuple[TouchedPoint, ...]:
+def _all_points(value: Any) -> tuple[TouchedPoint, ...]:
     if not isinstance(value, (list, tuple)) or len(value) != FIDUCIAL_COUNT:
         raise ValueError(f"a list of {FIDUCIAL_COUNT} points")
-    return tuple(_touched_point(item) for item in value)
+    return tuple(touched_point(item) for item in value)
 
 
-def _versions(value: Any) -> dict[str, str]:
+def checked_versions(value: Any) -> dict[str, str]:
+    """Accept names of programs with their versions; raise `ValueError` for anything else."""
     words = "an object of at most 32 names with their versions as text"
     if not isinstance(value, dict) or len(value) > VERSIONS_LIMIT:
         raise ValueError(words)
@@ -197,7 +200,13 @@ def _optional(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return lambda value: None if value is None else check(value)
 
 
-def _checked(value: object, keys: Mapping[str, Argument], what: str) -> dict[str, Any]:
+def checked_keys(value: object, keys: Mapping[str, Argument], what: str) -> dict[str, Any]:
+    """Return the checked values of a JSON object's known keys, defaults filled in.
+
+    Raises:
+        InputError: it is no object, or a key is missing or holds something else than it should;
+            `what` begins the sentence.
+    """
     if not isinstance(value, Mapping):
         raise InputError(f"{what} must be a JSON object.")
     fields = {}
@@ -213,7 +222,8 @@ def _checked(value: object, keys: Mapping[str, Argument], what: str) -> dict[str
     return fields
 
 
-def _check_points(points: tuple[TouchedPoint, ...]) -> None:
+def check_points(points: tuple[TouchedPoint, ...]) -> None:
+    """Raise `InputError` where a label stands twice, or a point before an earlier one."""
     seen: set[str] = set()
     for point in points:
         if point.label in seen:
@@ -243,10 +253,10 @@ _RECORD_KEYS = {
     "startedUtc": Argument(utc_time),
     "completedUtc": Argument(utc_time),
     "completionTimeS": Argument(protocol.number(0, TIME_LIMIT_S, "s")),
-    "points": Argument(_touched_points),
+    "points": Argument(_all_points),
     "rejectedTouches": Argument(protocol.whole_number(0, TOUCH_LIMIT)),
     "undoneTouches": Argument(protocol.whole_number(0, TOUCH_LIMIT)),
-    "versions": Argument(_versions),
+    "versions": Argument(checked_versions),
     "seed": Argument(_optional(protocol.whole_number(0, 2**63 - 1)), None),
     "touchRule": Argument(
         protocol.one_of(*(rule.value for rule in TouchRule)), TouchRule.WITHIN_RADIUS.value

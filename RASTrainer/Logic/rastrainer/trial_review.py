@@ -14,6 +14,7 @@ from rastrainer.journal.folder import read_trajectory
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario import Scenario
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials
 from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
 from rastrainer.trial_record import TrialRecord
 
@@ -56,5 +57,7 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
     if record.task == TRIAL_RUN or study.trial(record.trial_id).score is None:
         return analysis
     pass_mark = pass_mark_of(StudyProgress(study).protocol())
-    progress = progress_of(study.past_trials(record.trainee), record.trial_id, pass_mark)
+    progress = progress_of(
+        AbortedTrials(study).attempts(record.trainee), record.trial_id, pass_mark
+    )
     return replace(analysis, feedback=replace(analysis.feedback, progress=progress))

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.errors import InputError
 from rastrainer.experiment.steps import Step, StepKind
+from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.questionnaires.catalog import find_questionnaire
 
 DONE, SKIPPED = "done", "skipped"
@@ -42,12 +44,14 @@ class Progress:
         entries: Of the first steps, in their order.
         enrolled_utc: When the trainee was given their place, ISO 8601.
         practiced_s: How long the next step, if it is a trial run, has been practiced so far, in s.
+        unexplained: Aborted trials of the next step; it is played again only with a reason.
     """
 
     steps: tuple[Step, ...]
     entries: tuple[StepEntry, ...]
     enrolled_utc: str = ""
     practiced_s: float = 0.0
+    unexplained: tuple[AbortedTrial, ...] = ()
 
     @classmethod
     def of(
@@ -105,11 +109,23 @@ class Progress:
             return "All steps of the study are done. Thank you!"
         return f"Step {len(self.entries) + 1} of {len(self.steps)}: {step.sentence}"
 
+    @property
+    def repeat_sentence(self) -> str:
+        """What is asked after an aborted trial; "" where nothing is."""
+        if not self.unexplained:
+            return ""
+        last = self.unexplained[-1]
+        return (
+            f"This trial was aborted with {len(last.points)} of {FIDUCIAL_COUNT} points touched. "
+            "It is played again only with a reason, which goes into the report."
+        )
+
     def check_start(self, mode: str, task: str) -> Step:
         """Return the step that a trial to be started belongs to.
 
         Raises:
-            InputError: something else comes next; the sentence says what.
+            InputError: something else comes next, or it was aborted and nobody has said why it is
+                played again; the sentence says what.
         """
         step = self._next()
         if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
@@ -117,6 +133,8 @@ class Progress:
             task,
         ):
             raise InputError(f"Not yet: the study asks for something else first. {self.sentence}")
+        if self.unexplained:
+            raise InputError(self.repeat_sentence)
         return step
 
     def check_done(self, step_name: str, details: Mapping[str, Any]) -> dict[str, Any]:
@@ -144,13 +162,17 @@ class Progress:
             InputError: it is not the next step, or no reason is given: nothing is skipped silently.
         """
         self._expected(step_name)
-        is_text = isinstance(reason, str) and reason.strip().isprintable()
-        if not is_text or not SHORTEST_REASON <= len(reason.strip()) <= LONGEST_REASON:
-            raise InputError(
-                f"A step is skipped only with a reason of {SHORTEST_REASON} to {LONGEST_REASON} "
-                "characters; it goes into the report."
-            )
-        return {"reason": reason.strip()}
+        return {"reason": _checked_reason(reason, "A step is skipped")}
+
+    def check_repeat(self, reason: str) -> str:
+        """Return the reason to be stored when an aborted step is played again.
+
+        Raises:
+            InputError: it was not aborted, or no reason is given: nothing is repeated silently.
+        """
+        if not self.unexplained:
+            raise InputError("The next step was not aborted; it needs no reason to be played.")
+        return _checked_reason(reason, "An aborted trial is played again")
 
     def _next(self) -> Step:
         if self.next_step is None:
@@ -165,6 +187,16 @@ class Progress:
                 "order; one that must be left out is skipped with a reason."
             )
         return step
+
+
+def _checked_reason(reason: Any, what: str) -> str:
+    is_text = isinstance(reason, str) and reason.strip().isprintable()
+    if not is_text or not SHORTEST_REASON <= len(reason.strip()) <= LONGEST_REASON:
+        raise InputError(
+            f"{what} only with a reason of {SHORTEST_REASON} to {LONGEST_REASON} characters; it "
+            "goes into the report."
+        )
+    return reason.strip()
 
 
 def _checked_minutes(step: Step, minutes: Any) -> float:

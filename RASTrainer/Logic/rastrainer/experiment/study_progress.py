@@ -10,16 +10,17 @@ import json
 import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from datetime import datetime
 from typing import Any
 
 from rastrainer import study_trainees, study_trials
 from rastrainer.errors import InputError
+from rastrainer.experiment.played_trials import aborted_before, played_next
 from rastrainer.experiment.progress import DONE, SKIPPED, Progress, StepEntry
 from rastrainer.experiment.steps import Step, StepKind, steps_for
 from rastrainer.experiment.study_protocol import StudyProtocol, study_protocol_from_json
 from rastrainer.questionnaires.catalog import find_questionnaire
 from rastrainer.study import Study
+from rastrainer.study_aborted import explain
 from rastrainer.study_clock import utc_now
 from rastrainer.study_trainees import TRAINEE_ID
 from rastrainer.study_trials import decoded, json_text
@@ -128,6 +129,19 @@ class StudyProgress:
             _store(connection, pseudonym, step, SKIPPED, checked)
             return _progress(connection, pseudonym)
 
+    def explain_repeat(self, pseudonym: str, reason: str) -> Progress:
+        """Say why the next step is played again after it was aborted; return the new progress.
+
+        Raises:
+            InputError: it was not aborted, or there is no reason of at least ten characters.
+        """
+        with self._database.writing() as connection:
+            progress = _progress(connection, pseudonym)
+            checked = progress.check_repeat(reason)
+            for record in progress.unexplained:
+                explain(connection, record.trial_id, progress.next_step.name, checked)
+            return _progress(connection, pseudonym)
+
     def practice(self, pseudonym: str, step: str, seconds: float) -> None:
         """Add to the time for which the next step, a trial run, was practiced.
 
@@ -148,15 +162,16 @@ class StudyProgress:
         """Count the stored trials that the next steps ask for, and return the new progress.
 
         A trial counts that was started after the trainee was enrolled and after the last trial that
-        counts. So a trial that arrives late, or whose step an interruption left open, is found.
+        counts. So a trial that arrives late, or whose step an interruption left open, is found. A
+        repeat after an aborted trial counts once its reason is said.
         """
         with self._database.reading() as connection:
             progress = _progress(connection, pseudonym)
-            if not _played_next(connection, pseudonym, progress):
+            if not played_next(connection, pseudonym, progress):
                 return progress
         with self._database.writing() as connection:
             progress = _progress(connection, pseudonym)
-            for entry in _played_next(connection, pseudonym, progress):
+            for entry in played_next(connection, pseudonym, progress):
                 _store(connection, pseudonym, entry.step, entry.outcome, dict(entry.details))
             return _progress(connection, pseudonym)
 
@@ -164,9 +179,12 @@ class StudyProgress:
         """Return the progress as `count_played` would leave it, and store nothing."""
         with self._database.reading() as connection:
             progress = _progress(connection, pseudonym)
-            further = _played_next(connection, pseudonym, progress)
+            further = played_next(connection, pseudonym, progress)
             entries = (*progress.entries, *further)
-            return replace(progress, entries=entries) if further else progress
+            if not further:
+                return progress
+            progress = replace(progress, entries=entries)
+            return replace(progress, unexplained=aborted_before(connection, pseudonym, progress))
 
     def enrolled(self) -> dict[str, int]:
         """Return the place of each enrolled trainee, in the order of places."""
@@ -215,7 +233,11 @@ def _progress(connection: sqlite3.Connection, pseudonym: str) -> Progress:
         for step, outcome, details, utc in rows
     ]
     progress = Progress.of(steps_for(protocol, place), entries, enrolled_utc)
-    return replace(progress, practiced_s=_practiced(connection, pseudonym, progress.next_step))
+    return replace(
+        progress,
+        practiced_s=_practiced(connection, pseudonym, progress.next_step),
+        unexplained=aborted_before(connection, pseudonym, progress),
+    )
 
 
 def _practiced(connection: sqlite3.Connection, pseudonym: str, step: Step | None) -> float:
@@ -228,50 +250,6 @@ def _practiced(connection: sqlite3.Connection, pseudonym: str, step: Step | None
 
 def _is_practice(step: Step) -> bool:
     return step.kind is StepKind.TRIAL_RUN
-
-
-def _played_next(
-    connection: sqlite3.Connection, pseudonym: str, progress: Progress
-) -> list[StepEntry]:
-    """Return the entries of the next steps whose trials were played but not counted yet."""
-    entries = []
-    while (found := _played_for(connection, pseudonym, progress)) is not None:
-        (stored_utc,) = connection.execute(
-            "SELECT stored_utc FROM trials WHERE trial_id = ?", (found,)
-        ).fetchone()
-        entry = StepEntry(progress.next_step.name, DONE, {"trialId": found}, stored_utc)
-        entries.append(entry)
-        progress = replace(progress, entries=(*progress.entries, entry))
-    return entries
-
-
-def _played_for(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -> str | None:
-    """Return the UUID of the trial that the next step asks for; None where none was played."""
-    step, counted = progress.next_step, set(progress.counted_trials)
-    if step is None or step.kind is not StepKind.TRIAL:
-        return None
-    rows = connection.execute(
-        f"SELECT trial_id, mode, task, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})",
-        (pseudonym,),
-    ).fetchall()
-    played = sorted((_moment(started), trial, mode, task) for trial, mode, task, started in rows)
-    after = [moment for moment, trial, _mode, _task in played if trial in counted]
-    after.append(_moment(progress.enrolled_utc))
-    return next(
-        (
-            trial
-            for moment, trial, mode, task in played
-            if (mode, task) == (step.mode, step.task)
-            and trial not in counted
-            and moment >= max(after)
-        ),
-        None,
-    )
-
-
-def _moment(utc: str) -> datetime:
-    """Return the moment that an ISO 8601 text tells; also before Python 3.11, which knows no Z."""
-    return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
 def _protocol(connection: sqlite3.Connection) -> StudyProtocol | None:

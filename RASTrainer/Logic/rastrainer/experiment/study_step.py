@@ -8,7 +8,7 @@ from datetime import datetime
 from typing import Any
 
 from rastrainer.experiment.progress import Progress
-from rastrainer.protocol import ALL_DONE, FREE, StepKind
+from rastrainer.protocol import ALL_DONE, FREE, REPEAT, StepKind
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,8 @@ class StudyStep:
 
     Attributes:
         trainee: Pseudonym.
-        kind: A `StepKind`, `ALL_DONE` after the last step, or `FREE` where no study leads.
+        kind: A `StepKind`, `REPEAT` where an aborted trial waits for a reason, `ALL_DONE` after
+            the last step, or `FREE` where no study leads.
         number: Of the step, from 1; 0 where there is none.
         count: Of all steps; 0 where there are none.
         task: That is played; "" where none is.
@@ -46,7 +47,7 @@ class StudyStep:
             return cls(trainee, ALL_DONE, count, count)
         return cls(
             trainee=trainee,
-            kind=step.kind.value,
+            kind=REPEAT if progress.unexplained else step.kind.value,
             number=len(progress.entries) + 1,
             count=count,
             task=step.task,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials
 
 
 @dataclass(frozen=True)
@@ -14,9 +15,9 @@ class Erasure:
     """What was deleted, and what may be left.
 
     Attributes:
-        trials: How many were deleted from the study.
+        trials: How many finished ones were deleted from the study.
         journals: How many were deleted, of unfinished trials too.
-        missing: UUIDs of the deleted trials whose journals were not there.
+        missing: UUIDs of the deleted trials, aborted ones too, whose journals were not there.
         unreadable: Journals that do not tell whose they are.
     """
 
@@ -55,7 +56,8 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     Raises:
         InputError: there is no such trainee, or a journal cannot be deleted.
     """
-    ids = [trial.record.trial_id for trial in study.history(study.trainee(pseudonym).pseudonym)]
+    kept = (*study.history(study.trainee(pseudonym).pseudonym), *AbortedTrials(study).of(pseudonym))
+    ids = [trial.record.trial_id for trial in kept]
     erased, unreadable = ((), ()) if records is None else erase_journals(records, pseudonym, ids)
     names = [path.name for path in erased]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]

@@ -10,16 +10,17 @@ from typing import Any
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.files import write_text
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials
 from rastrainer.study_values import StoredTrial
 
-FORMAT = "RASTrainer trainee 2"
+FORMAT = "RASTrainer trainee 3"
 
 
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
     """Write everything that a study holds about a trainee as one JSON file.
 
     Returns:
-        The number of trials in it.
+        The number of finished trials in it.
 
     Raises:
         InputError: the study has no such trainee, or the file cannot be written.
@@ -30,6 +31,14 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         "trainee": asdict(trainee),
         "protocol": _protocol_json(StudyProgress(study), pseudonym),
         "trials": [_trial_json(trial) for trial in trials],
+        "aborted_trials": [
+            {
+                "record": stored.record.to_json(),
+                "step": stored.step,
+                "repeat_reason": stored.repeat_reason,
+            }
+            for stored in AbortedTrials(study).of(pseudonym)
+        ],
     }
     write_text(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
     return len(trials)

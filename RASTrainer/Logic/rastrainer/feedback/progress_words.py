@@ -30,7 +30,8 @@ class Standing:
         pass_mark: Score that passes.
         is_best: Whether this trial is the best of them (and not the first).
         passes: Whether this trial reached the pass mark.
-        competence: LC-CUSUM over the trainee's trials of all tasks in this mode.
+        competence: LC-CUSUM over the trainee's trials of all tasks in this mode; an aborted one
+            counts as not passed.
         curve: Of the completion times of this task; None with fewer than five trials.
         sentences: The same in words.
     """
@@ -48,21 +49,21 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> S
     """Return how a trial stands.
 
     Args:
-        past: All scored trials of the trainee but the trial runs, in their order; later ones than
-            this do not count.
+        past: All scored trials of the trainee but the trial runs, and the aborted ones that count
+            as not passed, in their order; later ones than this do not count.
         trial_id: Of one of them.
         pass_mark: Score to reach, such as that of contrasting groups.
 
     Raises:
         InputError: the trial is none of them.
     """
-    ids = [other.trial_id for other in past]
+    ids = ["" if other.is_aborted else other.trial_id for other in past]
     if trial_id not in ids:
         raise InputError("Progress is told of a scored trial of the trainee's own history.")
     until = past[: ids.index(trial_id) + 1]
     trial = until[-1]
     in_mode = [other for other in until if other.mode == trial.mode]
-    same = [other for other in in_mode if other.task == trial.task]
+    same = [other for other in in_mode if other.task == trial.task and not other.is_aborted]
     scores = tuple(other.score for other in same)
     failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
     competence = competence_of(failures)
