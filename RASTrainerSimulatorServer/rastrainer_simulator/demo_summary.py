@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rastrainer.ctps import CTPS_WARNING
+from rastrainer.target_error import INTERVAL_NOTE
 
 
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
@@ -27,6 +28,7 @@ def trial_summary(trial: Mapping[str, Any], title: str) -> str:
             rigid["expected_tre_mm"],
             f"mm, 95 % of errors from {low:.2f} to {high:.2f}",
         ),
+        f"    {INTERVAL_NOTE}",
         _line(f"True TRE, {target}", truth["true_tre_mm"], f"mm, {where} that interval"),
         *_scores(trial["score"], trial["ctps"]),
         "  Residual of each fiducial, rigid (mm)",

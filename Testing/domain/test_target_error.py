@@ -57,15 +57,15 @@ def test_rigid_expectation_is_fitzpatricks_equation_46():
     registration = noisy(fixed)
     targets = np.random.default_rng(3).normal(size=(20, 3)) * 100 + fixed.mean(axis=0)
     expected = [eq_46(fixed, target, isotropic_error(registration).fle_mm) for target in targets]
-    np.testing.assert_allclose(expected_tre(registration, targets), expected, rtol=1e-10)
+    without_offset = expected_tre(registration, targets, common_bias_sd_mm=0.0)
+    np.testing.assert_allclose(without_offset, expected, rtol=1e-10)
 
 
 def test_the_error_is_smallest_at_the_centroid():
     fixed = fiducials(15)
     registration = noisy(fixed)
-    center, away = expected_tre(
-        registration, np.array([[0, 0, 0], [60, 0, 0]]) + fixed.mean(axis=0)
-    )
+    targets = np.array([[0, 0, 0], [60, 0, 0]]) + fixed.mean(axis=0)
+    center, away = expected_tre(registration, targets, common_bias_sd_mm=0.0)
     assert center == pytest.approx(isotropic_error(registration).fle_mm / np.sqrt(15))
     assert away > center
 
@@ -76,7 +76,8 @@ def test_expectation_agrees_with_simulation_off_the_origin_and_tilted(kind):
     target = np.array([70, -50, 40]) + fixed.mean(axis=0)
     fre, tre = simulated(fixed, target, kind, deviation=0.5, trials=4000)
     registration = noisy(fixed, kind)
-    per_fle = expected_tre(registration, target[None])[0] / isotropic_error(registration).fle_mm
+    expected = expected_tre(registration, target[None], common_bias_sd_mm=0.0)[0]
+    per_fle = expected / isotropic_error(registration).fle_mm
     assert np.sqrt(np.mean(tre**2)) == pytest.approx(per_fle * 0.5 * np.sqrt(3), rel=0.03)
     fle = fre * isotropic_error(registration).fle_mm / registration.fre_mm
     assert np.sqrt(np.mean(fle**2)) == pytest.approx(0.5 * np.sqrt(3), rel=0.03)
@@ -98,7 +99,8 @@ def test_the_interval_holds_the_true_error_in_95_of_100_trials(kind, count, offs
     target = np.array(offset) + fixed.mean(axis=0)
     fre, tre = simulated(fixed, target, kind, deviation=0.4, trials=3000)
     registration = noisy(fixed, kind)
-    low, high = np.array(target_error(registration, target).interval_mm) / registration.fre_mm
+    error = target_error(registration, target, common_bias_sd_mm=0.0)
+    low, high = np.array(error.interval_mm) / registration.fre_mm
     inside = (low * fre <= tre) & (tre <= high * fre)
     assert 0.93 <= inside.mean() <= 0.97
     assert 0.01 <= (tre < low * fre).mean() <= 0.04
@@ -172,8 +174,8 @@ def test_touches_on_one_side_of_a_head_are_worth_more_than_an_isotropic_error_sa
         registration = register(fixed + slipping(normals, 0.8, 0.1, rng), fixed)
         true_mm.append(np.linalg.norm(transforms.apply(registration.matrix, target)))
         slips = error_along_surface(registration, normals)
-        known_mm.append(expected_tre(registration, target, slips)[0])
-        ignored_mm.append(expected_tre(registration, target)[0])
+        known_mm.append(expected_tre(registration, target, slips, 0.0)[0])
+        ignored_mm.append(expected_tre(registration, target, common_bias_sd_mm=0.0)[0])
     true, known, ignored = (np.sqrt(np.mean(np.square(v))) for v in (true_mm, known_mm, ignored_mm))
     assert known == pytest.approx(true, rel=0.1)
     assert ignored > 1.3 * true
@@ -203,15 +205,15 @@ def test_the_interval_holds_the_expectation_and_grows_with_confidence():
     assert wide.interval_mm[1] > narrow.interval_mm[1]
 
 
-def test_a_perfect_fit_expects_no_error():
+def test_a_perfect_fit_without_a_common_offset_expects_no_error():
     fixed = fiducials(5)
-    error = target_error(register(fixed, fixed), fixed[0])
+    error = target_error(register(fixed, fixed), fixed[0], common_bias_sd_mm=0.0)
     assert error.expected_mm == pytest.approx(0.0, abs=1e-9)
     assert error.interval_mm == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def test_three_points_say_little():
-    three = target_error(noisy(fiducials(3)), [400, -250, 120])
+    three = target_error(noisy(fiducials(3)), [400, -250, 120], common_bias_sd_mm=0.0)
     assert three.interval_mm[1] / three.expected_mm > 3
 
 

@@ -6,7 +6,15 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from Testing.error_rates import effect_sizes, groups, learning, modes, recovery, throughput
+from Testing.error_rates import (
+    effect_sizes,
+    groups,
+    learning,
+    modes,
+    recovery,
+    target_errors,
+    throughput,
+)
 from Testing.error_rates.measured import Measured, markdown
 from Testing.error_rates.recovery import Recovered
 
@@ -22,6 +30,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], list[Measured] | list[Rec
     "effect sizes": (effect_sizes.HEADER, effect_sizes.coverage),
     "recovery": (recovery.HEADER, recovery.parameters),
     "throughput": (throughput.HEADER, throughput.offsets),
+    "target errors": (target_errors.HEADER, target_errors.intervals),
 }
 
 

@@ -17,11 +17,13 @@ from rastrainer import transforms
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import read_study_protocol
 from rastrainer.journal.journal_reader import read_journal
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.scenario import load_scenario
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.study import Study
+from rastrainer.target_error import INTERVAL_NOTE
 from rastrainer.tasks import LABELS
 from rastrainer.trial_analysis import analyze_trial
 from rastrainer.trial_record import TrialRecord
@@ -282,6 +284,8 @@ def test_fits_residuals_and_the_error_to_expect_are_shown_with_their_units(panel
     assert [row[0] for row in rows] == ["Rigid", "Similarity", "Affine"]
     assert "Expected TRE at the target" in panels.text("treText")
     assert "(mm)" in panels.find("fitsTable").horizontalHeaderItem(1).text()
+    tips = (panels.find("treText").toolTip, panels.find("fitsTable").item(0, 3).toolTip())
+    assert tips == (toolTip(INTERVAL_NOTE),) * 2
     assert len(cells(panels, "residualsTable")) == 15
 
 
@@ -369,6 +373,7 @@ def test_a_plan_says_what_is_missing_until_it_can_be_sent(panels, touched):
     touch(panels, touched)
     panels.wait_until(lambda: "target x" in panels.text("planWorldText"), "the plan is mapped")
     assert "mm (95 %" in panels.text("planTreText")
+    assert panels.find("planTreText").toolTip == toolTip(INTERVAL_NOTE)
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         panels.press("sendPlanButton")
 
@@ -418,6 +423,8 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert panels.find("trialComboBox").currentText.startswith("2: task-1")
     measures = [row[0] for row in cells(panels, "scoreTable")]
     assert measures[0] == "Score"
+    tip = panels.find("scoreTable").item(measures.index("Expected TRE"), 0).toolTip()
+    assert "an offset that all touches share" in tip
     assert "CTPS as published" in [row[0] for row in cells(panels, "ctpsTable")]
     assert "rises with a slower completion" in panels.text("ctpsText")
     groups = {row[2] for row in cells(panels, "standingsTable")}

@@ -54,7 +54,7 @@ def test_touches_are_paired_with_fiducials_by_label(scenario, make_record):
 def test_all_three_kinds_are_fitted_and_the_rigid_one_is_scored(scenario, record):
     analysis = analyze_trial(record, scenario)
     assert set(analysis.fits) == {"rigid", "similarity", "affine"}
-    assert analysis.score.expected_tre_mm == analysis.target_errors["rigid"].expected_mm
+    assert analysis.score.expected_tre_mm == analysis.target_errors["rigid"].independent_mm
     assert 0 < analysis.score.score < 100
 
 

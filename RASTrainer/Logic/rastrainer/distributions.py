@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 
@@ -73,6 +74,81 @@ def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float
         else:
             high = middle
     return scale * (low + high) / 2
+
+
+def widened_quantile(probability: float, weights: np.ndarray, dof: float, added: float) -> float:
+    """Return the quantile of Σ (wₖ·dof/χ² + added) zₖ², zₖ standard normal, all independent.
+
+    It is the squared length of a vector in space of two parts: one whose size was estimated from
+    `dof` residuals, and one of known variance that is the same in all directions. Given χ² and the
+    direction n of z, |z|² is χ² with 3 degrees of freedom; the mean over both is taken by
+    quadrature.
+
+    Args:
+        probability: Between 0 and 1.
+        weights: (3,) float, not below 0.
+        dof: Degrees of freedom of the χ² variable; infinite where the size is known.
+        added: The known variance a coordinate, above 0 where the weights are not.
+    """
+    scales, shares = _inverse_chi_square(dof)
+    squares, areas = _octant()
+    # One row a direction, one column a size.
+    variances = (squares @ np.asarray(weights, dtype=float))[:, None] * scales + added
+    of_nodes = areas[:, None] * shares
+
+    def probability_up_to(value: float) -> float:
+        return float(np.sum(of_nodes * _chi_square_3(value / variances)))
+
+    low, high = 0.0, float(np.sum(weights)) + 3.0 * added
+    while probability_up_to(high) < probability:
+        low, high = high, 4.0 * high
+    while high - low > 1e-7 * high:
+        middle = (low + high) / 2
+        if probability_up_to(middle) < probability:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+def _inverse_chi_square(dof: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return values of dof/χ² and their probabilities, which sum to 1.
+
+    The trapezoidal rule over ln χ² converges exponentially.
+    """
+    if math.isinf(dof):
+        return np.ones(1), np.ones(1)
+    width = math.sqrt(2.0 / dof)
+    y = math.log(dof) + width * np.linspace(-14.0 - 8.0 * width, 8.0, 49)
+    logs = 0.5 * (dof * y - np.exp(y))
+    densities = np.exp(logs - logs.max())
+    kept = densities > 1e-12
+    return dof * np.exp(-y[kept]), densities[kept] / densities[kept].sum()
+
+
+@lru_cache(maxsize=1)
+def _octant(count: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    """Return the squared coordinates of directions in an octant, (m, 3), and their shares of it."""
+    roots, root_weights = np.polynomial.legendre.leggauss(count)
+    height, turn = 0.5 * (roots + 1.0), (np.arange(count) + 0.5) * math.pi / (2 * count)
+    across = 1.0 - height[:, None] ** 2
+    squares = [across * np.cos(turn) ** 2, across * np.sin(turn) ** 2]
+    squares.append(np.broadcast_to(height[:, None] ** 2, squares[0].shape))
+    areas = np.repeat(root_weights / (2 * count), count)
+    return np.stack(squares, axis=-1).reshape(-1, 3), areas
+
+
+@lru_cache(maxsize=1)
+def _chi_square_3_table() -> tuple[np.ndarray, np.ndarray]:
+    """Return roots and the distribution of χ² with 3 degrees of freedom at their squares."""
+    root = np.linspace(0.0, 8.0, 8001)
+    erf = np.array([math.erf(one / math.sqrt(2)) for one in root])
+    return root, erf - math.sqrt(2 / math.pi) * root * np.exp(-(root**2) / 2)
+
+
+def _chi_square_3(values: np.ndarray) -> np.ndarray:
+    """Return the distribution function of χ² with 3 degrees of freedom, to 10⁻⁷."""
+    return np.interp(np.sqrt(values), *_chi_square_3_table())
 
 
 def _ratio_distribution(weights: np.ndarray, dof: float) -> Callable[[float], float]:

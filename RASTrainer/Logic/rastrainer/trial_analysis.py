@@ -104,7 +104,7 @@ def analyze_trial(
         for kind, fit in fits.items()
     }
     reference = (references or {}).get(record.task) or task_reference(record.task)
-    score = score_trial(record.completion_time_s, errors[RIGID].expected_mm, reference)
+    score = score_trial(record.completion_time_s, errors[RIGID].independent_mm, reference)
     return TrialAnalysis(
         record=record,
         target_name=scenario.target_name,

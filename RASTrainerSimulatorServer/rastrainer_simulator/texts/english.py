@@ -188,6 +188,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "result.score": "Score",
         "result.fre": "Registration error (FRE)",
         "result.expected tre": "Expected error at the target (TRE)",
+        "result.interval note": "The expected error counts on touches that err independently, "
+        "without bias and alike. It cannot see an offset that all of them share.",
         "result.true tre": "True error at the target (TRE)",
         "result.ctps": "CTPS",
         "result.of 100": "{score:.0f} / 100",

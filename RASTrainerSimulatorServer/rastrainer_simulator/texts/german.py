@@ -196,6 +196,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "result.score": "Punktzahl",
         "result.fre": "Registrierungsfehler (FRE)",
         "result.expected tre": "Erwarteter Fehler am Ziel (TRE)",
+        "result.interval note": "Der erwartete Fehler setzt voraus, dass die Berührungen "
+        "unabhängig voneinander, ohne systematische Abweichung und gleich stark streuen. Eine "
+        "Verschiebung, die alle gemeinsam haben, sieht er nicht.",
         "result.true tre": "Wahrer Fehler am Ziel (TRE)",
         "result.ctps": "CTPS",
         "result.of 100": "{score:.0f} / 100",

@@ -12,7 +12,7 @@ from rastrainer.localization_error import degrees_of_freedom
 from rastrainer.point_files import read_points
 from rastrainer.point_list import pair
 from rastrainer.registration import KINDS, RIGID, Registration, register
-from rastrainer.target_error import TargetError, target_error
+from rastrainer.target_error import INTERVAL_NOTE, TargetError, target_error
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -74,9 +74,11 @@ def registration_json(registration: Registration, error: TargetError | None) -> 
         else {
             "target_mm": list(error.target_mm),
             "expected_mm": error.expected_mm,
+            "independent_mm": error.independent_mm,
             "interval_mm": list(error.interval_mm),
             "confidence": error.confidence,
             "fle_mm": error.fle_mm,
+            "note": INTERVAL_NOTE,
         },
     }
 
@@ -96,6 +98,7 @@ def registration_text(registration: Registration, error: TargetError | None) -> 
         lines += [
             f"TRE  {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
             f"{error.confidence:.0%} of errors from {low:.3f} to {high:.3f} mm",
+            INTERVAL_NOTE,
         ]
     lines += [FRE_NOTE, "", "Moving to fixed (mm)"]
     lines += ["  ".join(f"{value:12.6f}" for value in row) for row in registration.matrix]

@@ -8,6 +8,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.cancelable_work import CancelableWork
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
@@ -26,6 +27,7 @@ from rastrainer.slicer.plan_points import whyNotRemoved
 from rastrainer.slicer.registration_input import snapshot
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
+from rastrainer.target_error import INTERVAL_NOTE
 
 
 class PlanPanel:
@@ -118,6 +120,7 @@ class PlanPanel:
         self._showPointButtons()
         setText(ui.planWorldText, problem if plan is None else _place(plan))
         setText(ui.planTreText, "–" if plan is None else _expected(plan))
+        ui.planTreText.toolTip = toolTip(INTERVAL_NOTE)
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setUsable(
             ui.sendPlanButton,

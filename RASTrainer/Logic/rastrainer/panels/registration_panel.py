@@ -9,7 +9,7 @@ import qt
 import slicer
 
 from rastrainer.panels.kept_choices import keepChecked, keepChosen
-from rastrainer.panels.plain_text import buttonTitle
+from rastrainer.panels.plain_text import buttonTitle, toolTip
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
@@ -26,6 +26,7 @@ from rastrainer.slicer.session import Session
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
 from rastrainer.slicer.slice_views import jumpTo
 from rastrainer.slicer.translation import _
+from rastrainer.target_error import INTERVAL_NOTE
 
 TITLES = {RIGID: _("Rigid"), SIMILARITY: _("Similarity"), AFFINE: _("Affine")}
 
@@ -103,7 +104,9 @@ class RegistrationPanel:
         ui, comparison = self._ui, self._desk.comparison
         setSentence(ui.registrationText, _told(comparison) if comparison else self._desk.problem)
         setSentence(ui.treText, _treText(comparison) if comparison else "")
-        fillTable(ui.fitsTable, [] if comparison is None else _fitRows(comparison))
+        ui.treText.toolTip = toolTip(INTERVAL_NOTE)
+        fits = [] if comparison is None else _fitRows(comparison)
+        fillTable(ui.fitsTable, fits, [INTERVAL_NOTE] * len(fits))
         shown = self._desk.shown
         fillTable(ui.residualsTable, [] if shown is None else self._residualRows(shown))
         self._showRemedies(() if comparison is None else comparison.remedies)

@@ -177,7 +177,7 @@ class ScorePanel:
         fillTable(
             ui.scoreTable,
             ((row.title, row.text, row.note) for row in scores),
-            [row.note for row in scores],
+            [row.tip for row in scores],
         )
         fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
         setSentence(ui.ctpsText, CTPS_WARNING if ctps else "")

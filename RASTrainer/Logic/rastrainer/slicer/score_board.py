@@ -15,17 +15,22 @@ from rastrainer.slicer.scene import Role
 from rastrainer.slicer.tables import Column, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study import StoredTrial, Study
+from rastrainer.target_error import INTERVAL_NOTE
 from rastrainer.trial_analysis import published_score
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the score: what, how much, in which unit, and what there is to say about it."""
+    """One line of the score: what, how much, in which unit, and what there is to say about it.
+
+    `more` is what there is to say beyond the note, for the tool tip.
+    """
 
     title: str
     value: float | None
     unit: str = ""
     note: str = ""
+    more: str = ""
 
     @property
     def text(self) -> str:
@@ -34,6 +39,11 @@ class Row:
             return "–"
         digits = 0 if self.unit == "" and float(self.value).is_integer() else 2
         return f"{self.value:.{digits}f} {self.unit}".rstrip()
+
+    @property
+    def tip(self) -> str:
+        """The note with what goes beyond it."""
+        return "\n".join(filter(None, (self.note, self.more)))
 
 
 @dataclass(frozen=True)
@@ -83,7 +93,13 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
         fre = _("does not predict TRE")
         rows += [
             Row(_("FRE (RMSE)"), rigid.fre_mm, "mm", fre),
-            Row(_("Expected TRE"), rigid.expected_tre_mm, "mm", _interval(rigid.tre_interval_mm)),
+            Row(
+                _("Expected TRE"),
+                rigid.expected_tre_mm,
+                "mm",
+                _interval(rigid.tre_interval_mm),
+                INTERVAL_NOTE,
+            ),
         ]
     rows.append(Row(_("True TRE"), trial.true_tre_mm, "mm", _("only a simulator can tell it")))
     return rows

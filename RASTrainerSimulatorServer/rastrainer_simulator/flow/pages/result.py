@@ -103,6 +103,7 @@ class ResultPage(FinishedPage):
             (
                 *_sentences(self.session.texts, result, "warnings", 3),
                 *_sentences(self.session.texts, result, "feedback", MOST_SHORT),
+                self.say("result.interval note"),
                 *self._what_comes_next(),
             ),
             (*self._facts_of_result(result), *_facts_of_trial(self.session)),

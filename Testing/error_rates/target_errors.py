@@ -1,0 +1,102 @@
+"""Whether the interval of the expected TRE holds the true one, and what it cannot see."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.number_text import fixed
+from rastrainer.registration import register
+from rastrainer.target_error import COMMON_BIAS_SD_MM, TargetError, target_error
+from Testing.error_rates.measured import Measured, share_of, share_text
+
+HEADER = (
+    "errors of the touches",
+    "interval holds the true TRE",
+    "without the common offset (before)",
+    "true TRE, RMS, mm",
+    "expected TRE, RMS, mm",
+)
+COUNT, RADIUS_MM, FLE_MM = 15, 90.0, 1.0
+Errors = Callable[[np.ndarray, np.random.Generator], np.ndarray]
+"""Of the outward normals (n, 3) at the fiducials: the errors of their touches, (n, 3), mm."""
+
+
+def intervals(sets: int, seed: int = 10) -> list[Measured]:
+    """Return how often the true TRE lies inside, each time on another head and at another target.
+
+    Fiducials lie on one side of a ball, the target within; the localization error is 1 mm.
+    """
+    common = f"independent, alike, and a common offset of SD {COMMON_BIAS_SD_MM:g} mm on each axis"
+    cases: list[tuple[str, Errors, float | None]] = [
+        ("independent, unbiased, alike", _alike, 0.94),
+        ("independent, but three times as large at the third on one side", _unequal, None),
+        (common, _with_common_offset, 0.94),
+        ("as the first, and a common hover of 2 mm above the skin", _hovering, None),
+        ("as the first, and a constant aim bias of 1.5 mm", _aimed_beside, None),
+    ]
+    return [
+        _measured(words, errors, limit, sets, np.random.default_rng([seed, number]))
+        for number, (words, errors, limit) in enumerate(cases)
+    ]
+
+
+def one_side(random: np.random.Generator) -> np.ndarray:
+    """Return unit normals (n, 3) of a ball's surface on one side of it."""
+    normals = random.normal(size=(COUNT, 3)) * 0.45 + [0.0, 1.0, 0.0]
+    return normals / np.linalg.norm(normals, axis=1)[:, None]
+
+
+def localization_errors(normals: np.ndarray) -> np.ndarray:
+    """Return the localization errors of points, a third of them three times as large, (n,) mm."""
+    is_aside = normals[:, 0] > np.quantile(normals[:, 0], 2 / 3)
+    return FLE_MM * np.where(is_aside, 3.0, 1.0)
+
+
+def _measured(
+    words: str, errors: Errors, at_least: float | None, sets: int, random: np.random.Generator
+) -> Measured:
+    inside, before, true, expected = [], [], [], []
+    for _ in range(sets):
+        normals = one_side(random)
+        fiducials, target = RADIUS_MM * normals, random.normal(0, 20, 3)
+        registration = register(fiducials + errors(normals, random), fiducials)
+        there = transforms.apply(registration.matrix, target[None])[0]
+        true.append(float(np.linalg.norm(there - target)))
+        widened = target_error(registration, target)
+        inside.append(_holds(widened, true[-1]))
+        before.append(_holds(target_error(registration, target, common_bias_sd_mm=0.0), true[-1]))
+        expected.append(widened.expected_mm)
+    beside = share_text(share_of(before)), *(fixed(_rms(each), 2) for each in (true, expected))
+    return Measured(words, share_of(inside), sets, at_least=at_least, beside=beside)
+
+
+def _holds(error: TargetError, true_mm: float) -> bool:
+    low, high = error.interval_mm
+    return low <= true_mm <= high
+
+
+def _rms(values: list[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _alike(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return random.normal(0, FLE_MM / np.sqrt(3), normals.shape)
+
+
+def _unequal(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return localization_errors(normals)[:, None] * _alike(normals, random)
+
+
+def _with_common_offset(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return _alike(normals, random) + random.normal(0, COMMON_BIAS_SD_MM, 3)
+
+
+def _hovering(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return _alike(normals, random) + 2.0 * normals
+
+
+def _aimed_beside(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return _alike(normals, random) + np.array([1.5, 0.0, 0.0])
