@@ -28,6 +28,19 @@ def test_raw_tlx_is_the_mean_of_the_six_scales():
     assert NASA_TLX.score([100] * 6)["tlx_raw"] == 100
 
 
+def test_performance_runs_from_perfect_to_failure_so_that_failure_is_workload():
+    """Hart and Staveland 1988: the ends of this scale are good and poor, not low and high."""
+    (item,) = (item for item in NASA_TLX.items if item.anchors)
+    assert (item.name, item.anchors) == ("tlx_performance", ("perfect", "failure"))
+    place = NASA_TLX.items.index(item)
+    perfect, failed = ([50] * place + [end] + [50] * (5 - place) for end in (0, 100))
+    assert NASA_TLX.score(failed)["tlx_performance"] == 100
+    raised = NASA_TLX.score(failed)["tlx_raw"] - NASA_TLX.score(perfect)["tlx_raw"]
+    assert raised == pytest.approx(100 / 6)
+    (scale,) = (scale for scale in NASA_TLX.scales if scale.name == "tlx_performance")
+    assert (scale.better, scale.title) == (-1, "Performance (0 is perfect, 100 is failure)")
+
+
 def test_raw_tlx_is_scored_as_by_another_program():
     """Tests of colleyRstats (CRAN): marks 1, 11 and 21 of the sheet are 0, 50 and 100."""
 

@@ -75,6 +75,19 @@ def test_a_questionnaire_is_a_form_that_keeps_no_half_answers(begun):
     assert outcomes(begun)[:3] == ["done", "next", ""]
 
 
+def test_the_form_says_at_its_line_that_performance_runs_from_perfect_to_failure(panel, tmp_path):
+    protocol = json.loads(SHIPPED.read_text())
+    protocol["questionnaires"] = [{"name": "nasa-tlx", "when": "before-all", "modes": []}]
+    path = tmp_path / "protocol.json"
+    path.write_text(json.dumps(protocol))
+    panel.type("protocolPathLineEdit", str(path))
+    panel.answer("Begin the study", "Yes")
+    panel.press("beginStudyButton")
+    panel.press("enrollButton")
+    assert panel.text("tlx_performanceLabel") == "4. Performance: 0 is perfect, 100 is failure"
+    assert panel.text("tlx_effortLabel") == "5. Effort"
+
+
 def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun):
     begun.answer("Why is it left out?", "no sheets")
     begun.answer("only with a reason", "the sheets were missing")

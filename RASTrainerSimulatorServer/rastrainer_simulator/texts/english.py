@@ -130,7 +130,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "study.hmd": "with the headset",
         "experiment.answer": "Answer the questionnaire",
         "questionnaire.text": "{trainee}, answer every line: {lowest} is {low}, {highest} is "
-        "{high}. Your instructor has the form with the full wording.",
+        "{high}, unless the line says otherwise. Your instructor has the form with the full "
+        "wording.",
+        "questionnaire.ends": "{topic}: {lowest} is {low}, {highest} is {high}",
         "questionnaire.open": "Some lines are not answered yet.",
         "questionnaire.keep": "Done",
         "questionnaire.back": "Back, without answers",

@@ -136,8 +136,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "study.hmd": "mit dem Headset",
         "experiment.scenario": "Kopf",
         "experiment.answer": "Den Fragebogen beantworten",
-        "questionnaire.text": "{trainee}, beantworte jede Zeile: {lowest} ist {low}, {highest} ist "
-        "{high}. Deine Kursleitung hat den Bogen mit dem vollen Wortlaut.",
+        "questionnaire.text": "{trainee}, beantworte jede Zeile: {lowest} bedeutet {low}, "
+        "{highest} bedeutet {high}, wenn in der Zeile nichts anderes steht. Deine Kursleitung hat "
+        "den Bogen mit dem vollen Wortlaut.",
+        "questionnaire.ends": "{topic}: {lowest} bedeutet {low}, {highest} bedeutet {high}",
         "questionnaire.open": "Einige Zeilen sind noch nicht beantwortet.",
         "questionnaire.keep": "Fertig",
         "questionnaire.back": "Zurück, ohne Antworten",

@@ -8,6 +8,12 @@ from rastrainer.questionnaires.catalog import QUESTIONNAIRES
 
 ENGLISH_ITEMS: Mapping[str, str] = {
     **{item.name: item.topic for asked in QUESTIONNAIRES.values() for item in asked.items},
+    **{
+        f"{item.name}.{end}": word
+        for asked in QUESTIONNAIRES.values()
+        for item in asked.items
+        for end, word in zip(("low", "high"), item.anchors, strict=False)
+    },
     **{f"{asked.name}.low": asked.anchors[0] for asked in QUESTIONNAIRES.values()},
     **{f"{asked.name}.high": asked.anchors[1] for asked in QUESTIONNAIRES.values()},
 }
@@ -28,7 +34,9 @@ GERMAN_ITEMS: Mapping[str, str] = {
     "tlx_mental": "Geistige Anforderung",
     "tlx_physical": "Körperliche Anforderung",
     "tlx_temporal": "Zeitliche Anforderung",
-    "tlx_performance": "Leistung (0 ist vollkommen, 100 ist gescheitert)",
+    "tlx_performance": "Leistung",
+    "tlx_performance.low": "perfekt",
+    "tlx_performance.high": "Misserfolg",
     "tlx_effort": "Anstrengung",
     "tlx_frustration": "Frustration",
     "nasa-tlx.low": "sehr gering",

@@ -158,6 +158,24 @@ def test_a_questionnaire_is_answered_line_by_line_and_handed_over_only_when_all_
     )
 
 
+@pytest.mark.parametrize(
+    ("language", "performance", "effort"),
+    [
+        ("en", "4. Performance: 0 is perfect, 100 is failure", "5. Effort"),
+        ("de", "4. Leistung: 0 bedeutet perfekt, 100 bedeutet Misserfolg", "5. Anstrengung"),
+    ],
+)
+def test_the_line_of_performance_says_that_its_ends_are_its_own(
+    menu, guide, language, performance, effort
+):
+    session = menu.desk._session
+    session.prefer(replace(session.preferences, language=language))
+    tell(menu, guide, replace(SUS, questionnaire="nasa-tlx"))
+    menu.choose("answer")
+    menu.until_menu("questionnaire")
+    assert [item.label for item in menu.menu.items[3:5]] == [performance, effort]
+
+
 def test_answers_wait_until_slicer_goes_on_and_are_forgotten_then(guide):
     guide.take(SUS)
     guide.answer("P07", [3] * 10)

@@ -8,7 +8,7 @@ import qt
 
 from rastrainer.errors import InputError
 from rastrainer.panels.widgets import chosenData, textLabel
-from rastrainer.questionnaires.questionnaire import Questionnaire
+from rastrainer.questionnaires.questionnaire import Item, Questionnaire
 from rastrainer.slicer.translation import _
 
 
@@ -33,7 +33,8 @@ class QuestionnaireForm:
             return
         head = textLabel(
             _(
-                "{title}: {lowest} is {low}, {highest} is {high}. Read the wording from its form."
+                "{title}: {lowest} is {low}, {highest} is {high}, unless a line says otherwise. "
+                "Read the wording from its form."
             ).format(
                 title=questionnaire.title,
                 lowest=questionnaire.lowest,
@@ -46,7 +47,8 @@ class QuestionnaireForm:
         layout.addRow(head)
         self._parts.append(head)
         for number, item in enumerate(questionnaire.items, start=1):
-            label, box = textLabel(f"{number}. {item.topic}"), qt.QComboBox()
+            label, box = textLabel(f"{number}. {_lineOf(item, questionnaire)}"), qt.QComboBox()
+            label.setObjectName(f"{item.name}Label")
             box.setObjectName(f"{item.name}ComboBox")
             box.addItem("–", "")
             for mark in questionnaire.marks:
@@ -77,3 +79,16 @@ class QuestionnaireForm:
             part.setParent(None)
             part.deleteLater()
         self._parts, self._boxes = [], []
+
+
+def _lineOf(item: Item, questionnaire: Questionnaire) -> str:
+    """Return what an item is about, with its ends where they are its own."""
+    if not item.anchors:
+        return item.topic
+    return _("{topic}: {lowest} is {low}, {highest} is {high}").format(
+        topic=item.topic,
+        lowest=questionnaire.lowest,
+        low=item.anchors[0],
+        highest=questionnaire.highest,
+        high=item.anchors[1],
+    )

@@ -14,10 +14,17 @@ class Item:
     """One item: a name for data files, and what it is about.
 
     The published wording is its authors'; a lab shows it from its own licensed or printed form.
+
+    Attributes:
+        name: For data files.
+        topic: What it is about.
+        anchors: What the smallest and the largest answer mean, where that differs from what they
+            mean for the questionnaire's other items; empty otherwise.
     """
 
     name: str
     topic: str
+    anchors: tuple[str, str] | tuple[()] = ()
 
 
 @dataclass(frozen=True)
@@ -41,7 +48,7 @@ class Questionnaire:
         items: In the order in which they are asked.
         lowest: Smallest answer.
         highest: Largest answer.
-        anchors: What the smallest and the largest mean.
+        anchors: What the smallest and the largest mean, but for items with anchors of their own.
         scales: What the answers are scored on.
         source: Who published items and scoring.
         formula: From the checked answers to a score for each scale.

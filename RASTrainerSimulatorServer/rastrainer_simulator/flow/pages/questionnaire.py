@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rastrainer.experiment.study_step import StudyStep
 from rastrainer.questionnaires.catalog import find_questionnaire
+from rastrainer.questionnaires.questionnaire import Item
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.screen import Menu
 from rastrainer_simulator.flow.session import Session
@@ -34,7 +35,7 @@ class QuestionnairePage(Page):
             self.choice(
                 item.name,
                 str(self._answers.get(item.name, UNANSWERED)),
-                label=f"{number}. {self.say(item.name)}",
+                label=f"{number}. {self._line(item)}",
             )
             for number, item in enumerate(asked.items, start=1)
         )
@@ -53,6 +54,20 @@ class QuestionnairePage(Page):
             high=self.say(f"{asked.name}.high"),
         )
         return Menu(self.name, asked.title, (text,), items=(*items, keep, self.button("back")))
+
+    def _line(self, item: Item) -> str:
+        """Return what an item is about, with its ends where they are its own."""
+        topic = self.say(item.name)
+        if not item.anchors:
+            return topic
+        return self.say(
+            "questionnaire.ends",
+            topic=topic,
+            lowest=self._questionnaire.lowest,
+            highest=self._questionnaire.highest,
+            low=self.say(f"{item.name}.low"),
+            high=self.say(f"{item.name}.high"),
+        )
 
     def step(self, item: str, direction: int) -> None:
         """Go to the next or previous mark; the first step goes to the end where it came from."""

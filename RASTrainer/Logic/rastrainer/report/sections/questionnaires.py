@@ -7,6 +7,7 @@ from collections import defaultdict
 import numpy as np
 
 from rastrainer.questionnaires.catalog import QUESTIONNAIRES
+from rastrainer.questionnaires.questionnaire import Scale
 from rastrainer.report.markup import paragraph, section, table
 from rastrainer.report.outcomes import mode_title
 from rastrainer.report.study_data import StudyData
@@ -26,10 +27,10 @@ def questionnaires(data: StudyData) -> str:
         for scale in questionnaire.scales:
             for key, scores in values.items():
                 if key[:2] == (name, scale.name):
-                    rows.append(_row(scale.title, key[2], scores, (scale.lowest, scale.highest)))
+                    rows.append(_row(scale, key[2], scores))
         if any(key[0] == name for key in values):
             sources.append(f"{questionnaire.title}: {questionnaire.source}.")
-    header = [["Scale", "when", "n", "mean ± SD", "median", "range of the scale"]]
+    header = [["Scale", "when", "n", "mean ± SD", "median", "range", "better"]]
     return section("Questionnaires", table(header, rows, "long"), paragraph(" ".join(sources)))
 
 
@@ -40,13 +41,14 @@ def _occasion(step: str, mode: str) -> str:
     return f"{when} {mode_title(mode)}"
 
 
-def _row(title: str, when: str, scores: list[float], ends: tuple[float, float]) -> list[str]:
+def _row(scale: Scale, when: str, scores: list[float]) -> list[str]:
     spread = f" ± {np.std(scores, ddof=1):.1f}" if len(scores) > 1 else ""
     return [
-        title,
+        scale.title,
         when,
         str(len(scores)),
         f"{np.mean(scores):.1f}{spread}",
         f"{np.median(scores):.1f}",
-        f"{ends[0]:g} to {ends[1]:g}",
+        f"{scale.lowest:g} to {scale.highest:g}",
+        "more" if scale.better > 0 else "less",
     ]
