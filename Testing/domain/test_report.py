@@ -152,8 +152,12 @@ def test_the_page_needs_no_other_file_and_runs_nothing(page):
 
 def test_every_head_of_a_table_says_what_it_heads(page):
     heads = re.findall(r"<th[ >][^>]*>?", page)
-    assert len(heads) > 40
-    assert all('scope="col' in head for head in heads)
+    assert len(heads) > 70
+    assert all(re.search(' scope="(col|colgroup|row)"', head) for head in heads)
+    for body in re.findall("<tbody>(.*?)</tbody>", page, re.DOTALL):
+        for row in re.findall("<tr>(.*?)</tr>", body, re.DOTALL):
+            assert row.startswith("<th")
+            assert row.count('scope="row"') == row.count("<th") == 1
     assert "<th></th>" not in page
     assert 'colspan="2" class="group" scope="colgroup"' in page
 

@@ -16,8 +16,8 @@ class Cell:
     color: str = ""
     kind: str = ""
 
-    def html(self, tag: str) -> str:
-        """Return the cell."""
+    def html(self, tag: str, scope: str = "col") -> str:
+        """Return the cell; `scope` is what it heads, where it is a `th`."""
         attributes = f' colspan="{self.span}"' if self.span > 1 else ""
         attributes += f' class="{self.kind}"' if self.kind else ""
         attributes += f' style="background:{self.color}"' if self.color else ""
@@ -26,16 +26,18 @@ class Cell:
                 # A corner heads nothing; a screen reader would name it.
                 tag = "td"
             else:
-                attributes += f' scope="{"colgroup" if self.span > 1 else "col"}"'
+                attributes += f' scope="{scope}{"group" if self.span > 1 else ""}"'
         return f"<{tag}{attributes}>{html.escape(self.text)}</{tag}>"
 
 
 def table(
     headers: Sequence[Sequence[Cell | str]], rows: Sequence[Sequence[Cell | str]], kind: str = ""
 ) -> str:
-    """Return a table of header lines and rows."""
-    head = "".join(f"<tr>{_cells(line, 'th')}</tr>" for line in headers)
-    body = "".join(f"<tr>{_cells(line, 'td')}</tr>" for line in rows)
+    """Return a table of header lines and rows; the first cell of each row heads it."""
+    head = "".join(
+        f"<tr>{''.join(_cell(cell).html('th') for cell in line)}</tr>" for line in headers
+    )
+    body = "".join(f"<tr>{_row(line)}</tr>" for line in rows)
     return f'<table class="{kind}"><thead>{head}</thead><tbody>{body}</tbody></table>'
 
 
@@ -70,5 +72,10 @@ def figure(charts: Sequence[str], caption: str) -> str:
     )
 
 
-def _cells(line: Sequence[Cell | str], tag: str) -> str:
-    return "".join((cell if isinstance(cell, Cell) else Cell(cell)).html(tag) for cell in line)
+def _row(line: Sequence[Cell | str]) -> str:
+    first, *others = map(_cell, line)
+    return first.html("th", "row") + "".join(cell.html("td") for cell in others)
+
+
+def _cell(content: Cell | str) -> Cell:
+    return content if isinstance(content, Cell) else Cell(content)

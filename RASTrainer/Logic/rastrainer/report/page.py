@@ -32,15 +32,15 @@ table { border-collapse: collapse; font-size: 9pt; margin: 1mm 0 4mm; width: 100
 table.long { break-inside: auto; } tr { break-inside: avoid; }
 th, td { white-space: nowrap; padding: 1.1mm 1.8mm; border-bottom: 1px solid #e3e7ec;
   text-align: right; }
-th, thead td { border-bottom: 1.5px solid #1f2933; font-weight: 600; vertical-align: bottom; }
+thead th, thead td { border-bottom: 1.5px solid #1f2933; font-weight: 600; vertical-align: bottom; }
+tbody th { font-weight: inherit; }
 th:first-child, td:first-child, td.text, th.text { text-align: left; white-space: normal; }
 table.wide { font-size: 8pt; } .wide th, .wide td { padding: 1.1mm 0.9mm; }
-.wide th { white-space: normal; }
+.wide thead th { white-space: normal; }
 .tasks th:first-child, .tasks td:first-child { white-space: nowrap; }
-th.group, thead td.group { text-align: center; border-bottom: 1px solid #9aa5b1; }
+thead th.group, thead td.group { text-align: center; border-bottom: 1px solid #9aa5b1; }
 td.marginal { font-weight: 600; }
-td.total { text-align: center; font-weight: 700; border-top: 1.5px solid #1f2933; }
-td.total:first-child { text-align: left; }
+.total { text-align: center; font-weight: 700; border-top: 1.5px solid #1f2933; }
 caption { text-align: left; font-weight: 600; padding-bottom: 1mm; }
 footer { margin-top: 10mm; padding-top: 2mm; border-top: 1px solid #cbd2d9; color: #6b7785;
   font-size: 8.5pt; }
