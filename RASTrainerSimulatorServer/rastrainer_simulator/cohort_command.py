@@ -31,7 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Add the subcommand to the parser of `rastrainer`."""
     parser = subparsers.add_parser(
         "simulate-cohort",
-        help="simulate a study of virtual trainees with known skills",
+        help="simulate a study of virtual trainees whose parameters you set",
         description=(
             "Play a study's trials with seeded virtual trainees, faster than real time, on all "
             "cores, and store them like a real study (study.db, for rastrainer report). What was "

@@ -26,7 +26,7 @@ def trial_summary(trial: Mapping[str, Any], title: str) -> str:
         _line(
             f"Expected TRE, {target}",
             rigid["expected_tre_mm"],
-            f"mm, 95 % of errors from {low:.2f} to {high:.2f}",
+            f"mm, 95 % interval from {low:.2f} to {high:.2f}",
         ),
         f"    {INTERVAL_NOTE}",
         _line(f"True TRE, {target}", truth["true_tre_mm"], f"mm, {where} that interval"),

@@ -170,7 +170,9 @@ def test_the_words_about_few_subjects_tell_the_limits():
     assert "1.9 times" in words or "2.0 times" in words or "2.1 times" in words
     thirty = compare_paired(np.zeros(25), SAMPLES[5])
     assert "Wilcoxon" not in " ".join(what_cannot_be_concluded(25, thirty))
-    assert "orders of the conditions do not allow" in " ".join(what_cannot_be_concluded(25, thirty))
+    assert "orders of the conditions do not allow the effect of the period" in " ".join(
+        what_cannot_be_concluded(25, thirty)
+    )
     assert "no comparison" in what_cannot_be_concluded(1)[0]
 
 

@@ -127,7 +127,7 @@ def test_the_report_says_what_four_subjects_cannot_show(page):
     assert "0.147 mm higher with the headset than with the desktop screen" in words
     assert "its smallest possible p is .125" in words
     assert "not evidence that there is none" in words
-    assert "None are told. Groups of trainees are not told for fewer than 12" in words
+    assert "None are reported. Groups of trainees are not reported for fewer than 12" in words
 
 
 def test_the_papers_inconsistencies_stand_beside_its_numbers(page):
@@ -138,8 +138,9 @@ def test_the_papers_inconsistencies_stand_beside_its_numbers(page):
         "speaks of five participants",
     ):
         assert sentence in words
-    assert "Overall CTPS, HMD 20 64.81 64.818" in words
-    assert "± of the overall CTPS, desktop 20 25.96 25.963" in words
+    assert '"R²" of task number and completion time, HMD 5 task means 0.96 0.9633' in words
+    assert "Overall CTPS, HMD 20 trials 64.81 64.818" in words
+    assert "± of the overall CTPS, desktop 20 trials 25.96 25.963" in words
 
 
 def test_the_page_needs_no_other_file_and_runs_nothing(page):
@@ -189,7 +190,10 @@ def test_the_claim_that_ctps_falls_with_complexity_is_examined_as_the_others(pub
 def test_the_published_order_of_modes_is_unknown_and_said_to_be_so(published, page):
     words = words_of(page)
     assert "Which mode came first is not in the data" in words.split("Performance as")[0]
-    assert "the signed-rank test gives p = .125, the smallest that four subjects allow" in words
+    assert (
+        "the signed-rank test gives p = .125, the smallest two-sided p that four subjects allow"
+        in words
+    )
     (rmse,) = (
         c
         for c in compare_modes(published, MAIN_OUTCOMES, "desktop", "hmd")
@@ -214,7 +218,7 @@ def test_a_balanced_order_of_modes_separates_the_period_and_is_tabulated():
     fixed_order = draw_study(model, 14, modes, np.random.default_rng(1))
     words = words_of(report_html(fixed_order, "today"))
     assert "What the order of the modes did" not in words
-    assert "does not allow to separate the effect of the period" in words.split("Performance")[0]
+    assert "does not allow the effect of the period" in words.split("Performance")[0]
 
 
 def test_modes_that_take_turns_are_counted_by_their_runs():
@@ -318,7 +322,9 @@ def test_trainees_count_with_the_tasks_they_did_in_both_modes():
     rows = [row("desktop", "1", 10.0), row("desktop", "2", 90.0), row("hmd", "1", 12.0)]
     data = StudyData("x", tuple(rows))
     assert paired_means(data, "completion_time_s", "desktop", "hmd") == {"a": (10.0, 12.0)}
-    assert "1 of 1 lack Task 2 (hmd)" in words_of(report_html(data))
+    assert "Trials are missing: Task 2, Headset (HMD), of 1 of 1 trainee." in words_of(
+        report_html(data)
+    )
 
 
 def test_trials_with_long_pauses_are_counted_among_the_limits():
@@ -385,7 +391,7 @@ def test_a_study_database_gives_scores_motion_questionnaires_and_what_was_skippe
         ("A", "desktop"),
         ("B", "desktop"),
     ]
-    assert "1 trials were played that the protocol had not asked for" in words
+    assert "Left out: 1 trial that the protocol had not asked for." in words
 
 
 def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
@@ -393,7 +399,7 @@ def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
     data = read_study_data(tmp_path / "study.db")
     assert data.trainees == ("B",)
     assert data.answers == ()
-    assert "1 trainees did not agree" in words_of(report_html(data))
+    assert "Left out: 1 trainee who did not agree" in words_of(report_html(data))
 
 
 def test_a_study_of_nobody_who_consents_is_refused(tmp_path):

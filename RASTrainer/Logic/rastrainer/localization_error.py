@@ -1,8 +1,9 @@
 """The fiducial localization error (FLE) that explains the residuals of a registration.
 
-Without further knowledge it is taken as isotropic. A tool that the skin stops errs along the skin
-and hardly across it; where the surface's normals are known, both parts are told apart. That
-matters: fiducials on one side of a head fix its tilt by what they are worth across the skin.
+Without further knowledge it is taken as isotropic. Where the tip is stopped by the skin, the error
+across the skin may differ from the error along it; where the surface's normals are known, the sizes
+of both parts are estimated from the residuals, and neither is assumed to be the smaller one. That
+matters: fiducials on one side of a head fix its tilt by their errors across the skin.
 """
 
 from __future__ import annotations

@@ -34,6 +34,11 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %"
 
 
+def counted(count: int, what: str) -> str:
+    """Return how many there are: `1 trial`, `2 trials`."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
 def _past_half(value: float) -> float:
     """Return the number a trifle farther from 0: 0.1465, stored as 0.14649…, becomes 0.147."""
     return value * (1 + 1e-12)

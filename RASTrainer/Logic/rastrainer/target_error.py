@@ -96,7 +96,7 @@ def target_error(
     confidence: float = CONFIDENCE,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> TargetError:
-    """Return the error to expect at a target, with the interval that holds it.
+    """Return the error to expect at a target, with an interval for it.
 
     The interval accounts for the direction dependence of the error and for the uncertainty of the
     estimated FLE; it is wide for few points. TRE grows with the common offset, so its lower end is

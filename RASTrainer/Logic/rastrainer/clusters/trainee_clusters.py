@@ -68,8 +68,8 @@ def cluster_trainees(
     names = sorted(name for name, values in trainees.items() if set(metrics) <= set(values))
     if len(names) < FEWEST_TRAINEES:
         raise NoClustersError(
-            f"Groups of trainees are not told for fewer than {FEWEST_TRAINEES} trainees with all "
-            f"metrics; there are {len(names)}."
+            f"Groups of trainees are not reported for fewer than {FEWEST_TRAINEES} trainees "
+            f"with all metrics; there are {len(names)}."
         )
     values = np.array([[trainees[name][metric] for metric in metrics] for name in names])
     spread = values.std(axis=0, ddof=1)
@@ -80,8 +80,8 @@ def cluster_trainees(
     p = one_peak_p(points)
     if p > ALPHA:
         raise NoClustersError(
-            f"No groups are shown: {len(names)} trainees of one group would often look as parted "
-            f"as these (dip test, {p_phrase(p)}). That is not evidence that there are none."
+            f"No groups are shown: {len(names)} trainees of one group would often look as clearly "
+            f"divided as these (dip test, {p_phrase(p)}). That is not evidence that there are none."
         )
     labels, silhouette = _best(points, random)
     stable = stability(points, labels, random, STABILITY_ROUNDS)

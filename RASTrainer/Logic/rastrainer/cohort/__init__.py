@@ -1,1 +1,1 @@
-"""Cohorts of virtual trainees with known skills, to plan studies and to test every statistic."""
+"""Cohorts of virtual trainees whose parameters are set, to plan studies and test statistics."""

@@ -97,7 +97,7 @@ def registration_text(registration: Registration, error: TargetError | None) -> 
         low, high = error.interval_mm
         lines += [
             f"TRE  {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
-            f"{error.confidence:.0%} of errors from {low:.3f} to {high:.3f} mm",
+            f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm",
             INTERVAL_NOTE,
         ]
     lines += [FRE_NOTE, "", "Moving to fixed (mm)"]

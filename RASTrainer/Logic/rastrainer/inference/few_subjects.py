@@ -63,8 +63,8 @@ def what_cannot_be_concluded(
     sentences = [
         f"With {n} subjects, {test} at the {percent(ALPHA)} level finds a true difference "
         f"in {percent(TARGET_POWER)} of studies only if it is at least {effect:.1f} times the "
-        "standard deviation of the subjects' differences. Smaller ones are mostly missed, and "
-        "those found are mostly exaggerated."
+        "standard deviation of the subjects' differences. Smaller ones are missed more often, "
+        "and where one is found, its size tends to be overestimated."
     ]
     smallest = None
     if comparison is not None and comparison.ranks is not None:
@@ -90,18 +90,18 @@ def what_cannot_be_concluded(
 def _about_order(with_period: bool, order_known: bool) -> str:
     if with_period:
         return (
-            "What one condition leaves behind for the next one (carry-over) cannot be told from "
-            "the conditions' difference where it is not alike both ways. The analysis takes it as "
-            "alike; the difference between the sequences shows only a large one, so that not "
-            "finding any is no proof."
+            "What one condition leaves behind for the next one (carry-over) cannot be separated "
+            "from the difference of the conditions where it is not equal in both directions. The "
+            "analysis assumes that it is equal; the comparison of the sequences would show only a "
+            "large inequality, and finding none proves nothing."
         )
     if not order_known:
         return (
             "Which condition the subjects did first is not in the data: practice and fatigue "
-            "cannot be told from the difference of the conditions, whatever the tests say."
+            "cannot be separated from the difference of the conditions, whatever the tests say."
         )
     return (
-        "The subjects' orders of the conditions do not allow to separate the effect of the period: "
-        "practice and fatigue show together with the difference of the conditions. Only a balanced "
-        "order of at least four subjects tells them apart."
+        "The subjects' orders of the conditions do not allow the effect of the period to be "
+        "separated: practice and fatigue are part of the difference of the conditions. Only "
+        "different orders, of four subjects or more, separate them."
     )

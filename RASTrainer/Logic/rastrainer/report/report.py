@@ -12,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files import write_text
 from rastrainer.inference.few_subjects import FEW
+from rastrainer.number_text import counted
 from rastrainer.report.comparisons import ModeComparison, compare_modes
 from rastrainer.report.markup import bullets, paragraph, section
 from rastrainer.report.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
@@ -86,7 +87,8 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     made = made_utc or datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     modes = ", ".join(mode_title(mode) for mode in data.modes)
     subtitle = (
-        f"{len(data.trainees)} trainees · {len(data.trials)} trials · {len(data.tasks)} tasks · "
+        f"{counted(len(data.trainees), 'trainee')} · {counted(len(data.trials), 'trial')} · "
+        f"{counted(len(data.tasks), 'task')} · "
         f"{modes} · made {made}"
     )
     sections = [
@@ -118,8 +120,8 @@ def _summary(comparisons: list[ModeComparison], gap: str) -> str:
     parts = [bullets(sentences)] if sentences else []
     if 0 < n < FEW:
         few = (
-            f"Only {n} trainees did both modes. What is not shown here may still be there; see "
-            "“What cannot be concluded”."
+            f"Only {counted(n, 'trainee')} did both modes. What is not shown here may still be "
+            "there; see “What cannot be concluded”."
         )
         parts.append(paragraph(few, "warning"))
     if sentences and (caveat := order_caveat(comparisons)):

@@ -27,7 +27,7 @@ def groups(data: StudyData) -> str:
     try:
         found = cluster_trainees(means, metrics)
     except NoClustersError as error:
-        return section("Groups of trainees", paragraph(f"None are told. {error}"))
+        return section("Groups of trainees", paragraph(f"None are reported. {error}"))
     return section("Groups of trainees", _table(found), paragraph(_words(found), "small"))
 
 

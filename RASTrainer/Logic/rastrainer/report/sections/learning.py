@@ -55,7 +55,11 @@ def learning(data: StudyData) -> str:
                 sentences.append(_sentence(outcome, mode, curve))
     return section(
         "Learning curves",
-        figure(charts, "Every trainee; thick: the curve fitted to the means, or the means."),
+        figure(
+            charts,
+            "Thin: each trainee. Thick: the means of all or, where getting better is shown, the "
+            "curve that is fitted to them.",
+        ),
         *([table([HEADER], rows, "wide"), paragraph(_words(), "small")] if rows else []),
         bullets(sentences) if sentences else "",
         paragraph(_limits(data)),
@@ -130,7 +134,8 @@ def _sentence(outcome: Outcome, mode: str, curve: LearningCurve) -> str:
 def _words() -> str:
     return (
         "First and last: means of the trainees at their first trial and at the last that all of "
-        "them did. Change: mean of the lines through ln(trial) of each trainee. Page's test "
+        "them did. Change: between these two by each trainee's regression line over ln(trial), the "
+        "mean of all. Page's test "
         f"(one-sided, {percent(ALPHA)}) asks whether all trainees together get better. Each "
         "trainee alone: better by the permutation test of the slope (one-sided; one in twenty who "
         f"do not learn passes it by chance), steady where a change by {percent(STEADY)} of the "
@@ -149,7 +154,7 @@ def _limits(data: StudyData) -> str:
     is_fixed = data.protocol is None or data.protocol.task_order == "fixed"
     if is_fixed and len(data.tasks) > 1:
         return (
-            "Tasks of different difficulty were done one after the other; curves and tests show "
-            "practice and difficulty together, and harder tasks hide what is learned."
+            "Tasks of different difficulty were done one after the other: curves and tests show "
+            "practice and difficulty together, and harder tasks later on hide what is learned."
         )
     return "Tasks were balanced over the trainees, so that the curve of the means shows practice."

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rastrainer.inference.few_subjects import what_cannot_be_concluded
+from rastrainer.number_text import counted
 from rastrainer.report.comparisons import ModeComparison
 from rastrainer.report.markup import bullets, heading, section
-from rastrainer.report.outcomes import task_title
+from rastrainer.report.outcomes import mode_title, task_title
 from rastrainer.report.study_data import StudyData
 from rastrainer.scoring import LONG_PAUSE_S
 
@@ -23,12 +24,12 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     sentences += _missing(data) + _paused(data)
     if data.without_consent:
         sentences.append(
-            f"{data.without_consent} trainees did not agree to research and are left out."
+            f"Left out: {counted(data.without_consent, 'trainee')} who did not agree to research."
         )
     if data.beside_protocol:
         sentences.append(
-            f"{data.beside_protocol} trials were played that the protocol had not asked for; they "
-            "are left out."
+            f"Left out: {counted(data.beside_protocol, 'trial')} that the protocol had not asked "
+            "for."
         )
     sentences.append(
         "CTPS depends on the cohort and rises with slower completion; differences in CTPS are not "
@@ -49,7 +50,7 @@ def _paused(data: StudyData) -> list[str]:
         return []
     return [
         f"{count} of {len(data.trials)} trials were paused for more than {LONG_PAUSE_S:g} s in "
-        "all, which completion time and score leave out: time to think that others did not have."
+        "all. Completion time and score leave pauses out: time to think that others did not have."
     ]
 
 
@@ -62,7 +63,11 @@ def _missing(data: StudyData) -> list[str]:
         for task in data.tasks:
             missing = len(trainees) - len({t.trainee for t in own if t.task == task})
             if missing:
-                lacking.append(f"{missing} of {len(trainees)} lack {task_title(task)} ({mode})")
+                who = f"{missing} of {counted(len(trainees), 'trainee')}"
+                lacking.append(f"{task_title(task)}, {mode_title(mode)}, of {who}")
     if not lacking:
         return []
-    return [f"Trials are missing: {'; '.join(lacking)}. Their trainees count with other tasks."]
+    return [
+        f"Trials are missing: {'; '.join(lacking)}. These trainees count with the tasks that they "
+        "did in both modes."
+    ]

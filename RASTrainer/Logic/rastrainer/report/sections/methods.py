@@ -9,6 +9,7 @@ import numpy as np
 import rastrainer
 from rastrainer.experiment.study_protocol import BALANCED
 from rastrainer.motion.definitions import FILTER
+from rastrainer.number_text import counted
 from rastrainer.report.markup import bullets, heading, paragraph, section, table
 from rastrainer.report.study_data import StudyData
 from rastrainer.scipy_modules import scipy_module
@@ -66,8 +67,9 @@ def methods(data: StudyData) -> str:
 
 def _design(data: StudyData) -> str:
     words = (
-        f"{len(data.trainees)} trainees did {len(data.trials)} trials of {len(data.tasks)} tasks "
-        f"in {len(data.modes)} mode{'s' if len(data.modes) > 1 else ''}. In each trial, fifteen "
+        f"{counted(len(data.trainees), 'trainee')} did {counted(len(data.trials), 'trial')} of "
+        f"{counted(len(data.tasks), 'task')} in {counted(len(data.modes), 'mode')}. In each trial, "
+        "fifteen "
         "numbered fiducials on a virtual head were touched in order with a teleoperated robot, and "
         "the touched points were registered rigidly to the fiducials in the MRI."
     )
@@ -96,7 +98,7 @@ def _design(data: StudyData) -> str:
 
 def _measures(data: StudyData) -> str:
     words = (
-        "Completion time runs from the start to the last kept touch without pauses. RMSE is the "
+        "Completion time runs from the start to the last kept touch, pauses left out. RMSE is the "
         "fiducial registration error of the rigid fit. CTPS is 100·(CT/mean CT − (RMSE − best "
         "RMSE)/best RMSE) with mean and best over all trials of the mode."
     )
@@ -105,10 +107,13 @@ def _measures(data: StudyData) -> str:
         words += (
             " The RASTrainer score (0 to 100) is the geometric mean of a time and an accuracy "
             "desirability with references fixed in advance for each task and equal in both modes; "
-            "accuracy is the expected target error at the scenario's target (Fitzpatrick 1998)."
+            "accuracy is the expected target error at the scenario's target. The score is "
+            "RASTrainer's own; of others are the formula of the expected target error "
+            "(Fitzpatrick, West and Maurer 1998) and the geometric mean of desirabilities "
+            "(Derringer and Suich 1980)."
         )
     if "sparc" in found:
-        words += f" Trajectories were {FILTER}."
+        words += f" Motion metrics are of filtered trajectories ({FILTER})."
     return words
 
 
@@ -119,15 +124,16 @@ def _analysis() -> str:
         "the period is separated (with two sequences the analysis of a crossover by Hills and "
         "Armitage), and ranks of later minus earlier were compared between the sequences "
         "(Wilcoxon's rank sums, exact; Koch 1972); else the paired t-test and the exact "
-        "signed-rank test were used. Carry-over was taken as alike for both sequences. Mean "
+        "signed-rank test were used. Carry-over was assumed equal in both sequences. Mean "
         "differences have 95 % t intervals; Hedges' g_z is corrected for few subjects, and its "
-        "95 % interval, by the noncentral t distribution, is that of the population's own effect "
+        "95 % interval, by the noncentral t distribution, is one for the population's effect "
         "size. The p-values of the t-tests of completion time, RMSE and score were adjusted by "
         "Holm's method; all else is descriptive. CTPS was not tested: each mode has its own "
         "reference. The margin of equivalence is the least at which two one-sided tests reject at "
-        "5 %. Whether trainees get better was tested one-sided, since practice is known to gain: "
-        "for all together by Page's test, for each alone by all orders (of more than seven trials, "
-        "9999 random ones) of the slope over ln(trial). What trials vary by was told from a "
+        "5 %. Whether trainees get better was tested one-sided, since practice is expected to "
+        "improve: for all together by Page's test, for each alone by a permutation test of the "
+        "slope over ln(trial), over all orders or, of more than seven trials, 9999 random ones. "
+        "What trials vary by was estimated by a "
         "regression of logarithms with a level for each trainee in each mode, and from an analysis "
         "of variance of these levels (Searle, Casella and McCulloch 1992). Groups were looked for "
         "by the dip test on the first principal component of the z-scored trainee means. Outliers "

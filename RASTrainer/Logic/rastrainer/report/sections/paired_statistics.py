@@ -14,17 +14,18 @@ from rastrainer.report.markup import Cell, figure, heading, paragraph, section, 
 from rastrainer.report.outcomes import mode_name, mode_title
 
 SEPARATED = (
-    "Trainees had different orders of the modes, so that the effect of the period (practice, "
-    "fatigue) is separated: difference, t-test and effect size above are free of it (regression of "
-    "the differences on the order; with two sequences the usual analysis of a crossover), and the "
-    "rank test compares later minus earlier between the sequences. “Between sequences” is the mean "
-    "over both modes of those who began with the second one minus that of the others. It differs "
-    "from 0 by chance, or where one mode leaves more behind for the other than the other way "
-    "round; that carry-over would be in the difference of the modes, too."
+    "Trainees did the modes in different orders, so that the effect of the period (practice, "
+    "fatigue) can be separated: difference, t-test and effect size above are free of it (the "
+    "differences are regressed on the order; with two sequences this is the usual analysis of a "
+    "crossover), and the rank test compares the later minus the earlier period between the "
+    "sequences. “Between sequences” is the mean over both modes of those who began with {second}, "
+    "minus that of those who began with {first}. It differs from 0 by chance, or where one mode "
+    "leaves more behind for the other than the other way round; that carry-over would be in the "
+    "difference of the modes, too."
 )
 SAME_ORDER = (
-    "The order of the modes does not allow to separate the effect of the period (practice, "
-    "fatigue): it is part of the differences."
+    "The order of the modes does not allow the effect of the period (practice, fatigue) to be "
+    "separated: it is part of the differences."
 )
 UNKNOWN_ORDER = (
     "Which mode came first is not in the data: the effect of the period (practice, fatigue) is "
@@ -108,7 +109,7 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
     return [
         heading("What the order of the modes did"),
         table([header], rows, "wide"),
-        paragraph(SEPARATED, "small"),
+        paragraph(SEPARATED.format(first=first, second=second), "small"),
     ]
 
 

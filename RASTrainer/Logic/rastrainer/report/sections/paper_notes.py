@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.number_text import fixed, significant
+from rastrainer.number_text import counted, fixed, significant
 from rastrainer.report.markup import Cell, bullets, heading, paragraph, section, table
 from rastrainer.report.published_scores import cohort_scores
 from rastrainer.report.study_data import StudyData
@@ -19,7 +19,7 @@ def paper_notes(data: StudyData) -> str:
     rows = [
         [
             printed.what,
-            str(len(data.ctps_trials(printed.mode))),
+            _count(data, printed),
             printed.printed,
             _ours(data, printed),
         ]
@@ -29,12 +29,20 @@ def paper_notes(data: StudyData) -> str:
     return section(
         "The paper's numbers, checked",
         paragraph(f"Source: {notes.source}."),
-        table([["what", "trials", "printed", "from the trials"]], rows),
+        table([["what", "n", "printed", "from the trials"]], rows),
         heading("What does not fit"),
         bullets(notes.inconsistencies),
         heading("The claims"),
         table([[Cell("The paper says", kind="text"), Cell("The trials say", kind="text")]], claims),
     )
+
+
+def _count(data: StudyData, printed: Printed) -> str:
+    """Return what a number is computed from, and how many there are."""
+    trials = data.ctps_trials(printed.mode)
+    if printed.quantity in ("pearson_r", "r_squared"):
+        return counted(len({trial.task for trial in trials}), "task mean")
+    return counted(len(trials), "trial")
 
 
 def _ours(data: StudyData, printed: Printed) -> str:

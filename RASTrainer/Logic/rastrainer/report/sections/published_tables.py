@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer.ctps import CTPS_WARNING, CohortScores
 from rastrainer.inference.correlation import Correlation
-from rastrainer.number_text import fixed, p_phrase
+from rastrainer.number_text import counted, fixed, p_phrase
 from rastrainer.report.markup import Cell, heading, paragraph, section, table
 from rastrainer.report.outcomes import mode_title, task_title
 from rastrainer.report.published_scores import cohort_scores, complexity_correlation
@@ -26,7 +26,8 @@ def published_tables(data: StudyData) -> str:
         scores = cohort_scores(data, mode)
         if scores is None:
             continue
-        counts = f"{len(scores.subjects)} trainees, {len(scores.trials)} trials"
+        counts = f"{counted(len(scores.subjects), 'trainee')}, "
+        counts += counted(len(scores.trials), "trial")
         parts.append(heading(f"Table {ROMAN[number % 4]}. {mode_title(mode)}: {counts}"))
         few = len(scores.subjects) <= MOST_COLUMNS
         parts.append(_whole(data, mode, scores) if few else _by_task(data, mode, scores))

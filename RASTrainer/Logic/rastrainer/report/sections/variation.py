@@ -13,7 +13,7 @@ from rastrainer.report.study_data import StudyData
 from rastrainer.report.study_variation import StudyVariation, study_variation
 from rastrainer.scipy_modules import scipy_module
 
-HEADER = [Cell("What is told", kind="text"), "completion time", "RMSE"]
+HEADER = [Cell("Source of variation", kind="text"), "completion time", "RMSE"]
 
 
 def variation(data: StudyData) -> str:
@@ -29,9 +29,10 @@ def variation(data: StudyData) -> str:
     ]
     k, error = found.trade_off
     rows = [
-        ["Practice: exponent b of the n-th trial of all, n^−b [95 %]", *exponents],
+        ["Trials, trainees (n)", *[f"{found.trials}, {found.trainees}"] * 2],
+        ["Practice: exponent b, the m-th trial of all in proportion to m^−b [95 %]", *exponents],
         [
-            "Haste: exponent k of a trial’s time in its RMSE, t^−k [95 %]",
+            "Speed and accuracy: exponent k, RMSE in proportion to time^−k [95 %]",
             "–",
             _exponent(k, reaches[1] * error),
         ],
@@ -75,7 +76,8 @@ def _words(found: StudyVariation) -> str:
         f"{found.trials} trials of the {found.trainees} trainees who did every mode; a touch was "
         f"taken back in {percent(found.lapses)} of them. Logarithms, regressed on the trial’s "
         "number over all modes, the task, and one level for each trainee in each mode. SD are of "
-        "logarithms: 10 % is about a tenth of the value. The intervals take all trainees to "
-        "learn alike. That practice in one mode counts in the next is assumed; where all did the "
-        "tasks in the same order, only its curve tells it from difficulty."
+        "logarithms: 10 % is about a tenth of the value. The intervals assume that all trainees "
+        "learn alike, and the exponent that practice in one mode counts in the next; where all did "
+        "the tasks in the same order, practice is told from difficulty only by the shape of its "
+        "curve."
     )
