@@ -12,6 +12,7 @@ from rastrainer.head_mesh import HeadMesh, read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.contact import Contact, Moved
+from rastrainer_simulator.collision.pressing import Pressing
 from rastrainer_simulator.collision.proximity import next_proximity
 from rastrainer_simulator.collision.table_clearance import Surroundings
 from rastrainer_simulator.joint_motion import JointMotion, Joints
@@ -40,7 +41,7 @@ from rastrainer_simulator.training.phase_rules import refusal
 from rastrainer_simulator.training.touch_rule import Moment
 from rastrainer_simulator.training.training import Reply, Training
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, subtract
 
 if TYPE_CHECKING:
     from rastrainer_simulator.record.interrupted_trial import InterruptedTrial
@@ -131,13 +132,14 @@ class Simulation:
                 self._operator = operator_input.operator
         self.state = self._state(before.tick + 1, sim_time, wish.motion)
         if self._proximity is not proximity:
-            events.append(_proximity(proximity, self.state, sim_time))
+            events.append(_proximity(proximity, self.state, self._pressing, sim_time))
         return StepResult(self.state, tuple(events), tuple(answers))
 
     def _carry_out(self, command: Command, sim_time: float) -> Reply:
         if self._training.handles(command.name):
             posture = self._posture
-            now = Moment(sim_time, posture.tip.position, posture.clearance.tip_m)
+            tip_m = posture.clearance.tip_m
+            now = Moment(sim_time, posture.tip.position, tip_m, self._pressing.depth)
             return self._training.handle(command, now)
         sentence = refusal(command, self._training.state, self._texts)
         if sentence is not None:
@@ -197,6 +199,7 @@ class Simulation:
         self._contact.head_has_moved()
         self._posture = self._postures.of(self._contact.at(q or self._start))
         self._proximity = Proximity.FREE
+        self._pressing = Pressing()
         self._is_within_reach = True
         self._obstacle = ""
         self._operator = ""
@@ -206,6 +209,7 @@ class Simulation:
     def _move(self, dt: float, wish: Wish, sim_time: float) -> list[Event]:
         """Follow the wish as far as arm, head and table allow."""
         before = self._is_within_reach, self._obstacle
+        tip = self._posture.tip.position
         moved = self._moved(dt, wish)
         if moved.stopped_by in BEHIND_THE_TOOL and wish.direction is not None:
             # The turn of the tool may be what the arm has no room for: the tip comes first.
@@ -213,11 +217,21 @@ class Simulation:
         self._posture = self._postures.of(moved)
         settings = self.setup.settings.proximity
         self._proximity = next_proximity(self._proximity, moved.clearance, settings)
+        self._press(wish, tip)
         self._obstacle = moved.stopped_by if moved.stopped_by in BEHIND_THE_TOOL else ""
         if before == (self._is_within_reach, self._obstacle):
             return []
         data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
         return [Event(EventKind.REACH, sim_time, data)]
+
+    def _press(self, wish: Wish, before: Vector) -> None:
+        """Measure how far the tool is pressed in after a motion of the tip from `before`."""
+        if self._proximity is not Proximity.CONTACT:
+            self._pressing.end()
+            return
+        tip, clearance = self._posture.tip.position, self._posture.clearance
+        to_goal = None if wish.goal is None else subtract(wish.goal, tip)
+        self._pressing.move(wish.displacement, subtract(tip, before), clearance, to_goal)
 
     def _moved(self, dt: float, wish: Wish) -> Moved:
         q, tip = self._posture.q, self._posture.tip.position
@@ -248,6 +262,7 @@ class Simulation:
             operator=self._operator,
             camera=self._view.camera,
             planned_target=self._view.planned_target,
+            depth=self._pressing.depth,
         )
 
 
@@ -260,10 +275,14 @@ def _ended(outcome: Outcome, sim_time: float) -> Event:
     return Event(EventKind.MOTION, sim_time, {"outcome": outcome.value})
 
 
-def _proximity(before: Proximity, state: SimulationState, sim_time: float) -> Event:
-    data = {
+def _proximity(
+    before: Proximity, state: SimulationState, pressing: Pressing, sim_time: float
+) -> Event:
+    data: dict[str, Any] = {
         "from": before.value,
         "to": state.proximity.value,
         "clearanceMm": MM * state.clearance,
     }
+    if before is Proximity.CONTACT:
+        data["depthMm"] = MM * pressing.deepest
     return Event(EventKind.PROXIMITY, sim_time, data)

@@ -127,8 +127,9 @@ class SimulationState:
     `q` are the seven joint angles; `tool_tip_to_world`, each of `link_to_world` (links 0 to 7),
     `head_to_world` and `stand_to_world` (its origin in the middle of the head's base, upright)
     are (4, 4) float arrays that are never written again. `clearance` is the signed distance of the
-    tool to the head. `elapsed` is the running trial's time, pauses excluded. `operator` is
-    who moved the arm last.
+    tool to the head, `depth` how far the commanded motion has gone into it beyond where the tool
+    could go (`collision.pressing`), 0 without contact. `elapsed` is the running trial's time,
+    pauses excluded. `operator` is who moved the arm last.
     """
 
     tick: int
@@ -146,6 +147,7 @@ class SimulationState:
     operator: str
     camera: str
     planned_target: PlannedTarget | None
+    depth: float = 0.0
 
 
 @dataclass(frozen=True)

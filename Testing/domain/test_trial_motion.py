@@ -133,7 +133,7 @@ def test_a_trial_that_has_just_begun_has_counts_only():
 
 
 def test_every_metric_has_a_definition_and_every_definition_a_metric(trajectory):
-    motion = trial_motion(whole(trajectory))
+    motion = trial_motion(whole(trajectory, depth_mm=np.zeros(len(trajectory.times_s))))
     assert set(motion) == set(DEFINITIONS)
     assert all(np.isfinite(value) for value in motion.values())
 

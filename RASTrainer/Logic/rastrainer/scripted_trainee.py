@@ -193,23 +193,25 @@ class ScriptedTrainee:
                 return self._approach(observation)
             self._acts_from_s = observation.sim_time_s + self._skill.dwell_s
             return None
-        return self._jog(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
+        velocity = self._velocity(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
+        # The hand pushes no more once the skin is felt: it only corrects along it.
+        eases_off = is_aim and observation.is_in_contact
+        return _jog(self._along_skin(velocity) if eases_off else velocity)
 
     def _is_over_aim(self, remaining: np.ndarray) -> bool:
         """Tell whether the tip is less than 0.4 mm beside the aim, however high above it."""
-        along = remaining - self._outward_at_aim * float(remaining @ self._outward_at_aim)
-        return bool(np.linalg.norm(along) < 0.4)
+        return bool(np.linalg.norm(self._along_skin(remaining)) < 0.4)
 
-    def _jog(self, remaining: np.ndarray, fastest_mm_s: float) -> Action:
+    def _along_skin(self, way: np.ndarray) -> np.ndarray:
+        return way - self._outward_at_aim * float(way @ self._outward_at_aim)
+
+    def _velocity(self, remaining: np.ndarray, fastest_mm_s: float) -> np.ndarray:
+        """Return the velocity of the hand, (3,) float, World, mm/s, with its tremor."""
         velocity = self._skill.gain_per_s * remaining
         velocity *= min(1.0, fastest_mm_s / max(float(np.linalg.norm(velocity)), 1e-9))
         noise = self._random.normal(0.0, self._skill.tremor_mm_s, 3)
         self._tremor = 0.6 * self._tremor + 0.8 * noise
-        velocity = np.clip(velocity + self._tremor, -SPEED_LIMIT_MM_S, SPEED_LIMIT_MM_S)
-        return CommandName.JOG, {
-            "velocityMmS": [round(float(component), 3) for component in velocity],
-            "durationS": JOG_DURATION_S,
-        }
+        return velocity + self._tremor
 
     def _touch(self) -> Action:
         self._touched = self._planned_for
@@ -242,6 +244,14 @@ class ScriptedTrainee:
         weights = np.linspace(0.0, 1.0, count + 1)[:, None]
         directions = np.sin((1 - weights) * angle) * first + np.sin(weights * angle) * last
         return list(self._center + radii[:, None] * directions / np.sin(angle))
+
+
+def _jog(velocity: np.ndarray) -> Action:
+    limited = np.clip(velocity, -SPEED_LIMIT_MM_S, SPEED_LIMIT_MM_S)
+    return CommandName.JOG, {
+        "velocityMmS": [round(float(component), 3) for component in limited],
+        "durationS": JOG_DURATION_S,
+    }
 
 
 def seeded_skill(skill: Skill, seed: int) -> Skill:

@@ -27,6 +27,8 @@ TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
 
 MM = 1000.0
+PRESSED_MM = 0.5
+"""How deep the tool may be pressed into the head before it is told how deep."""
 STEP_MM = 5.0
 """The distance to the target is told in such steps: a running figure cannot be read."""
 
@@ -139,8 +141,12 @@ class Working:
         """Return what is wrong with where the arm is."""
         say = self._session.texts.say
         warnings = []
-        if self._session.state.proximity is Proximity.CONTACT:
-            warnings.append(Message(say("warning.contact"), Tone.ERROR))
+        state = self._session.state
+        if state.proximity is Proximity.CONTACT:
+            depth_mm = MM * state.depth
+            is_pressed = depth_mm > PRESSED_MM
+            text = say("warning.pressing", depth=depth_mm) if is_pressed else say("warning.contact")
+            warnings.append(Message(text, Tone.ERROR))
         if self._obstacle:
             warnings.append(Message(say(f"warning.obstacle.{self._obstacle}"), Tone.WARNING))
         elif not self._is_within_reach:

@@ -60,6 +60,7 @@ def what_changes(state: SimulationState) -> dict[str, Any]:
         "instruction": training.instruction,
         "proximity": state.proximity.value,
         "clearanceMm": _rounded(MM_PER_M * state.clearance, 3),
+        "depthMm": _rounded(MM_PER_M * state.depth, 3),
         "q": [_rounded(angle, 6) for angle in state.q],
         "operator": state.operator,
     }

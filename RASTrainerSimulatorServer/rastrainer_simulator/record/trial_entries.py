@@ -249,4 +249,5 @@ def _sample_entry(times: dict[str, Any], state: SimulationState) -> dict[str, An
         "q": state.q,
         "tipMm": [MM * float(value) for value in state.tool_tip_to_world[:3, 3]],
         "clearanceMm": MM * state.clearance,
+        "depthMm": MM * state.depth,
     }

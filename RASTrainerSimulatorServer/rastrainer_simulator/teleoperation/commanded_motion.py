@@ -63,6 +63,7 @@ class Jogging:
 
     motion = Motion.JOG
     direction = None
+    goal = None
 
     def __init__(self, command: JogCommand) -> None:
         self._velocity = command.velocity
@@ -88,14 +89,14 @@ class Moving:
 
     def __init__(self, command: MoveCommand) -> None:
         self.direction = command.direction
-        self._position = command.position
+        self.goal = command.position
         self._speed = command.speed
         self._nearest = math.inf
         self._stalled = 0.0
 
     def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
         """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
-        remaining = subtract(self._position, tip)
+        remaining = subtract(self.goal, tip)
         braking_speed = math.sqrt(2.0 * acceleration * length(remaining))
         wanted = scale(unit(remaining), min(self._speed, braking_speed))
         step = scale(accelerated(velocity, wanted, acceleration * dt), dt)
@@ -103,7 +104,7 @@ class Moving:
 
     def outcome(self, dt: float, tip: Vector, direction: Vector) -> Outcome | None:
         """Return how the move has ended, None while it goes on."""
-        remaining = distance(tip, self._position)
+        remaining = distance(tip, self.goal)
         turn = angle(direction, self.direction) if self.direction else 0.0
         if remaining <= ARRIVED and turn <= ARRIVED:
             return Outcome.REACHED

@@ -67,6 +67,7 @@ class Wish:
         direction: of the tool, unit vector; None where it is free.
         across: the x axis of the tool's tip, unit vector; None where the tool may roll.
         ended: how a commanded motion has just ended, None while none has.
+        goal: where the motion shall end, m, World; None where no place is commanded.
     """
 
     motion: Motion
@@ -74,6 +75,7 @@ class Wish:
     direction: Vector | None = None
     across: Vector | None = None
     ended: Outcome | None = None
+    goal: Vector | None = None
 
 
 class Teleoperation:
@@ -164,7 +166,7 @@ class Teleoperation:
             direction = self._steering.turn_to(tip.direction, running.direction, dt)
         else:
             direction = self._steering.steer(dt, STRAIGHT, False, axes, tip.direction, surface)
-        return self._toward(running.motion, displacement, direction, tip)
+        return self._toward(running.motion, displacement, direction, tip, goal=running.goal)
 
     def _toward(
         self,
@@ -173,7 +175,8 @@ class Teleoperation:
         direction: Vector | None,
         tip: Tip,
         ended: Outcome | None = None,
+        goal: Vector | None = None,
     ) -> Wish:
         steering = self._steering
         across = steering.across(direction, tip.direction, tip.across) if direction else None
-        return Wish(motion, displacement, direction, across, ended)
+        return Wish(motion, displacement, direction, across, ended, goal)

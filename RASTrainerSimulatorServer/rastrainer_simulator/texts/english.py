@@ -363,6 +363,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "them.",
         "work.off the way": "{trainee}, you are off the way to point {point}.",
         "warning.contact": "Contact: the tool is on the head. Do not press.",
+        "warning.pressing": "Pressing {depth:.1f} mm: ease off.",
         "warning.reach": "The arm cannot reach farther this way.",
         "warning.obstacle.links": "The arm is at the head: come from another side.",
         "warning.obstacle.self": "The arm is at itself: go another way.",

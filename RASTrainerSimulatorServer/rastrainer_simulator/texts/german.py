@@ -376,6 +376,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "registrieren.",
         "work.off the way": "{trainee}, du bist abseits des Weges zu Punkt {point}.",
         "warning.contact": "Kontakt: Das Werkzeug ist auf dem Kopf. Nicht drücken.",
+        "warning.pressing": "Du drückst {depth:.1f} mm tief: Lass nach.",
         "warning.reach": "Weiter reicht der Arm in diese Richtung nicht.",
         "warning.obstacle.links": "Der Arm ist am Kopf: Komm von einer anderen Seite.",
         "warning.obstacle.self": "Der Arm ist an sich selbst: Nimm einen anderen Weg.",

@@ -35,11 +35,13 @@ class Moment:
         sim_time: simulated time, s.
         tip: position of the tool's tip, World, m.
         tip_clearance: signed distance of the tip to the skin, m; below 0 within the head.
+        depth: how far the tip is pressed in, m; see `SimulationState.depth`.
     """
 
     sim_time: float
     tip: Vector
     tip_clearance: float
+    depth: float = 0.0
 
 
 def refused_touch(

@@ -148,6 +148,7 @@ class Training:
             "label": label,
             "positionMm": [MM * value for value in now.tip],
             "clearanceMm": MM * now.tip_clearance,
+            "depthMm": MM * now.depth,
         }
         if sentence is not None:
             self.state = replace(state, rejected=state.rejected + 1, instruction=sentence)

@@ -7,6 +7,8 @@ import numpy as np
 from rastrainer_simulator.flow import working
 from rastrainer_simulator.flow.progress import DoneTasks
 from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.texts.german import GERMAN
+from rastrainer_simulator.texts.texts import Texts
 
 
 def test_a_trial_that_slicer_starts_pauses_and_aborts_leads_to_the_same_screens(trainee):
@@ -231,3 +233,24 @@ def test_leaving_the_way_to_the_next_point_is_told_and_keeping_to_it_is_not(pilo
     pilot.steer_to(1.4 * (second - center) + center, 0.02)
     pilot.step(20)
     assert pilot.desk.screen.instruction.text.endswith("Now touch point 3.")
+
+
+def test_a_pressed_tool_is_told_by_its_depth_in_both_languages(pilot):
+    pilot.start("task-1")
+    truth = pilot.loop.truth
+    above = truth.in_world(truth.target) / 1000.0 + (0.0, 0.0, 0.13)
+    pilot.steer_to(above, 0.01)
+    pilot.steer_to(above - (0.0, 0.0, 0.13), 0.0, fine=True, ends_in_contact=True)
+    pilot.hands.push(0.0, 0.0, 0.0, False)
+    pilot.step(20)
+    # What the stick has pressed until it was let go stays.
+    jog = {"velocityMmS": [0, 0, -10], "durationS": 0.3}
+    assert pilot.submit("Jog", **jog).ok
+    pilot.step(60)
+    depth_mm = 1000.0 * pilot.state.depth
+    assert depth_mm > 1.0
+    assert [w.text for w in pilot.desk.screen.warnings] == [
+        f"Pressing {depth_mm:.1f} mm: ease off."
+    ]
+    german = Texts(GERMAN).again(pilot.desk.screen.warnings[0].text)
+    assert german == f"Du drückst {depth_mm:.1f} mm tief: Lass nach.".replace(".", ",", 1)

@@ -162,6 +162,7 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
         training=replace(RUNNING, trainee="Zoë"),
         proximity=Proximity.PROXIMITY,
         clearance=0.0123456,
+        depth=0.0012345,
         operator="gamepad",
     )
     publisher.publish(state)
@@ -181,6 +182,7 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
         "instruction": "Touch 1.",
         "proximity": "proximity",
         "clearanceMm": 12.346,
+        "depthMm": 1.234,
         "q": [0.0] * 7,
         "operator": "gamepad",
     }

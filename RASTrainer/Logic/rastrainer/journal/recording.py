@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 from rastrainer.protocol import Phase, Proximity
 
-_COLUMNS = 5
+_COLUMNS = 6
 
 
 class Recording:
@@ -26,7 +28,8 @@ class Recording:
         self._start_s = self._tick_s = 0.0
         self._paused_s = 0.0
         self._paused_since: float | None = None
-        # A row a sample: time in s, tip and clearance in mm. Half an hour is 4 MB as plain numbers.
+        # A row a sample: time in s, tip, clearance and depth in mm. Half an hour is 4 MB as plain
+        # numbers; depth is not a number where the journal does not tell it.
         self._samples = array("d")
         self._touches: list[Touch] = []
         self._refused: list[Touch] = []
@@ -34,6 +37,7 @@ class Recording:
         self._near: list[Interval] = []
         self._contacts: list[Interval] = []
         self._state, self._near_since, self._contact_since = Proximity.FREE, 0.0, 0.0
+        self._contact_depth = 0.0
         self._fiducials: dict[str, np.ndarray] = {}
         self._shortest_path: float | None = None
 
@@ -66,12 +70,13 @@ class Recording:
         """Return the movement so far; what is still going on ends with the last sample."""
         samples = np.array(self._samples).reshape(-1, _COLUMNS)
         times, tip, clearance = samples[:, 0].copy(), samples[:, 1:4].copy(), samples[:, 4].copy()
+        depth = samples[:, 5].copy()
         end = float(times[-1]) if len(times) else 0.0
         near, contacts = list(self._near), list(self._contacts)
         if self._state is not Proximity.FREE:
             near.append(Interval(self._near_since, max(end, self._near_since)))
         if self._state is Proximity.CONTACT:
-            contacts.append(Interval(self._contact_since, max(end, self._contact_since)))
+            contacts.append(self._contact_until(max(end, self._contact_since)))
         return Trajectory(
             times_s=times,
             tip_mm=tip,
@@ -86,6 +91,7 @@ class Recording:
             paused_s=self._paused_s,
             fiducials_mm=self._fiducials,
             shortest_path_mm=self._shortest_path,
+            depth_mm=None if np.isnan(depth).any() else depth,
         )
 
     def _add_sample(self, entry: Mapping[str, Any]) -> bool:
@@ -94,7 +100,9 @@ class Recording:
         if self._samples and time <= self._samples[-_COLUMNS]:
             return False
         x, y, z = entry["tipMm"]
-        self._samples += array("d", (time, x, y, z, entry["clearanceMm"]))
+        depth = entry.get("depthMm", math.nan)
+        self._samples += array("d", (time, x, y, z, entry["clearanceMm"], depth))
+        self._press(entry)
         return True
 
     def _trial_time(self, sim_time: float) -> float:
@@ -111,6 +119,7 @@ class Recording:
         self._shortest_path = entry.get("shortestPathMm")
 
     def _touch(self, entry: Mapping[str, Any]) -> None:
+        self._press(entry)
         self._touches.append(self._touch_of(entry))
 
     def _rejected(self, entry: Mapping[str, Any]) -> None:
@@ -153,10 +162,19 @@ class Recording:
         if state is Proximity.FREE:
             self._near.append(Interval(self._near_since, now))
         if self._state is Proximity.CONTACT:
-            self._contacts.append(Interval(self._contact_since, now))
+            self._press(entry)
+            self._contacts.append(self._contact_until(now))
         if state is Proximity.CONTACT:
-            self._contact_since = now
+            self._contact_since, self._contact_depth = now, 0.0
         self._state = state
+
+    def _press(self, entry: Mapping[str, Any]) -> None:
+        """Take note of the depth that an entry tells, which older journals do not."""
+        if self._state is Proximity.CONTACT:
+            self._contact_depth = max(self._contact_depth, entry.get("depthMm", 0.0))
+
+    def _contact_until(self, end_s: float) -> Interval:
+        return Interval(self._contact_since, end_s, greatest_depth_mm=self._contact_depth)
 
     def _registered(self, entry: Mapping[str, Any]) -> None:
         truth = entry["truth"]
@@ -171,7 +189,7 @@ def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray
     first = np.searchsorted(times, interval.start_s)
     part = clearance[first : np.searchsorted(times, interval.end_s, side="right")]
     least = float(part.min()) if len(part) else np.inf
-    return Interval(interval.start_s, interval.end_s, least)
+    return replace(interval, least_clearance_mm=least)
 
 
 _HANDLERS = {

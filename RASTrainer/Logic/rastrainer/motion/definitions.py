@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rastrainer.motion.contact_metrics import INTENDED_MM
 from rastrainer.motion.path_metrics import IDLE_DURATION_S, IDLE_SPEED_MM_S
 from rastrainer.motion.signals import CUTOFF_HZ
 from rastrainer.motion.smoothness import SPARC_CUTOFF_HZ, SPARC_PAD_LEVEL, SPARC_THRESHOLD
@@ -186,6 +187,34 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             f"Contacts that began farther than {ACCEPTANCE_MM:g} mm from the place that was "
             "touched next and from the one touched last.",
             OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "unintended_contact_time_s",
+            "Time of contact away from a touch",
+            "s",
+            f"Time in contact with the head while the tip was farther than {INTENDED_MM:g} mm from "
+            "the place that was touched next and from the one touched last (of the kept touches; "
+            "where there are none, all contact).",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "unintended_contact_path_mm",
+            "Path of contact away from a touch",
+            "mm",
+            "Length of the way of the tip during that time (as sampled, not filtered).",
+            OWN,
+            -1,
+        ),
+        MetricDefinition(
+            "pressing_depth_mm",
+            "Pressing depth",
+            "mm",
+            "Square root of the sum over all contacts of the squared greatest depth in it (taken "
+            "once for each kept touch in it, at least once) over the number of fiducials; depth is "
+            "how far the commanded motion went into the head beyond where the tool could go.",
+            "after the god object of Zilles and Salisbury 1995",
             -1,
         ),
         MetricDefinition(

@@ -19,11 +19,19 @@ TOUCHING_MM, RELEASED_MM = 0.05, 0.3
 
 @dataclass(frozen=True)
 class Interval:
-    """From when to when, in s, and the least clearance of tool and head meanwhile, in mm."""
+    """From when to when, in s, and how near to the head the tool was meanwhile, in mm.
+
+    Attributes:
+        start_s: the trial's time.
+        end_s: the trial's time.
+        least_clearance_mm: least signed distance of tool and head.
+        greatest_depth_mm: how far the commanded motion has gone into the head at most.
+    """
 
     start_s: float
     end_s: float
     least_clearance_mm: float = np.inf
+    greatest_depth_mm: float = 0.0
 
     @property
     def duration_s(self) -> float:
@@ -58,6 +66,8 @@ class Trajectory:
         paused_s: how long in all.
         fiducials_mm: label → (3,) position in World; empty as long as that is a secret.
         shortest_path_mm: the shortest free way through the task's fiducials; None where unknown.
+        depth_mm: (n,) float, how far the commanded motion has gone into the head beyond where the
+            tool could go; None where it was not recorded for the whole trial.
     """
 
     times_s: np.ndarray
@@ -73,6 +83,7 @@ class Trajectory:
     paused_s: float = 0.0
     fiducials_mm: Mapping[str, np.ndarray] = field(default_factory=dict)
     shortest_path_mm: float | None = None
+    depth_mm: np.ndarray | None = None
 
     @property
     def touch_times_s(self) -> np.ndarray:

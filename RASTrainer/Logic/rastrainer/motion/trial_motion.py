@@ -13,6 +13,7 @@ import contextlib
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.motion.contact_metrics import pressing_depth, unintended_contact
 from rastrainer.motion.path_metrics import idle_time, path_efficiency, path_length
 from rastrainer.motion.signals import low_pass, resample, speeds
 from rastrainer.motion.smoothness import log_dimensionless_jerk, sparc
@@ -23,8 +24,8 @@ RATE_HZ = 50.0
 """Samples a second after resampling; the journal holds as many."""
 DWELL_RADIUS_MM = 2.0
 ACCEPTANCE_MM = 10.0
-"""A refused touch within this distance of another fiducial was at the wrong one; a contact within
-this distance of a touch belongs to it."""
+"""A refused touch within this distance of another fiducial was at the wrong one; a contact that
+begins within this distance of a touch belongs to it."""
 SHORTEST_MOVEMENT = 10
 """Movements of fewer samples (0.2 s) tell nothing about smoothness."""
 
@@ -58,11 +59,15 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
     contacts = trajectory.contacts
     touch_times = trajectory.touch_times_s
     meant = [_is_meant(contact, trajectory) for contact in contacts]
+    unintended_s, unintended_mm = unintended_contact(trajectory)
+    depth_mm = pressing_depth(trajectory)
     metrics = {
         "proximity_time_s": sum(interval.duration_s for interval in trajectory.near),
         "contact_time_s": sum(contact.duration_s for contact in contacts),
         "contacts": len(contacts),
         "unintended_contacts": meant.count(False),
+        "unintended_contact_time_s": unintended_s,
+        "unintended_contact_path_mm": unintended_mm,
         "deepest_contact_mm": max([0.0, *(-c.least_clearance_mm for c in contacts)]),
         "refused_touches": len(trajectory.refused),
         "undone_touches": trajectory.undone,
@@ -70,6 +75,8 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
         "pauses": trajectory.pauses,
         "pause_time_s": trajectory.paused_s,
     }
+    if depth_mm is not None:
+        metrics["pressing_depth_mm"] = depth_mm
     if len(touch_times):
         metrics["completion_time_s"] = touch_times[-1]
     if trajectory.fiducials_mm:

@@ -1,0 +1,242 @@
+"""Contact that was not meant and pressing: on made-up movements, with numbers by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.contact_metrics import INTENDED_MM, pressing_depth, unintended_contact
+from rastrainer.motion.trajectory import Interval, Touch, Trajectory
+from rastrainer.motion.trial_motion import trial_motion
+
+RATE_HZ = 50.0
+SEEDS = range(20)
+
+
+def straight(touches=(), contacts=(), **more):
+    """Return a way of 100 mm along x in 10 s, at an even speed."""
+    times = np.arange(0.0, 10.0 + 1e-9, 1 / RATE_HZ)
+    tip = np.column_stack([10.0 * times, 0 * times, 0 * times])
+    depth = np.zeros(len(times))
+    clearance = np.full(len(times), 5.0)
+    return Trajectory(
+        times, tip, clearance, tuple(touches), contacts=tuple(contacts), depth_mm=depth, **more
+    )
+
+
+def touch(label, x_mm, time_s):
+    return Touch(label, (x_mm, 0.0, 0.0), time_s)
+
+
+BOTH_ENDS = (touch("1", 0.0, 0.0), touch("2", 100.0, 10.0))
+
+
+def test_dragging_from_touch_to_touch_counts_all_but_five_millimeters_at_either_end():
+    assert INTENDED_MM == 5.0
+    dragged = straight(BOTH_ENDS, [Interval(0.0, 10.0)])
+    time_s, way_mm = unintended_contact(dragged)
+    assert (time_s, way_mm) == (pytest.approx(9.0), pytest.approx(90.0))
+    assert trial_motion(dragged)["unintended_contacts"] == 0.0
+
+
+def test_contact_counts_from_its_begin_to_its_end_between_the_samples_too():
+    time_s, way_mm = unintended_contact(straight(BOTH_ENDS, [Interval(2.003, 9.001)]))
+    assert (time_s, way_mm) == (pytest.approx(6.998), pytest.approx(69.98))
+    time_s, way_mm = unintended_contact(straight(BOTH_ENDS, [Interval(5.001, 5.006)]))
+    assert (time_s, way_mm) == (pytest.approx(0.005), pytest.approx(0.05))
+
+
+def test_contact_near_the_touch_before_and_the_touch_after_is_meant():
+    at_both = [Interval(0.0, 0.45), Interval(9.6, 10.0)]
+    assert unintended_contact(straight(BOTH_ENDS, at_both)) == (0.0, 0.0)
+
+
+def test_the_place_of_a_touch_that_is_neither_next_nor_last_is_no_excuse():
+    later = (*BOTH_ENDS, touch("3", 50.0, 10.5))
+    time_s, _ = unintended_contact(straight(later, [Interval(4.6, 5.4)]))
+    assert time_s == pytest.approx(0.8)
+
+
+def test_without_a_kept_touch_all_contact_is_unintended():
+    contacts = [Interval(0.0, 0.4), Interval(9.8, 10.0)]
+    time_s, way_mm = unintended_contact(straight((), contacts))
+    assert (time_s, way_mm) == (pytest.approx(0.6), pytest.approx(6.0))
+
+
+def test_contact_without_samples_is_unintended_and_has_no_path():
+    empty = Trajectory(
+        np.zeros(0), np.zeros((0, 3)), np.zeros(0), (), contacts=(Interval(0.0, 0.01),)
+    )
+    assert unintended_contact(empty) == (pytest.approx(0.01), 0.0)
+
+
+def test_contact_goes_on_after_the_last_sample_where_the_tip_was_last():
+    time_s, way_mm = unintended_contact(straight(BOTH_ENDS[:1], [Interval(9.0, 10.01)]))
+    assert (time_s, way_mm) == (pytest.approx(1.01), pytest.approx(10.0))
+
+
+def fifteen(depths_mm, further=()):
+    """Return fifteen touches, each in a contact of its own, and further contacts."""
+    touches = [touch(str(i + 1), 5.0 * i, 0.5 * i + 0.1) for i in range(15)]
+    contacts = [
+        Interval(0.5 * i, 0.5 * i + 0.2, greatest_depth_mm=depth)
+        for i, depth in enumerate(depths_mm)
+    ]
+    return straight(touches, [*contacts, *further])
+
+
+@pytest.mark.parametrize(
+    ("depths_mm", "expected_mm"),
+    [
+        pytest.param([2.0] * 15, 2.0, id="every-touch"),
+        pytest.param([3.0] + [0.0] * 14, np.sqrt(9 / 15), id="one-touch"),
+        pytest.param([1.0, 2.0] + [0.0] * 13, np.sqrt(5 / 15), id="two-touches"),
+        pytest.param([0.0] * 15, 0.0, id="gentle"),
+    ],
+)
+def test_pressing_depth_is_the_root_of_the_squares_over_fifteen(depths_mm, expected_mm):
+    assert pressing_depth(fifteen(depths_mm)) == pytest.approx(expected_mm)
+
+
+def test_light_contacts_do_not_dilute_the_pressing_depth():
+    light = [Interval(8.0 + 0.01 * i, 8.005 + 0.01 * i) for i in range(100)]
+    assert pressing_depth(fifteen([2.0] * 15, light)) == pytest.approx(2.0)
+
+
+def test_fiducials_that_are_known_are_what_is_divided_by():
+    known = {str(i + 1): np.zeros(3) for i in range(15)}
+    pressed = straight(BOTH_ENDS, [Interval(0, 1, greatest_depth_mm=2.0)], fiducials_mm=known)
+    assert pressing_depth(pressed) == pytest.approx(np.sqrt(4 / 15))
+    assert pressing_depth(replace(pressed, fiducials_mm={})) == pytest.approx(np.sqrt(4 / 2))
+    assert pressing_depth(replace(pressed, fiducials_mm={}, touches=())) == pytest.approx(2.0)
+
+
+def test_staying_in_contact_from_touch_to_touch_is_not_one_press_instead_of_two():
+    apart = [Interval(i, i + 0.2, greatest_depth_mm=2.0) for i in (0.0, 9.9)]
+    joined = [Interval(0.0, 10.1, greatest_depth_mm=2.0)]
+    assert pressing_depth(straight(BOTH_ENDS, joined)) == pressing_depth(straight(BOTH_ENDS, apart))
+
+
+def test_an_unknown_depth_is_left_out_and_not_taken_for_nothing():
+    unknown = replace(fifteen([0.0] * 15), depth_mm=None)
+    assert pressing_depth(unknown) is None
+    assert "pressing_depth_mm" not in trial_motion(unknown)
+    assert trial_motion(fifteen([0.0] * 15))["pressing_depth_mm"] == 0.0
+
+
+def drawn(seed, has_touches=True):
+    """Return a random movement with touches at random places of it and five contacts."""
+    random = np.random.default_rng(seed)
+    times = np.arange(501) / RATE_HZ
+    tip = np.cumsum(random.normal(0.0, 1.0, (501, 3)), axis=0)
+    rows = np.sort(random.choice(np.arange(10, 490), 15, replace=False)) if has_touches else ()
+    touches = tuple(Touch(str(row), tuple(tip[row]), float(times[row])) for row in rows)
+    contacts = tuple(
+        Interval(
+            2.0 * i + random.uniform(0.0, 0.9),
+            2.0 * i + random.uniform(1.0, 1.9),
+            greatest_depth_mm=float(random.uniform(0.0, 3.0)),
+        )
+        for i in range(5)
+    )
+    zero = np.zeros(501)
+    return Trajectory(times, tip, zero + 1.0, touches, contacts=contacts, depth_mm=zero), random
+
+
+def measures(trajectory):
+    return np.array([*unintended_contact(trajectory), pressing_depth(trajectory)])
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_more_contact_never_lowers_a_measure(seed):
+    trajectory, random = drawn(seed)
+    i = random.integers(5)
+    contacts = list(trajectory.contacts)
+    longer = replace(contacts[i], end_s=2.0 * i + 1.95)
+    brief = Interval(2.0 * i + 1.96, 2.0 * i + 1.99, greatest_depth_mm=random.uniform(0.0, 3.0))
+    before = measures(trajectory)
+    contacts[i] = longer
+    for more in (contacts, [*contacts[: i + 1], brief, *contacts[i + 1 :]]):
+        after = measures(replace(trajectory, contacts=tuple(more)))
+        assert (after >= before - 1e-9).all()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_pressing_deeper_never_lowers_a_measure(seed):
+    trajectory, random = drawn(seed)
+    i = random.integers(5)
+    contacts = list(trajectory.contacts)
+    deeper = contacts[i].greatest_depth_mm + random.uniform(0.1, 3.0)
+    contacts[i] = replace(contacts[i], greatest_depth_mm=deeper)
+    before, after = measures(trajectory), measures(replace(trajectory, contacts=tuple(contacts)))
+    assert (after >= before - 1e-9).all()
+    assert after[2] > before[2]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_more_way_in_contact_never_lowers_a_measure(seed):
+    trajectory, random = drawn(seed, has_touches=False)
+    contact = trajectory.contacts[random.integers(5)]
+    row = int(RATE_HZ * random.uniform(contact.start_s, contact.end_s))
+    tip = trajectory.tip_mm.copy()
+    between = (tip[row - 1] + tip[row + 1]) / 2
+    tip[row] = between + random.uniform(1.1, 3.0) * (tip[row] - between)
+    before, after = measures(trajectory), measures(replace(trajectory, tip_mm=tip))
+    assert (after >= before - 1e-9).all()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_unintended_contact_is_never_longer_than_all_contact(seed):
+    trajectory, _random = drawn(seed)
+    motion = trial_motion(trajectory)
+    assert 0.0 <= motion["unintended_contact_time_s"] <= motion["contact_time_s"] + 1e-9
+
+
+def entry(kind, time, **more):
+    return {"kind": kind, "simTime": time, **more}
+
+
+def recorded(**of_each):
+    """Return the entries of one contact with a touch in it; `of_each` is told by every entry."""
+    return [
+        entry("header", 0.01, tickS=0.01),
+        entry("sample", 0.02, tipMm=[0, 0, 0], clearanceMm=1.0, **of_each),
+        entry("proximity", 0.03, **{"from": "proximity", "to": "contact"}, clearanceMm=0.01),
+        entry("sample", 0.04, tipMm=[0, 0, 0], clearanceMm=0.01, **of_each),
+        entry("touch", 0.06, label="1", positionMm=[0, 0, 0], kept=1, **of_each),
+    ]
+
+
+def test_the_depth_of_a_contact_is_the_greatest_of_samples_touch_and_end():
+    for row, depth in ((3, 1.5), (4, 1.7)):
+        entries = recorded(depthMm=0.1)
+        entries[row]["depthMm"] = depth
+        (contact,) = Recording.of(entries).trajectory().contacts
+        assert contact.greatest_depth_mm == depth
+    end = entry("proximity", 0.08, **{"from": "contact", "to": "free"}, clearanceMm=1, depthMm=2.5)
+    trajectory = Recording.of([*recorded(depthMm=0.1), end]).trajectory()
+    assert trajectory.contacts[0].greatest_depth_mm == 2.5
+    np.testing.assert_array_equal(trajectory.depth_mm, [0.1, 0.1])
+    assert pressing_depth(trajectory) == 2.5
+
+
+def test_a_contact_does_not_inherit_the_depth_of_the_one_before():
+    again = [
+        entry("proximity", 0.08, **{"from": "contact", "to": "free"}, clearanceMm=1, depthMm=2.5),
+        entry("proximity", 0.10, **{"from": "free", "to": "contact"}, clearanceMm=0.0),
+        entry("sample", 0.12, tipMm=[0, 0, 0], clearanceMm=0.01, depthMm=0.2),
+    ]
+    contacts = Recording.of([*recorded(depthMm=0.1), *again]).trajectory().contacts
+    assert [contact.greatest_depth_mm for contact in contacts] == [2.5, 0.2]
+
+
+def test_a_journal_that_tells_no_depth_or_not_everywhere_has_no_pressing_depth():
+    partly = recorded(depthMm=0.1)
+    del partly[1]["depthMm"]
+    for entries in (recorded(), partly):
+        trajectory = Recording.of(entries).trajectory()
+        assert trajectory.depth_mm is None
+        assert "pressing_depth_mm" not in trial_motion(trajectory)
