@@ -58,6 +58,11 @@ def test_feedback_of_slicers_is_said_with_the_languages_words_and_decimal_sign()
     assert german.say("feedback.passed", mark=70.0) == "Bestanden: die Marke ist 70."
 
 
+def test_a_negative_number_has_a_true_minus_sign_and_a_text_keeps_its_hyphens():
+    assert Texts(LANGUAGES["de"]).say("result.points", points=-3.25) == "−3,2"
+    assert Texts().say("start", trainee="P-01", point="1") == "P-01, touch point 1."
+
+
 def test_a_value_with_braces_is_filled_in_as_it_is():
     assert Texts().say("start", trainee="{point} {0}", point="1") == "{point} {0}, touch point 1."
 

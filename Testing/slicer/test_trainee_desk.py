@@ -12,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.history_nodes import showHistory, showLearningCurve
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.score_board import (
+    Row,
     ctpsRows,
     motionRows,
     scoreRows,
@@ -53,6 +54,13 @@ def add_trial(desk, make_record, scenario):
         return desk.study.trial(record["trialId"])
 
     return add
+
+
+def test_negative_results_are_shown_with_a_true_minus_sign():
+    assert [Row("SPARC", value, unit).text for value, unit in ((-2.456, ""), (-0.001, "mm"))] == [
+        "−2.46",
+        "0.00 mm",
+    ]
 
 
 def test_a_new_trainee_is_chosen_and_everyone_is_told(desk):

@@ -40,7 +40,7 @@ class Said(str):
 
 
 class _Formatter(Formatter):
-    """Fills in values; the fractions of numbers follow the language's decimal sign."""
+    """Fills in values; numbers get the language's decimal sign and a true minus sign."""
 
     def __init__(self, decimal_sign: str) -> None:
         self._decimal_sign = decimal_sign
@@ -48,6 +48,8 @@ class _Formatter(Formatter):
     def format_field(self, value: object, format_spec: str) -> str:
         """Return one value as text."""
         text = format(value, format_spec)
+        if isinstance(value, (int, float)):
+            text = text.replace("-", "−")
         return text.replace(".", self._decimal_sign) if isinstance(value, float) else text
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.number_text import fixed
 from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
@@ -196,11 +197,11 @@ class PlanPanel:
 
 
 def _place(plan: Plan) -> str:
-    x, y, z = plan.targetWorld
-    words = _("target x {x:.1f}, y {y:.1f}, z {z:.1f} mm").format(x=x, y=y, z=z)
+    x, y, z = (fixed(value, 1) for value in plan.targetWorld)
+    words = _("target x {x}, y {y}, z {z} mm").format(x=x, y=y, z=z)
     if plan.entryWorld is not None:
-        x, y, z = plan.entryWorld
-        words += _("; entry x {x:.1f}, y {y:.1f}, z {z:.1f} mm").format(x=x, y=y, z=z)
+        x, y, z = (fixed(value, 1) for value in plan.entryWorld)
+        words += _("; entry x {x}, y {y}, z {z} mm").format(x=x, y=y, z=z)
     return words
 
 

@@ -10,6 +10,7 @@ import slicer
 
 from rastrainer.ctps import CTPS_WARNING
 from rastrainer.errors import InputError
+from rastrainer.number_text import fixed
 from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.fitted_views import fitThreeDViews
 from rastrainer.panels.save_dialog import askWhereToSave
@@ -273,9 +274,9 @@ def _entry(number: int, trial: StoredTrial) -> str:
 def _standingRow(standing: Standing) -> tuple[str, ...]:
     return (
         f"{standing.title} ({standing.unit})" if standing.unit else standing.title,
-        f"{standing.value:.2f}",
+        fixed(standing.value, 2),
         standing.group,
         str(standing.count),
-        f"{standing.median:.2f}",
+        fixed(standing.median, 2),
         f"{100 * standing.betterThan:.0f} %",
     )

@@ -6,6 +6,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.number_text import fixed
 from rastrainer.panels.kept_choices import keepChecked, keepChosen
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
 from rastrainer.panels.widgets import (
@@ -169,7 +170,7 @@ class TrainingPanel:
         color, words = NEARNESS.get(progress.proximity, (GRAY, progress.proximity))
         isKnown = progress.clearanceMm is not None
         setLight(self._ui.clearanceLight, color if isKnown else GRAY)
-        told = f"{progress.clearanceMm:.1f} mm, {words}" if isKnown else "–"
+        told = f"{fixed(progress.clearanceMm, 1)} mm, {words}" if isKnown else "–"
         setText(self._ui.clearanceText, told)
 
     def _tell(self, sentence: str) -> None:

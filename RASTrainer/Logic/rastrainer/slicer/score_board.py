@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer.ctps import CTPS_WARNING, Trial
 from rastrainer.motion.definitions import DEFINITIONS
+from rastrainer.number_text import fixed
 from rastrainer.registration import RIGID
 from rastrainer.slicer.scene import Role
 from rastrainer.slicer.tables import Column, showTable
@@ -38,7 +39,7 @@ class Row:
         if self.value is None:
             return "–"
         digits = 0 if self.unit == "" and float(self.value).is_integer() else 2
-        return f"{self.value:.{digits}f} {self.unit}".rstrip()
+        return f"{fixed(self.value, digits)} {self.unit}".rstrip()
 
     @property
     def tip(self) -> str:

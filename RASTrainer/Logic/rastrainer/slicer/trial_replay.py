@@ -13,6 +13,7 @@ from rastrainer.arm_chain import ArmChain
 from rastrainer.errors import InputError
 from rastrainer.journal.replay_track import ReplayTrack
 from rastrainer.motion.trajectory import Trajectory
+from rastrainer.number_text import fixed
 from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
 
 SAMPLE_HZ = 10.0
@@ -233,7 +234,7 @@ def _touchStates(touches: Any, trajectory: Trajectory) -> Any:
 def _clearanceStates(clearance: np.ndarray) -> Any:
     for value in clearance:
         state = slicer.vtkMRMLTextNode()
-        state.SetText(f"{value:.1f} mm")
+        state.SetText(f"{fixed(value, 1)} mm")
         yield state
 
 
