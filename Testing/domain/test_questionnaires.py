@@ -38,7 +38,7 @@ def test_performance_runs_from_perfect_to_failure_so_that_failure_is_workload():
     raised = NASA_TLX.score(failed)["tlx_raw"] - NASA_TLX.score(perfect)["tlx_raw"]
     assert raised == pytest.approx(100 / 6)
     (scale,) = (scale for scale in NASA_TLX.scales if scale.name == "tlx_performance")
-    assert (scale.better, scale.title) == (-1, "Performance (0 is perfect, 100 is failure)")
+    assert (scale.better, scale.title) == (-1, "TLX performance (0 is perfect, 100 is failure)")
 
 
 def test_raw_tlx_is_scored_as_by_another_program():

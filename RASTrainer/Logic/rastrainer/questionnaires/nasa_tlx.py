@@ -28,7 +28,8 @@ def _score(answers: Sequence[int]) -> tuple[float, ...]:
 
 
 def _titled(name: str, title: str) -> str:
-    """Return the title of a scale, with its ends where they are its own."""
+    """Return the title of a scale beside those of others, with its ends where they are its own."""
+    title = f"TLX {title.lower()}"
     if name not in _ANCHORS:
         return title
     low, high = _ANCHORS[name]

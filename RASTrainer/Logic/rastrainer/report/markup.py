@@ -6,6 +6,9 @@ import html
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+MOST_KEPT_TOGETHER = 10
+"""Rows of a table; longer ones on one page would leave half of the page before empty."""
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -33,7 +36,12 @@ class Cell:
 def table(
     headers: Sequence[Sequence[Cell | str]], rows: Sequence[Sequence[Cell | str]], kind: str = ""
 ) -> str:
-    """Return a table of header lines and rows; the first cell of each row heads it."""
+    """Return a table of header lines and rows; the first cell of each row heads it.
+
+    A table of more rows than `MOST_KEPT_TOGETHER` may go on on the next page when it is printed.
+    """
+    if len(rows) > MOST_KEPT_TOGETHER:
+        kind = " ".join(filter(None, (kind, "long")))
     head = "".join(
         f"<tr>{''.join(_cell(cell).html('th') for cell in line)}</tr>" for line in headers
     )

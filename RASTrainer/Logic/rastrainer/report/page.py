@@ -17,13 +17,15 @@ h1 { font-size: 20pt; line-height: 1.2; margin: 1mm 0 2mm; }
 h2 { font-size: 13.5pt; margin: 9mm 0 2.5mm; padding-top: 2mm; border-top: 1px solid #cbd2d9;
   break-after: avoid; }
 h3 { font-size: 10.5pt; margin: 5mm 0 1.5mm; break-after: avoid; }
-p { margin: 0 0 2.5mm; } p:has(+ table) { break-after: avoid; }
+p { margin: 0 0 2.5mm; orphans: 3; widows: 3; }
+p:has(+ table) { break-after: avoid; break-inside: avoid; }
 ul { margin: 0 0 3mm; padding-left: 5mm; } li { margin-bottom: 1.2mm; }
 .lead { font-size: 11.5pt; } .small, figcaption { color: #52606d; font-size: 9pt; }
 .warning { background: #fff7e6; border-left: 4px solid #d9922b; padding: 2.5mm 4mm;
   break-inside: avoid; }
 figure { margin: 3mm 0 4mm; }
-.chart, .chart-alone { break-inside: avoid; } figcaption { margin-top: 1mm; }
+.chart, .chart-alone { break-inside: avoid; }
+figcaption { margin-top: 1mm; break-before: avoid; break-inside: avoid; }
 .charts { display: flex; flex-wrap: wrap; gap: 3mm; }
 .charts .chart { flex: 1 1 45%; min-width: 70mm; max-width: 50%; }
 .chart svg, .chart-alone svg { display: block; width: 100%; height: auto; }

@@ -151,10 +151,12 @@ def _limits(data: StudyData) -> str:
             "numbers. Where tasks were always done in this order, difficulty, practice and fatigue "
             "cannot be told apart, and a rising curve is no proof against learning."
         )
+    if len(data.tasks) == 1:
+        return "All trials were of one task: curves and tests show practice and fatigue together."
     is_fixed = data.protocol is None or data.protocol.task_order == "fixed"
-    if is_fixed and len(data.tasks) > 1:
+    if is_fixed:
         return (
             "Tasks of different difficulty were done one after the other: curves and tests show "
             "practice and difficulty together, and harder tasks later on hide what is learned."
         )
-    return "Tasks were balanced over the trainees, so that the curve of the means shows practice."
+    return "Tasks were balanced over the trainees: the means show practice and fatigue."

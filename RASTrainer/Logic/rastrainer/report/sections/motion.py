@@ -46,11 +46,10 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
             "Mean ± standard deviation of the trials; described, not tested. g_z is of the n "
             "trainees who did both modes."
         ),
-        table([["Metric", *modes, "trials", "n", "g_z [95 %]"]], rows, "long"),
+        table([["Metric", *modes, "trials", "n", "g_z [95 %]"]], rows),
         table(
             [["Metric", Cell("Definition", kind="text"), Cell("Source", kind="text")]],
             definitions,
-            "long",
         ),
     )
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer.questionnaires.catalog import QUESTIONNAIRES
 from rastrainer.questionnaires.questionnaire import Scale
-from rastrainer.report.markup import paragraph, section, table
+from rastrainer.report.markup import Cell, paragraph, section, table
 from rastrainer.report.outcomes import mode_title
 from rastrainer.report.study_data import StudyData
 
@@ -30,8 +30,8 @@ def questionnaires(data: StudyData) -> str:
                     rows.append(_row(scale, key[2], scores))
         if any(key[0] == name for key in values):
             sources.append(f"{questionnaire.title}: {questionnaire.source}.")
-    header = [["Scale", "when", "n", "mean ± SD", "median", "range", "better"]]
-    return section("Questionnaires", table(header, rows, "long"), paragraph(" ".join(sources)))
+    header = [["Scale", Cell("when", kind="text"), "n", "mean ± SD", "median", "range", "better"]]
+    return section("Questionnaires", table(header, rows), paragraph(" ".join(sources)))
 
 
 def _occasion(step: str, mode: str) -> str:
@@ -41,11 +41,11 @@ def _occasion(step: str, mode: str) -> str:
     return f"{when} {mode_title(mode)}"
 
 
-def _row(scale: Scale, when: str, scores: list[float]) -> list[str]:
+def _row(scale: Scale, when: str, scores: list[float]) -> list[Cell | str]:
     spread = f" ± {np.std(scores, ddof=1):.1f}" if len(scores) > 1 else ""
     return [
         scale.title,
-        when,
+        Cell(when, kind="text"),
         str(len(scores)),
         f"{np.mean(scores):.1f}{spread}",
         f"{np.median(scores):.1f}",
