@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.localization_error import stated_error
 from rastrainer.number_text import fixed
 from rastrainer.registration import register
 from rastrainer.target_error import COMMON_BIAS_SD_MM, TargetError, target_error
@@ -37,10 +38,13 @@ def intervals(sets: int, seed: int = 10) -> list[Measured]:
         ("as the first, and a common hover of 2 mm above the skin", _hovering, None),
         ("as the first, and a constant aim bias of 1.5 mm", _aimed_beside, None),
     ]
-    return [
+    found = [
         _measured(words, errors, limit, sets, np.random.default_rng([seed, number]))
         for number, (words, errors, limit) in enumerate(cases)
     ]
+    words = "as the second, each point weighted by its known error"
+    random = np.random.default_rng([seed, 1])
+    return [*found[:2], _measured(words, _unequal, 0.94, sets, random, True), *found[2:]]
 
 
 def one_side(random: np.random.Generator) -> np.ndarray:
@@ -56,18 +60,28 @@ def localization_errors(normals: np.ndarray) -> np.ndarray:
 
 
 def _measured(
-    words: str, errors: Errors, at_least: float | None, sets: int, random: np.random.Generator
+    words: str,
+    errors: Errors,
+    at_least: float | None,
+    sets: int,
+    random: np.random.Generator,
+    is_weighted: bool = False,
 ) -> Measured:
     inside, before, true, expected = [], [], [], []
     for _ in range(sets):
         normals = one_side(random)
         fiducials, target = RADIUS_MM * normals, random.normal(0, 20, 3)
-        registration = register(fiducials + errors(normals, random), fiducials)
+        touches, known, weights = fiducials + errors(normals, random), None, None
+        if is_weighted:
+            fle_mm = localization_errors(normals)
+            known, weights = stated_error(fle_mm), 1 / fle_mm**2
+        registration = register(touches, fiducials, weights=weights)
         there = transforms.apply(registration.matrix, target[None])[0]
         true.append(float(np.linalg.norm(there - target)))
-        widened = target_error(registration, target)
+        widened = target_error(registration, target, known)
+        without = target_error(registration, target, known, common_bias_sd_mm=0.0)
         inside.append(_holds(widened, true[-1]))
-        before.append(_holds(target_error(registration, target, common_bias_sd_mm=0.0), true[-1]))
+        before.append(_holds(without, true[-1]))
         expected.append(widened.expected_mm)
     beside = share_text(share_of(before)), *(fixed(_rms(each), 2) for each in (true, expected))
     return Measured(words, share_of(inside), sets, at_least=at_least, beside=beside)
@@ -87,7 +101,7 @@ def _alike(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
 
 
 def _unequal(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return localization_errors(normals)[:, None] * _alike(normals, random)
+    return localization_errors(normals)[:, None] / FLE_MM * _alike(normals, random)
 
 
 def _with_common_offset(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:

@@ -56,15 +56,62 @@ def isotropic_error(registration: Registration) -> LocalizationError:
     """Return the error that is the same in all directions and explains the FRE.
 
     From E[FRE²] = (1 − p/3N) E[FLE²] with p parameters: 1 − 2/N rigid (Sibson 1979),
-    1 − 7/(3N) similarity, 1 − 4/N affine.
+    1 − 7/(3N) similarity, 1 − 4/N affine. Of a weighted fit the variance of each point is taken as
+    inverse to its weight, s²/wᵢ a coordinate, where E[Σ wᵢ|rᵢ|²] = (3N − p)·s².
 
     Raises:
         InputError: the fit leaves no residuals to estimate from.
     """
     dof = degrees_of_freedom(registration)
     count = len(registration.labels)
-    variance = count * registration.fre_mm**2 / dof
-    return LocalizationError(np.tile(variance * np.eye(3), (count, 1, 1)), dof)
+    weights = registration.weights
+    if weights is None:
+        variances = np.full(count, count * registration.fre_mm**2 / dof)
+    else:
+        variances = (weights @ registration.residuals_mm**2) / dof / weights
+    return LocalizationError(variances[:, None, None] * np.eye(3), dof)
+
+
+def stated_error(fle_mm: np.ndarray) -> LocalizationError:
+    """Return the error of points whose localization errors are known, and alike in all directions.
+
+    Args:
+        fle_mm: (n,) float, the RMS length of each point's error: √3 times the standard deviation
+            on each axis.
+    """
+    variances = np.asarray(fle_mm, dtype=float) ** 2 / 3.0
+    return LocalizationError(variances[:, None, None] * np.eye(3), math.inf)
+
+
+def expected_fre(registration: Registration, localization: LocalizationError) -> float:
+    """Return √E[FRE²], mm: the root mean square of the residuals that such errors leave.
+
+    With L what the fit leaves of the errors, E[FRE²] = tr(L Σ Lᵀ)/N; (1 − 2/N) E[FLE²] of a rigid
+    fit without weights.
+    """
+    left = _left_by_fit(registration)
+    covariance = left @ _block_diagonal(localization.covariances) @ left.T
+    return math.sqrt(np.trace(covariance) / len(registration.labels))
+
+
+def misfit_probability(registration: Registration, fle_mm: np.ndarray) -> float:
+    """Return the probability of residuals this large or larger where the stated errors are true.
+
+    Σ 3|rᵢ|²/FLEᵢ² of a fit weighted by 1/FLE² is χ² with 3N − p degrees of freedom; its tail is
+    taken by the cube-root approximation (Wilson and Hilferty 1931).
+
+    Args:
+        registration: Weighted by 1/FLE².
+        fle_mm: (n,) float, the stated RMS length of each point's error.
+
+    Raises:
+        InputError: the fit leaves no residuals.
+    """
+    dof = degrees_of_freedom(registration)
+    value = float(np.sum(3.0 * registration.residuals_mm**2 / np.asarray(fle_mm) ** 2))
+    spread = 2.0 / (9.0 * dof)
+    z = ((value / dof) ** (1.0 / 3.0) - (1.0 - spread)) / math.sqrt(spread)
+    return 0.5 * math.erfc(z / math.sqrt(2.0))
 
 
 def error_along_surface(registration: Registration, normals: np.ndarray) -> LocalizationError:
@@ -73,7 +120,7 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
     With M what the fit leaves of the errors, B the projection of each error onto its part, and e
     the residuals, E[eᵀBe] = Σ σ² tr(M B M B') over both parts: two equations for two variances
     (method of moments; a negative one counts as zero). The degrees of freedom are those of the χ²
-    with the mean and variance of eᵀe (Satterthwaite 1946).
+    with the mean and variance of eᵀe (Satterthwaite 1946). It is for fits without weights.
 
     Args:
         registration: its residuals and fixed points are used.
@@ -122,17 +169,31 @@ def motions(kind: str, points: np.ndarray) -> np.ndarray:
 
 
 def fit_of_errors(registration: Registration) -> np.ndarray:
-    """Return what the errors of the fiducials do to the fit, (parameters, n, 3) float."""
-    fixed = registration.fixed_mm
-    moved = motions(registration.kind, fixed - fixed.mean(axis=0))
-    return np.linalg.pinv(moved.reshape(3 * len(fixed), -1)).reshape(-1, len(fixed), 3)
+    """Return what the errors of the fiducials do to the fit, (parameters, n, 3) float.
+
+    Of a weighted fit, (Σ wᵢ JᵢᵀJᵢ)⁻¹ wᵢJᵢᵀ with Jᵢ the motions of point i.
+    """
+    _, fit = _normal_equations(registration)
+    return fit.reshape(len(fit), -1, 3)
 
 
 def _left_by_fit(registration: Registration) -> np.ndarray:
     """Return the (3n, 3n) projection of the fiducials' errors onto their residuals."""
+    moved, fit = _normal_equations(registration)
+    return np.eye(len(moved)) - moved @ fit
+
+
+def _normal_equations(registration: Registration) -> tuple[np.ndarray, np.ndarray]:
+    """Return how the fiducials move with the parameters, and the parameters with their errors.
+
+    The arrays are (3n, parameters) and (parameters, 3n).
+    """
     fixed = registration.fixed_mm
     moved = motions(registration.kind, fixed - fixed.mean(axis=0)).reshape(3 * len(fixed), -1)
-    return np.eye(len(moved)) - moved @ np.linalg.pinv(moved)
+    if registration.weights is None:
+        return moved, np.linalg.pinv(moved)
+    roots = np.repeat(np.sqrt(registration.weights / registration.weights.max()), 3)
+    return moved, np.linalg.pinv(roots[:, None] * moved) * roots
 
 
 def _block_diagonal(blocks: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.registration_checks import check_points
+from rastrainer.registration_checks import check_points, check_weights
 from rastrainer.registration_fits import AFFINE, KINDS, RIGID, SIMILARITY, fit, leave_one_out
 from rastrainer.registration_warnings import RegistrationWarning, find_warnings
 
@@ -31,7 +31,8 @@ class Registration:
             predict the target error of a single case (Fitzpatrick 2009).
         residual_vectors_mm: (n, 3) float, T(m) − f.
         residuals_mm: (n,) float, their lengths.
-        warnings: What looks wrong with the points.
+        warnings: What looks wrong with the points, judged as if all were localized equally well.
+        weights: (n,) float, of the points in the fit; None where all count alike.
     """
 
     kind: str
@@ -43,6 +44,12 @@ class Registration:
     residual_vectors_mm: np.ndarray
     residuals_mm: np.ndarray
     warnings: tuple[RegistrationWarning, ...]
+    weights: np.ndarray | None = None
+
+    @property
+    def weighted_fre_mm(self) -> float:
+        """√(Σ wᵢ|T(mᵢ) − fᵢ|² / Σ wᵢ), which the fit makes least; the FRE without weights."""
+        return float(np.sqrt(np.average(self.residuals_mm**2, weights=self.weights)))
 
     def without(self, *labels: str) -> Registration:
         """Return the registration of the same points without those of the given labels.
@@ -62,6 +69,7 @@ class Registration:
             self.fixed_mm[kept],
             self.kind,
             [self.labels[i] for i in kept],
+            None if self.weights is None else self.weights[kept],
         )
 
     def leave_one_out_mm(self) -> np.ndarray:
@@ -79,7 +87,7 @@ class Registration:
                 self.kind,
                 [label for j, label in enumerate(self.labels) if j != i],
             )
-        return leave_one_out(self.moving_mm, self.fixed_mm, self.kind)
+        return leave_one_out(self.moving_mm, self.fixed_mm, self.kind, self.weights)
 
 
 def register(
@@ -87,6 +95,7 @@ def register(
     fixed: np.ndarray,
     kind: str = RIGID,
     labels: Sequence[str] | None = None,
+    weights: np.ndarray | None = None,
 ) -> Registration:
     """Fit moving points to fixed points.
 
@@ -99,12 +108,15 @@ def register(
         fixed: (n, 3) float, in mm, paired with `moving` row by row.
         kind: `rigid`, `similarity` or `affine`.
         labels: Names of the points; `1` to `n` when left out.
+        weights: (n,) float, above 0, for a rigid fit: how much each point counts. Where each is
+            localized with its own error, 1/FLE² give the most exact fit; only their ratios matter.
 
     Raises:
         InputError: the points cannot be registered (see `registration_checks`).
     """
     moving, fixed, labels = check_points(moving, fixed, kind, labels)
-    matrix = fit(moving, fixed, kind)
+    weights = check_weights(weights, kind, labels)
+    matrix = fit(moving, fixed, kind, weights)
     residual_vectors = transforms.apply(matrix, moving) - fixed
     residuals = np.linalg.norm(residual_vectors, axis=1)
     for values in (moving, fixed, matrix, residual_vectors, residuals):
@@ -119,4 +131,5 @@ def register(
         residual_vectors_mm=residual_vectors,
         residuals_mm=residuals,
         warnings=find_warnings(moving, fixed, kind, labels),
+        weights=weights,
     )

@@ -12,9 +12,11 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.point_list import COORDINATE_LIMIT_MM
-from rastrainer.registration_fits import AFFINE, KINDS, MINIMUM_POINTS
+from rastrainer.registration_fits import AFFINE, KINDS, MINIMUM_POINTS, RIGID
 
 POINT_LIMIT = 1000
+WEIGHT_SPAN = 1e12
+"""The largest weight against the smallest: localization errors from 1 µm to 1 m."""
 FLAT = 1e-3
 """A set is taken for a line (a plane) when its extent across is this small against that along."""
 
@@ -41,6 +43,37 @@ def check_points(
         _check_numbers(points, which, names)
         _check_extent(points, which, kind, names)
     return sets["moving"], sets["fixed"], names
+
+
+def check_weights(
+    weights: np.ndarray | None, kind: str, labels: Sequence[str]
+) -> np.ndarray | None:
+    """Return a copy of the weights, (n,) float that cannot be written to, or None for none.
+
+    Raises:
+        InputError: the fit is not rigid, there is not one weight above 0 for each label, or they
+            differ too much for double precision.
+    """
+    if weights is None:
+        return None
+    if kind != RIGID:
+        raise InputError(f"Weights are for rigid registrations; {kind} knows none.")
+    try:
+        array = np.array(weights, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError("The weights must be numbers, one for each pair of points.") from None
+    if array.shape != (len(labels),):
+        raise InputError(f"There must be {len(labels)} weights, one for each pair of points.")
+    for label, weight in zip(labels, array, strict=True):
+        if not (np.isfinite(weight) and weight > 0.0):
+            raise InputError(f"The weight of point {label} must be a number above 0.")
+    if array.max() > WEIGHT_SPAN * array.min():
+        raise InputError(
+            f"The largest weight may be at most {WEIGHT_SPAN:g} times the smallest; leave out the "
+            "points that hardly count."
+        )
+    array.flags.writeable = False
+    return array
 
 
 def extents(points: np.ndarray) -> np.ndarray:

@@ -1,8 +1,9 @@
 """Point-based registration: rigid, similarity and affine fits of paired points.
 
 All points are (n, 3) float in mm; every fit maps `moving` to `fixed` and minimizes the squared
-distances in the fixed space (the similarity's scale is an exception, told there). The inputs are
-taken as sound: `rastrainer.registration_checks` sees to that.
+distances in the fixed space (the similarity's scale is an exception, told there). A rigid fit may
+weight the points, and minimizes Σ wᵢ|T(mᵢ) − fᵢ|² then (Horn 1987). The inputs are taken as sound:
+`rastrainer.registration_checks` sees to that.
 """
 
 from __future__ import annotations
@@ -19,13 +20,18 @@ MINIMUM_POINTS = {RIGID: 3, SIMILARITY: 3, AFFINE: 4}
 PARAMETERS = {RIGID: 6, SIMILARITY: 7, AFFINE: 12}
 
 
-def fit(moving: np.ndarray, fixed: np.ndarray, kind: str) -> np.ndarray:
-    """Return the (4, 4) float transform of the given kind from moving to fixed."""
+def fit(
+    moving: np.ndarray, fixed: np.ndarray, kind: str, weights: np.ndarray | None = None
+) -> np.ndarray:
+    """Return the (4, 4) float transform of the given kind from moving to fixed.
+
+    `weights` (n,) float, above 0, are for rigid fits; all points count alike without them.
+    """
     if kind == AFFINE:
         return _affine(moving, fixed)
     scale = symmetric_scale(moving, fixed) if kind == SIMILARITY else 1.0
-    linear = scale * _rotation(moving, fixed)
-    return transforms.rigid(linear, fixed.mean(axis=0) - linear @ moving.mean(axis=0))
+    linear = scale * _rotation(moving, fixed, weights)
+    return transforms.rigid(linear, _center(fixed, weights) - linear @ _center(moving, weights))
 
 
 def symmetric_scale(moving: np.ndarray, fixed: np.ndarray) -> float:
@@ -37,12 +43,15 @@ def symmetric_scale(moving: np.ndarray, fixed: np.ndarray) -> float:
     return float(np.linalg.norm(_centered(fixed)) / np.linalg.norm(_centered(moving)))
 
 
-def leave_one_out(moving: np.ndarray, fixed: np.ndarray, kind: str) -> np.ndarray:
+def leave_one_out(
+    moving: np.ndarray, fixed: np.ndarray, kind: str, weights: np.ndarray | None = None
+) -> np.ndarray:
     """Return how far each point lies from where a fit to all the others puts it, (n,) float, mm."""
     distances = np.empty(len(moving))
     for i in range(len(moving)):
         others = np.arange(len(moving)) != i
-        matrix = fit(moving[others], fixed[others], kind)
+        kept = None if weights is None else weights[others]
+        matrix = fit(moving[others], fixed[others], kind, kept)
         distances[i] = np.linalg.norm(transforms.apply(matrix, moving[i]) - fixed[i])
     return distances
 
@@ -76,12 +85,13 @@ def rigid_sums_of_squares(
     return np.maximum(total - 2.0 * gain, 0.0)
 
 
-def _rotation(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+def _rotation(moving: np.ndarray, fixed: np.ndarray, weights: np.ndarray | None) -> np.ndarray:
     """Return the (3, 3) rotation of Arun's SVD solution (1987) with Umeyama's guard (1991).
 
     Without the guard, noisy or mirrored points could yield a reflection.
     """
-    u, _, vt = np.linalg.svd(_centered(fixed).T @ _centered(moving))
+    a, b = moving - _center(moving, weights), fixed - _center(fixed, weights)
+    u, _, vt = np.linalg.svd((b if weights is None else weights[:, None] * b).T @ a)
     guard = np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
     return u @ guard @ vt
 
@@ -90,6 +100,10 @@ def _affine(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray:
     solution, *_ = np.linalg.lstsq(_centered(moving), _centered(fixed), rcond=None)
     linear = solution.T
     return transforms.rigid(linear, fixed.mean(axis=0) - linear @ moving.mean(axis=0))
+
+
+def _center(points: np.ndarray, weights: np.ndarray | None) -> np.ndarray:
+    return points.mean(axis=0) if weights is None else weights @ points / weights.sum()
 
 
 def _centered(points: np.ndarray) -> np.ndarray:
