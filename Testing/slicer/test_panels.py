@@ -205,6 +205,10 @@ def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
     panels.press("learningCurveButton")
     chart = findNode(panels.scene, "vtkMRMLPlotChartNode", Role.LEARNING_CURVE)
     assert chart.GetNumberOfPlotSeriesNodes() == 2
+    panels.press("calibrationButton")
+    assert findNode(panels.scene, "vtkMRMLPlotChartNode", Role.CALIBRATION) is not None
+    assert "3 trials have no true target error" in panels.text("traineeText")
+    panels.press("calibrationButton")
     panels.answer("Export the history", str(tmp_path / "history.csv"))
     panels.press("exportHistoryButton")
     with (tmp_path / "history.csv").open(newline="") as file:

@@ -4,11 +4,13 @@ import csv
 import json
 import uuid
 
+import numpy as np
 import pytest
 import slicer
 
 from rastrainer.ctps import CTPS_WARNING, Trial
 from rastrainer.errors import InputError
+from rastrainer.slicer.calibration_nodes import showCalibration
 from rastrainer.slicer.history_nodes import showHistory, showLearningCurve
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.score_board import (
@@ -143,6 +145,37 @@ def test_the_plot_of_the_learning_curves_begins_at_nought_and_holds_every_trial(
     low, high = chart.GetYAxisRange()
     assert (low, high > max(trial.record.completion_time_s for trial in trials)) == (0.0, True)
     assert not chart.GetXAxisRangeAuto()
+
+
+def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, desk, add_trial):
+    trials = [add_trial(number, trainee=name) for number, name in ((1, "a"), (2, "b"), (30, "a"))]
+    desk.study.set_archived("b", True)
+    found = desk.calibration()
+    assert [point.true_mm for point in found.points if not point.is_inside] == [6.0]
+    chart = showCalibration(scene, found)
+    assert showCalibration(scene, found) is chart
+    assert chart.GetTitle().startswith("True against expected TRE: 2 of 3 inside, 67 % [21, 94]")
+    table = findNode(scene, "vtkMRMLTableNode", Role.CALIBRATION)
+    expected = slicer.util.arrayFromTableColumn(table, "expected TRE (mm)")
+    assert sorted(expected) == sorted(t.registrations["rigid"].expected_tre_mm for t in trials)
+    outside = slicer.util.arrayFromTableColumn(table, "true TRE, outside (mm)")
+    assert np.isnan(outside).sum() == 2
+    assert np.nanmax(outside) == 6.0
+    series = [chart.GetNthPlotSeriesNode(i) for i in range(chart.GetNumberOfPlotSeriesNodes())]
+    assert {one.GetXColumnName() for one in series} == {"expected TRE (mm)"}
+    assert sum(one.GetMarkerStyle() == one.MarkerStyleNone for one in series) == 3
+    (_, right), (_, top) = chart.GetXAxisRange(), chart.GetYAxisRange()
+    assert (right > expected.max(), top > 6.0) == (True, True)
+
+
+def test_a_study_without_a_told_truth_has_an_empty_plot_and_a_sentence(scene, desk, make_record):
+    desk.study.add_trial(make_record(str(uuid.UUID(int=7))))
+    found = desk.calibration()
+    assert showCalibration(scene, found).GetTitle() == "True against expected TRE"
+    assert found.sentences() == [
+        "No trial has both an expected and a true target error.",
+        "1 trial has no expected target error and cannot be shown.",
+    ]
 
 
 def test_a_trial_without_results_has_empty_cells(scene, desk, make_record):

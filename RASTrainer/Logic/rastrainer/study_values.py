@@ -45,6 +45,8 @@ class StoredRegistration:
             tells nothing about targets.
         expected_tre_mm: Expected error there.
         tre_interval_mm: Where 95 of 100 such errors lie.
+        common_bias_sd_mm: The standard deviation on each axis of the offset common to all touches
+            that both allow for; 0 in what was stored before there was one.
     """
 
     kind: str
@@ -56,6 +58,7 @@ class StoredRegistration:
     target_mm: tuple[float, float, float] | None
     expected_tre_mm: float | None
     tre_interval_mm: tuple[float, float] | None
+    common_bias_sd_mm: float = 0.0
 
     @classmethod
     def of(cls, registration: Registration, error: TargetError | None) -> StoredRegistration:
@@ -70,6 +73,7 @@ class StoredRegistration:
             target_mm=None if error is None else error.target_mm,
             expected_tre_mm=None if error is None else error.expected_mm,
             tre_interval_mm=None if error is None else error.interval_mm,
+            common_bias_sd_mm=0.0 if error is None else error.common_bias_sd_mm,
         )
 
     def to_json(self) -> dict[str, Any]:

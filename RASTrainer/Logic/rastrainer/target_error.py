@@ -53,6 +53,7 @@ class TargetError:
             ends in mm, whatever the standard deviation of the common offset is, up to the assumed
             one.
         confidence: Least probability of the interval.
+        common_bias_sd_mm: The assumed standard deviation of the common offset on each axis.
     """
 
     target_mm: tuple[float, float, float]
@@ -61,6 +62,7 @@ class TargetError:
     independent_mm: float
     interval_mm: tuple[float, float]
     confidence: float
+    common_bias_sd_mm: float
 
 
 def expected_tre(
@@ -132,6 +134,7 @@ def target_error(
             math.sqrt(_quantile(1 - tail, variances, dof, added)),
         ),
         confidence=confidence,
+        common_bias_sd_mm=common_bias_sd_mm,
     )
 
 

@@ -8,12 +8,12 @@ import slicer
 
 from rastrainer.slicer.borrowed_layout import WITH_PLOT, WITH_TABLE, BorrowedLayout
 
-CURVE, TABLES = "learning curve", "tables"
+CURVE, CALIBRATION, TABLES = "learning curve", "calibration", "tables"
 
 
-def showChart(layout: BorrowedLayout, chart: Any) -> None:
+def showChart(layout: BorrowedLayout, chart: Any, purpose: str = CURVE) -> None:
     """Show a `vtkMRMLPlotChartNode` in a layout that has a plot view."""
-    layout.show(CURVE, WITH_PLOT)
+    layout.show(purpose, WITH_PLOT)
     logic = slicer.app.applicationLogic()
     logic.GetSelectionNode().SetActivePlotChartID(chart.GetID())
     logic.PropagatePlotChartSelection()

@@ -10,7 +10,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.save_dialog import askWhereToSave
-from rastrainer.panels.shown_results import CURVE, showChart
+from rastrainer.panels.shown_results import CALIBRATION, CURVE, showChart
 from rastrainer.panels.widgets import (
     chosenData,
     fillComboBox,
@@ -21,6 +21,7 @@ from rastrainer.panels.widgets import (
     setUsable,
 )
 from rastrainer.protocol import Mode
+from rastrainer.slicer.calibration_nodes import showCalibration
 from rastrainer.slicer.history_nodes import showLearningCurve
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.settings import STUDY
@@ -46,6 +47,7 @@ class TraineesPanel:
         ui.deleteTraineeButton.connect("clicked()", self.deleteTrainee)
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
         ui.learningCurveButton.connect("clicked()", self.showLearningCurve)
+        ui.calibrationButton.connect("clicked()", self.showCalibration)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         ui.exportHistoryButton.connect("clicked()", self.exportHistory)
         self._desk.changed.connect(self._show)
@@ -137,13 +139,27 @@ class TraineesPanel:
             chart = showLearningCurve(slicer.mrmlScene, self._desk.chosen, trials)
             showChart(self._session.layout, chart)
 
+    def showCalibration(self) -> None:
+        """Plot true over expected TRE of the study's trials, or give the user's layout back."""
+        if not self._ui.calibrationButton.checked:
+            self._session.layout.giveBack(CALIBRATION)
+            return
+        with slicer.util.tryWithErrorDisplay(_("The target errors cannot be shown.")):
+            found = self._desk.calibration()
+            chart = showCalibration(slicer.mrmlScene, found)
+            showChart(self._session.layout, chart, CALIBRATION)
+            self._say("{told}", told=" ".join(found.sentences()))
+
     def showState(self) -> None:
-        """Show whether the learning curve is shown; called about ten times a second."""
-        setChecked(self._ui.learningCurveButton, self._session.layout.purpose == CURVE)
+        """Show whether a plot is shown; called about ten times a second."""
+        purpose = self._session.layout.purpose
+        setChecked(self._ui.learningCurveButton, purpose == CURVE)
+        setChecked(self._ui.calibrationButton, purpose == CALIBRATION)
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
             self._session.layout.giveBack(CURVE)
+            self._session.layout.giveBack(CALIBRATION)
 
     def _show(self, *_arguments: Any) -> None:
         ui = self._ui

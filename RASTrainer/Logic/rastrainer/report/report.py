@@ -18,6 +18,7 @@ from rastrainer.report.markup import bullets, paragraph, section
 from rastrainer.report.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.report.page import page
 from rastrainer.report.published_scores import with_ctps
+from rastrainer.report.sections.calibration import calibration
 from rastrainer.report.sections.groups import groups
 from rastrainer.report.sections.learning import learning
 from rastrainer.report.sections.limits import limits
@@ -100,6 +101,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         learning(data),
         variation(data),
         passing(data),
+        calibration(data),
         motion(data, described[0] if described else ()),
         questionnaires(data),
         groups(data),

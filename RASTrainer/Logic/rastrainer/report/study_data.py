@@ -224,6 +224,9 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         values["rmse_mm"] = rigid.fre_mm
         if rigid.expected_tre_mm is not None:
             values["expected_tre_mm"] = rigid.expected_tre_mm
+            values["tre_common_bias_sd_mm"] = rigid.common_bias_sd_mm
+        if rigid.tre_interval_mm is not None:
+            values["tre_low_mm"], values["tre_high_mm"] = rigid.tre_interval_mm
     if score is not None:
         values["score"] = score.score
     if stored.true_tre_mm is not None:

@@ -53,7 +53,8 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
     chart.SetName(f"Learning curve of {pseudonym}")
     chart.RemoveAllPlotSeriesNodeIDs()
     for column, (title, color) in _SERIES.items():
-        chart.AddAndObservePlotSeriesNodeID(_series(scene, table, column, title, color).GetID())
+        series = plotSeries(scene, table, Role.LEARNING_CURVE, TRIAL_COLUMN, column, title, color)
+        chart.AddAndObservePlotSeriesNodeID(series.GetID())
     chart.SetTitle(f"Learning curve of {pseudonym}")
     chart.SetXAxisTitle("Trial")
     chart.SetYAxisTitle("Score, and completion time in s")
@@ -65,17 +66,34 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
     return chart
 
 
-def _series(
-    scene: Any, table: Any, column: str, title: str, color: tuple[float, float, float]
+def plotSeries(
+    scene: Any,
+    table: Any,
+    role: str,
+    across: str,
+    column: str,
+    title: str,
+    color: tuple[float, float, float],
 ) -> Any:
-    role = f"{Role.LEARNING_CURVE} {column}"
-    node = findNode(scene, "vtkMRMLPlotSeriesNode", role)
+    """Return the `vtkMRMLPlotSeriesNode` of a role that draws a column over another one.
+
+    Args:
+        scene: the scene.
+        table: a `vtkMRMLTableNode` with both columns.
+        role: of the chart.
+        across: the column of x.
+        column: the column of y.
+        title: in the plot's legend.
+        color: RGB from 0 to 1.
+    """
+    seriesRole = f"{role} {column}"
+    node = findNode(scene, "vtkMRMLPlotSeriesNode", seriesRole)
     if node is None:
         node = scene.AddNewNodeByClass("vtkMRMLPlotSeriesNode", title)
-        node.SetAttribute(ROLE_ATTRIBUTE, role)
+        node.SetAttribute(ROLE_ATTRIBUTE, seriesRole)
     node.SetAndObserveTableNodeID(table.GetID())
     node.SetPlotType(node.PlotTypeScatter)
-    node.SetXColumnName(TRIAL_COLUMN)
+    node.SetXColumnName(across)
     node.SetYColumnName(column)
     node.SetColor(color)
     node.SetLineStyle(node.LineStyleSolid)

@@ -26,6 +26,7 @@ class Role:
     FITS = "fits"
     HISTORY = "history"
     LEARNING_CURVE = "learning curve"
+    CALIBRATION = "calibration"
     SCORE = "score"
     COMPARISON = "comparison"
     MOTION = "motion metrics"

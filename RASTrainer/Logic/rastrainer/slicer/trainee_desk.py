@@ -14,6 +14,7 @@ from rastrainer.progress import Progress
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.signal import Signal
 from rastrainer.study import StoredTrial, Study, StudyBusyError, Trainee
+from rastrainer.tre_calibration import TreCalibration, calibration_of
 
 LOOK_EVERY_S = 1.0
 
@@ -173,6 +174,24 @@ class TraineeDesk:
                 return write_histories(study, path)
 
         return inBackground(write, progress)
+
+    def calibration(self, progress: Progress = lambda _step, _share: None) -> TreCalibration:
+        """Return true against expected TRE of all trials of the study, of whomever they are.
+
+        Args:
+            progress: called many times a second meanwhile; it may let the application draw.
+
+        Raises:
+            InputError: the study cannot be read.
+        """
+
+        def read(_tell: Progress) -> TreCalibration:
+            with self._openPatiently() as study:
+                everyone = (*study.trainees(), *study.trainees(archived=True))
+                histories = (study.history(trainee.pseudonym) for trainee in everyone)
+                return calibration_of(trial for history in histories for trial in history)
+
+        return inBackground(read, progress)
 
     def history(self) -> tuple[StoredTrial, ...]:
         """Return the trials of the chosen trainee in the order they were started."""
