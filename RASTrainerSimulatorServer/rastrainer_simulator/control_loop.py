@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.errors import RASTrainerError
 from rastrainer.journal.journal_reader import JournalReading
 from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES, CommandName
@@ -165,8 +166,8 @@ class ControlLoop:
         """Sentences about journals in the records folder that cannot be used."""
         return tuple(self._archive.problems)
 
-    def unacknowledged(self) -> tuple[TrialRecord, ...]:
-        """Return the registered trials that no client has acknowledged, the oldest first."""
+    def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
+        """Return the aborted and the registered trials that no client has acknowledged."""
         return self._archive.unacknowledged()
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:

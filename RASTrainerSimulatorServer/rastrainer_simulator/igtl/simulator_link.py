@@ -10,6 +10,7 @@ from concurrent.futures import Future
 from typing import Any
 
 import rastrainer
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.errors import InputError
 from rastrainer.experiment.step_answers import StepAnswers
 from rastrainer.igtl.command import Command
@@ -50,7 +51,7 @@ class SimulatorLink:
         self,
         latest: Callable[[], SimulationState],
         submit: SubmitCommand,
-        unacknowledged: Callable[[], Sequence[TrialRecord]],
+        unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
         health: Callable[[], Mapping[str, Any]] = dict,
         limits: Limits | None = None,
         answers: Callable[[], Sequence[StepAnswers]] = tuple,

@@ -1,4 +1,4 @@
-"""Finished trials are offered to every client until one of them acknowledges them."""
+"""Finished and aborted trials are offered to every client until one of them acknowledges them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import itertools
 import json
 from collections.abc import Callable, Iterable, Sequence
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.igtl.command import Command
 from rastrainer.igtl.message import Message
 from rastrainer.protocol import CommandName, Device
@@ -27,7 +28,7 @@ class TrialOffers:
 
     def __init__(
         self,
-        unacknowledged: Callable[[], Sequence[TrialRecord]],
+        unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
         clients: Callable[[], Iterable[Connection]],
     ):
         """`unacknowledged` gives the records that wait, oldest first; `clients` who is there."""
@@ -37,7 +38,7 @@ class TrialOffers:
         self._start = 0
 
     def offer_newest(self) -> None:
-        """Offer the trial that was registered last."""
+        """Offer the trial that was registered last, or the one aborted last where none was."""
         self._offer(self._unacknowledged()[-1:])
 
     def repeat(self) -> None:
@@ -47,11 +48,13 @@ class TrialOffers:
         self._offer((records[start:] + records[:start])[:MOST_AT_ONCE])
         self._start = start + MOST_AT_ONCE if len(records) > MOST_AT_ONCE else 0
 
-    def _offer(self, records: Iterable[TrialRecord]) -> None:
+    def _offer(self, records: Iterable[AbortedTrial | TrialRecord]) -> None:
         for record in records:
             body = json.dumps(record.to_json(), allow_nan=False)
             number = next(self._numbers) % _NUMBERS
-            command = Command(number, CommandName.TRIAL_COMPLETED, body)
+            is_aborted = isinstance(record, AbortedTrial)
+            name = CommandName.TRIAL_ABORTED if is_aborted else CommandName.TRIAL_COMPLETED
+            command = Command(number, name, body)
             offer = Outgoing(Message(Device.COMMAND, command))
             for connection in self._clients():
                 connection.send(offer)

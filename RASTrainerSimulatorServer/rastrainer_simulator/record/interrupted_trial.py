@@ -26,7 +26,7 @@ from rastrainer_simulator.vectors import Vector
 
 MM = 1000.0
 
-_OVER = frozenset({"registered", "aborted"})
+_OVER = frozenset({"registered", "aborted", "attempt"})
 _EFFECTS: Mapping[str, frozenset[str]] = {
     CommandName.START_TASK: frozenset({"phase"}),
     CommandName.CAPTURE: frozenset({"touch", "rejected"}),

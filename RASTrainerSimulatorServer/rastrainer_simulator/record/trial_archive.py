@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import re
@@ -12,11 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.errors import InputError
+from rastrainer.aborted_trial import AbortedTrial
+from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import SUFFIX, journals_of
 from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName
 from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.training.true_error import Truth
 
@@ -24,7 +27,8 @@ FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are looked at first."""
 
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
-_AFTER_THE_TRIAL = frozenset({b"registered", b"scored", b"acknowledged"})
+_OVER = frozenset({b"registered", b"aborted", b"attempt"})
+_AFTER_THE_TRIAL = frozenset({b"registered", b"attempt", b"scored", b"acknowledged"})
 
 
 @dataclass(frozen=True)
@@ -63,28 +67,47 @@ class ArchivedTrial:
 
 
 class TrialArchive:
-    """The registered trials of a folder. One thread changes it; any may ask what is to deliver.
+    """The registered trials of a folder, and the aborted ones that are kept.
 
-    `problems` are sentences about journals that cannot be used.
+    One thread changes it; any may ask what is to deliver. `problems` are sentences about journals
+    that cannot be used.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._trials: dict[str, ArchivedTrial] = {}
         self._journals: dict[str, Journal] = {}
+        self._aborted = AbortedArchive()
         self.problems: list[str] = []
         for path in find_unacknowledged(folder):
             self._load(path)
 
-    def unacknowledged(self) -> tuple[TrialRecord, ...]:
-        """Return the records that no client has acknowledged, the oldest first."""
+    def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
+        """Return the records that no client has acknowledged: aborted trials, then finished ones.
+
+        Of each kind the oldest come first.
+        """
         trials = list(self._trials.values())
-        return tuple(trial.record for trial in trials if not trial.acknowledged)
+        finished = (trial.record for trial in trials if not trial.acknowledged)
+        return (*self._aborted.unacknowledged(), *finished)
 
     def add(self, trial: ArchivedTrial, journal: Journal) -> None:
         """Take in a trial that has just been registered."""
         self._trials[trial.record.trial_id] = trial
         self._journals[trial.record.trial_id] = journal
+
+    def add_aborted(self, record: AbortedTrial, journal: Journal) -> None:
+        """Take in a trial that has just been aborted."""
+        self._aborted.add(record, journal)
+
+    def add_left(self, path: Path) -> None:
+        """Take in the trial of a journal that is left open since another one is begun."""
+        if not _OVER.isdisjoint(_last_kinds(path)):
+            return
+        try:
+            self._aborted.add_left(path)
+        except RASTrainerError as error:
+            self.problems.append(str(error))
 
     def answer(
         self, command: str, arguments: Mapping[str, Any], times: Mapping[str, Any]
@@ -97,6 +120,11 @@ class TrialArchive:
             InputError: there is no such trial.
             RecordError: its journal cannot be written.
         """
+        if arguments["trialId"] not in self._trials:
+            find = functools.partial(self._reading_of, arguments["trialId"])
+            told = self._aborted.answer(arguments["trialId"], command, times, find)
+            if told is not None:
+                return told
         trial = self._found(arguments["trialId"])
         trial_id = trial.record.trial_id
         # As a journal gives them back: told again, they are the same.
@@ -132,10 +160,20 @@ class TrialArchive:
             )
         return self._trials[trial_id]
 
+    def _reading_of(self, trial_id: str) -> JournalReading | None:
+        """Read the journal of a trial that was aborted; None where it is another's, or altered."""
+        for path in journals_of(self._folder, trial_id):
+            if b"attempt" in _last_kinds(path):
+                reading = read_journal(path)
+                return None if reading.integrity is Integrity.ALTERED else reading
+        return None
+
     def _load(self, path: Path) -> None:
         try:
             reading = read_journal(path)
             trial = archived_trial(reading)
+            if trial is None:
+                self._aborted.load(reading)
         except InputError as error:
             self.problems.append(str(error))
             return
@@ -186,7 +224,7 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
 
 
 def find_unacknowledged(folder: Path) -> list[Path]:
-    """Return the journals of registered trials that no client has acknowledged, oldest first.
+    """Return the journals of trials to deliver that no client has acknowledged, oldest first.
 
     Only the end of each file is read: a lab's folder holds thousands.
     """
@@ -195,7 +233,7 @@ def find_unacknowledged(folder: Path) -> list[Path]:
 
 def _awaits_delivery(path: Path) -> bool:
     kinds = _last_kinds(path)
-    return b"registered" in kinds and b"acknowledged" not in kinds
+    return (b"registered" in kinds or b"attempt" in kinds) and b"acknowledged" not in kinds
 
 
 def _last_kinds(path: Path) -> list[bytes]:

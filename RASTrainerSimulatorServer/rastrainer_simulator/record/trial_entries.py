@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
@@ -18,7 +19,14 @@ from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
 from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.record.versions import versions
-from rastrainer_simulator.state import Event, EventKind, SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.state import (
+    Event,
+    EventKind,
+    SimulationState,
+    StartingPoint,
+    StepResult,
+    TrainingState,
+)
 
 if TYPE_CHECKING:
     from rastrainer_simulator.simulation import Simulation
@@ -202,9 +210,29 @@ class TrialEntries:
             entry["trajectorySha256"] = self._trajectory.hexdigest()
         return entry
 
-    def _record(self, state: SimulationState) -> TrialRecord:
-        training = state.training
-        points = tuple(
+    def aborted(self, before: SimulationState, reason: str, utc: str) -> AbortedTrial:
+        """Return the record of a trial that was aborted in a state, for a reason, at a time."""
+        training = before.training
+        return AbortedTrial(
+            trial_id=training.trial_id,
+            trainee=training.trainee,
+            task=training.task,
+            mode=training.mode,
+            scenario=self._scenario,
+            started_utc=self.started_utc,
+            aborted_utc=utc,
+            elapsed_s=before.elapsed,
+            phase=training.phase.value,
+            reason=reason,
+            points=self._points(training),
+            rejected_touches=training.rejected,
+            undone_touches=training.undone,
+            versions=self.versions,
+            touch_rule=self._touch_rule.value,
+        )
+
+    def _points(self, training: TrainingState) -> tuple[TouchedPoint, ...]:
+        return tuple(
             TouchedPoint(
                 label=touch.label,
                 position_mm=tuple(MM * value for value in touch.position),
@@ -213,6 +241,10 @@ class TrialEntries:
             )
             for touch in training.touches
         )
+
+    def _record(self, state: SimulationState) -> TrialRecord:
+        training = state.training
+        points = self._points(training)
         return TrialRecord(
             trial_id=training.trial_id,
             trainee=training.trainee,

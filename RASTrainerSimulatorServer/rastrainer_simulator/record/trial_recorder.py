@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.journal_reader import JournalReading
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.stamps import file_stamp, stamp
@@ -59,6 +60,7 @@ class TrialRecorder:
         self._is_stuck = False
         self._waiting: tuple[JournalReading, float] | None = None
         newest = newest_journal(folder)
+        self._left = newest
         self._number = 0 if newest is None else number_of(newest)
 
     def take_up(self, simulation: Simulation, reading: JournalReading) -> None:
@@ -67,6 +69,7 @@ class TrialRecorder:
         While the trial is paused the file stays as it is.
         """
         state = simulation.state
+        self._left = None
         self._waiting = reading, state.sim_time
         if state.training.phase is not Phase.PAUSED:
             self._go_on(simulation, state)
@@ -94,7 +97,7 @@ class TrialRecorder:
         if record is not None:
             return self._register(simulation, record)
         if training.phase is Phase.IDLE:
-            return self._hand_over_and_leave()
+            return self._abort(before, operator_input, result)
         if any(event.kind in MUST_LAST for event in result.events):
             self._is_stuck = False
             return self._hand_over(is_awaited=True)
@@ -114,6 +117,10 @@ class TrialRecorder:
         self._hand_over_and_leave()
 
     def _begin(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
+        if self._left is not None:
+            # Before the new one is there: whenever two are, the older is over.
+            self._writer.submit(self._archive.add_left, self._left)
+            self._left = None
         self._number += 1
         self._entries = TrialEntries.begun(simulation, before, result, self._dt, self._number)
         name = f"{file_stamp(self._entries.started_utc)}_{self._entries.trial_id}{SUFFIX}"
@@ -160,6 +167,27 @@ class TrialRecorder:
 
         self._registering = self._writer.submit(write)
         return Written(self._registering, is_awaited=True)
+
+    def _abort(
+        self, before: SimulationState, operator_input: OperatorInput, result: StepResult
+    ) -> Written:
+        """Keep the record of the aborted trial where there is something to tell of it."""
+        times = stamp(result.state.tick, result.state.sim_time)
+        given = [c for c in operator_input.commands if c.name == CommandName.ABORT]
+        reason = given[-1].arguments.get("reason") if given else None
+        record = self._entries.aborted(before, reason or AbortReason.CLIENT.value, times["utc"])
+        if not record.is_kept:
+            return self._hand_over_and_leave()
+        self._entries.pending.append(attempt_entry(record, times))
+        journal, entries = self._journal, self._entries.taken()
+
+        def write() -> None:
+            journal.write(entries, sync=True)
+            self._archive.add_aborted(record, journal)
+
+        written = Written(self._writer.submit(write), is_awaited=False)
+        self._leave()
+        return written
 
     def _after_registration(
         self, operator_input: OperatorInput, result: StepResult

@@ -125,6 +125,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "study.break": "Step {number} of {count}: take a break of at least {minutes:g} minutes, "
         "{left} more. Then 3D Slicer will say what comes next.",
         "study.all-done": "All steps of the study are done. Thank you!",
+        "study.repeat": "Step {number} of {count}: {task} was aborted. The instructor says in 3D "
+        "Slicer why it is played again.",
         "study.played": "{task} is done. 3D Slicer will say what comes next.",
         "study.desktop": "on the desktop screen",
         "study.hmd": "with the headset",

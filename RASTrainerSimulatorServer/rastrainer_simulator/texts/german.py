@@ -131,6 +131,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "study.break": "Schritt {number} von {count}: Mach mindestens {minutes:g} Minuten Pause, "
         "noch {left}. Dann wird 3D Slicer sagen, was als Nächstes kommt.",
         "study.all-done": "Alle Schritte der Studie sind getan. Danke!",
+        "study.repeat": "Schritt {number} von {count}: {task} wurde abgebrochen. Die Kursleitung "
+        "gibt in 3D Slicer an, warum der Versuch wiederholt wird.",
         "study.played": "{task} ist erledigt. 3D Slicer wird sagen, was als Nächstes kommt.",
         "study.desktop": "am Bildschirm",
         "study.hmd": "mit dem Headset",

@@ -74,6 +74,11 @@ def test_in_another_mode_nothing_can_be_begun(menu, guide):
     ("step", "sentence"),
     [
         (
+            StudyStep("P07", "repeat", 3, 19, "task-2", "desktop"),
+            "Step 3 of 19: Task 2 was aborted. The instructor says in 3D Slicer why it is played "
+            "again.",
+        ),
+        (
             StudyStep("P07", "questionnaire", 1, 19, mode="hmd", questionnaire="nasa-tlx"),
             "Step 1 of 19: answer the questionnaire NASA-TLX (raw)",
         ),

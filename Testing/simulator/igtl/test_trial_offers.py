@@ -7,10 +7,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, Phase
 from rastrainer_simulator.igtl.trial_offers import MOST_AT_ONCE
 from rastrainer_simulator.state import TrainingState
+from Testing.domain.aborted_records import make_aborted
 from Testing.simulator.igtl.servers import LinkServer, at_rest
 
 
@@ -21,15 +23,16 @@ def record(name: str):
 class Collector(Client):
     """A client that keeps the offers it gets."""
 
-    def __init__(self, server: LinkServer):
+    def __init__(self, server: LinkServer, name: str = "TrialCompleted"):
         self.offers = []
+        self.name = name
         self.server = server
         super().__init__(port=server.port, on_message=self._keep)
         self._say_hello()
 
     def _keep(self, message):
         if message.device == "command":
-            assert message.content.name == "TrialCompleted"
+            assert message.content.name == self.name
             self.offers.append(message.content)
 
     def _say_hello(self):
@@ -90,3 +93,13 @@ def test_offers_are_numbered_so_that_each_can_be_answered(link_server):
         collector.send_command("ListTasks")
         first, second = collector.offers
         assert first.command_id != second.command_id
+
+
+def test_an_aborted_trial_is_offered_as_such(link_server):
+    aborted = AbortedTrial.from_json(make_aborted())
+    link_server.simulated.unacknowledged = (aborted,)
+    with Collector(link_server, "TrialAborted") as collector:
+        collector.server.thread.call(link_server.link.offers.repeat)
+        collector.send_command("ListTasks")
+        (offer,) = collector.offers
+    assert AbortedTrial.from_json(json.loads(offer.body)) == aborted

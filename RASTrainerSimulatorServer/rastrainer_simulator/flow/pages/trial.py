@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
+from rastrainer.protocol import TRIAL_RUN, AbortReason, CommandName, Phase
 from rastrainer_simulator.controls.control_name import ControlName
 from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.introduction import ControlsPage
@@ -40,7 +40,7 @@ class TrialPage(Page):
         elif item == "register":
             session.do(CommandName.REGISTER)
         elif item == "finish":
-            session.do(CommandName.ABORT)
+            session.do(CommandName.ABORT, {"reason": AbortReason.TRAINEE.value})
         else:
             pages = {"controls": ControlsPage, "settings": SettingsPage, "abort": AbortPage}
             session.pages.open(pages[item](session))
@@ -75,7 +75,7 @@ class AbortPage(Page):
     def accept(self, item: str) -> None:
         """Keep the trial or give it up."""
         if item == "abort":
-            self.session.do(CommandName.ABORT)
+            self.session.do(CommandName.ABORT, {"reason": AbortReason.TRAINEE.value})
         else:
             self.session.pages.close()
 
@@ -95,7 +95,10 @@ class PracticePage(Page):
 
     def accept(self, item: str) -> None:
         """Finish, or practice on."""
-        self.session.do(CommandName.ABORT if item == "finish" else CommandName.RESUME)
+        if item == "finish":
+            self.session.do(CommandName.ABORT, {"reason": AbortReason.PRACTICE_OVER.value})
+        else:
+            self.session.do(CommandName.RESUME)
 
     def back(self) -> None:
         """Practice on."""

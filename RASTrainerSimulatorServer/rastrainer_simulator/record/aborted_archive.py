@@ -1,0 +1,138 @@
+"""The aborted trials in a folder of journals that are still to be delivered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rastrainer.aborted_trial import AbortedTrial
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
+from rastrainer.protocol import CommandName
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.left_trial import left_trial
+from rastrainer_simulator.record.stamps import stamp
+
+ATTEMPT = "attempt"
+"""Kind of the entry that holds the record of an aborted trial."""
+
+
+@dataclass(frozen=True)
+class ArchivedAttempt:
+    """An aborted trial; `acknowledged` where a client has said that it has stored the record."""
+
+    record: AbortedTrial
+    acknowledged: bool = False
+
+    def told(self) -> dict[str, Any]:
+        """Return what GetTrial answers; where the head was is told of no aborted trial."""
+        return {
+            "trialId": self.record.trial_id,
+            "phase": "aborted",
+            "record": self.record.to_json(),
+            "acknowledged": self.acknowledged,
+        }
+
+
+class AbortedArchive:
+    """Holds the aborted trials that wait, and answers what is asked about any of them."""
+
+    def __init__(self) -> None:
+        self._waiting: dict[str, tuple[ArchivedAttempt, Journal]] = {}
+
+    def unacknowledged(self) -> tuple[AbortedTrial, ...]:
+        """Return the records that no client has acknowledged, the oldest first."""
+        return tuple(attempt.record for attempt, _journal in list(self._waiting.values()))
+
+    def add(self, record: AbortedTrial, journal: Journal) -> None:
+        """Take in a trial that has just been aborted."""
+        self._waiting[record.trial_id] = ArchivedAttempt(record), journal
+
+    def add_left(self, path: Path) -> None:
+        """Close the journal of a trial that was left open, and take it in if there is to.
+
+        Raises:
+            InputError: the journal cannot be used.
+            RecordError: it cannot be written.
+        """
+        reading = read_journal(path)
+        if reading.integrity is Integrity.ALTERED:
+            raise InputError(f"{path} is {reading.sentence}; its trial is not delivered.")
+        record = left_trial(reading)
+        if record is None or not record.is_kept:
+            return
+        journal, last = Journal.continuing(reading), reading.entries[-1]
+        _append(journal, attempt_entry(record, stamp(last["tick"], last["simTime"])))
+        self.add(record, journal)
+
+    def load(self, reading: JournalReading) -> bool:
+        """Take in what a journal tells; return whether it is that of an aborted trial.
+
+        Raises:
+            InputError: its record is none.
+        """
+        attempt = archived_attempt(reading)
+        if attempt is None:
+            return False
+        if not attempt.acknowledged:
+            self._waiting[attempt.record.trial_id] = attempt, Journal.continuing(reading)
+        return True
+
+    def answer(
+        self,
+        trial_id: str,
+        command: str,
+        times: Mapping[str, Any],
+        find: Callable[[], JournalReading | None],
+    ) -> dict[str, Any] | None:
+        """Carry out GetTrial or AcknowledgeTrial; None where the trial is no aborted one.
+
+        Args:
+            trial_id: Of the trial.
+            command: Its name.
+            times: Stamps of the entry that is appended to the journal.
+            find: Reads the trial's journal; None where there is none.
+
+        Raises:
+            InputError: nothing else can be done with an aborted trial.
+            RecordError: its journal cannot be written.
+        """
+        waiting = self._waiting.get(trial_id)
+        if waiting is None:
+            reading = find()
+            attempt = None if reading is None else archived_attempt(reading)
+        else:
+            attempt = waiting[0]
+        if attempt is None:
+            return None
+        if command == CommandName.GET_TRIAL:
+            return attempt.told()
+        if command != CommandName.ACKNOWLEDGE_TRIAL:
+            raise InputError(f"The trial {trial_id} was aborted; it has no score.")
+        if waiting is not None:
+            _append(waiting[1], {"kind": "acknowledged", **times})
+            del self._waiting[trial_id]
+        return {"trialId": trial_id}
+
+
+def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entry by which a journal keeps the record of an aborted trial."""
+    return {"kind": ATTEMPT, **times, "record": record.to_json()}
+
+
+def archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
+    """Return the aborted trial that a journal keeps the record of; None where it does not."""
+    found = reading.of_kind(ATTEMPT)
+    if not found or reading.of_kind("registered"):
+        return None
+    record = AbortedTrial.from_json(found[-1].get("record"))
+    return ArchivedAttempt(record, bool(reading.of_kind("acknowledged")))
+
+
+def _append(journal: Journal, entry: Mapping[str, Any]) -> None:
+    try:
+        journal.write([entry], sync=True)
+    finally:
+        journal.close()

@@ -1,0 +1,300 @@
+"""An aborted trial is kept and offered until somebody has it: no touch disappears."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+
+import pytest
+
+from rastrainer.aborted_trial import AbortedTrial
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.protocol import KEPT_AFTER_S, CommandName, Phase
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.record.left_trial import left_trial
+from rastrainer_simulator.record.replay import replay
+from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
+from rastrainer_simulator.simulation import Simulation
+from Testing.simulator.record.test_interrupted_trial import Server, cut
+
+
+class Restarted(Server):
+    """A server that was started with `--no-go-on`."""
+
+    def __init__(self, simulation, folder):
+        self.loop = ControlLoop(simulation, folder, speed=None)
+        self.folder = folder
+
+
+def touch(server, count):
+    for _ in range(count):
+        assert server.do(CommandName.CAPTURE).ok
+
+
+def wait_for_offer(server):
+    """Return what is offered; the journal's thread has written all that came before."""
+    server.loop._writer.submit(lambda: None).result()
+    return server.loop.unacknowledged()
+
+
+def test_it_is_offered_with_its_touches_until_it_is_acknowledged_also_after_a_restart(
+    simulation, anywhere, tmp_path
+):
+    with Server(simulation, tmp_path) as server:
+        trial_id = server.start()
+        touch(server, 3)
+        assert server.do(CommandName.UNDO).ok
+        assert server.do(CommandName.ABORT, reason="trainee").ok
+        (record,) = wait_for_offer(server)
+    assert isinstance(record, AbortedTrial)
+    assert (record.trial_id, record.trainee, record.task) == (trial_id, "P01", "task-1")
+    assert (record.reason, record.phase) == ("trainee", "running")
+    assert [point.label for point in record.points] == ["1", "2"]
+    assert record.undone_touches == 1
+    reading = read_journal(server.path)
+    assert reading.integrity is Integrity.INTACT
+    assert replay(reading, anywhere).difference is None
+    touched = reading.of_kind("touch")
+    assert [list(point.position_mm) for point in record.points] == [
+        entry["positionMm"] for entry in touched[:2]
+    ]
+    with Server(simulation, tmp_path) as server:
+        assert server.loop.unacknowledged() == (record,)
+        assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
+        assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
+        assert server.loop.unacknowledged() == ()
+    assert len(read_journal(server.path).of_kind("acknowledged")) == 1
+    assert TrialArchive(tmp_path).unacknowledged() == ()
+    assert replay(read_journal(server.path), anywhere).difference is None
+
+
+def test_after_all_touches_it_says_so_and_tells_the_time_of_the_last_one(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        server.move(ticks=50)
+        touch(server, 15)
+        elapsed = server.training.touches[-1].elapsed
+        server.move(ticks=50)
+        assert server.do(CommandName.ABORT).ok
+        (record,) = wait_for_offer(server)
+    assert (record.phase, len(record.points)) == ("complete", 15)
+    assert record.is_after_all_touches
+    assert record.elapsed_s == elapsed
+    assert record.reason == "client"
+
+
+def test_in_a_pause_it_says_so(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        touch(server, 1)
+        assert server.do(CommandName.PAUSE).ok
+        elapsed = server.loop.latest.elapsed
+        server.move(ticks=200)
+        assert server.do(CommandName.ABORT).ok
+        (record,) = wait_for_offer(server)
+    assert (record.phase, record.elapsed_s) == ("paused", elapsed)
+
+
+def test_a_trial_run_is_kept_too_and_marked(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.do(CommandName.START_TASK, task="trial-run", trainee="P01")
+        touch(server, 1)
+        assert server.do(CommandName.ABORT, reason="practice over").ok
+        (record,) = wait_for_offer(server)
+    assert record.is_trial_run
+    assert not record.counts_as_failed
+    assert record.reason == "practice over"
+
+
+def test_one_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        server.move(ticks=20)
+        assert server.do(CommandName.ABORT).ok
+        assert wait_for_offer(server) == ()
+    assert read_journal(server.path).integrity is Integrity.INTACT
+    assert find_unacknowledged(tmp_path) == []
+
+
+def test_one_without_a_touch_is_kept_after_ten_seconds(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        while server.loop.latest.elapsed <= KEPT_AFTER_S:
+            server.do(CommandName.LIST_TASKS)
+        assert server.do(CommandName.ABORT).ok
+        (record,) = wait_for_offer(server)
+    assert record.points == ()
+    assert record.elapsed_s > KEPT_AFTER_S
+
+
+def test_a_touch_that_was_refused_is_enough(setup, tmp_path):
+    with Server(Simulation(setup, 3), tmp_path) as server:
+        server.start()
+        assert not server.do(CommandName.CAPTURE).ok
+        assert server.do(CommandName.ABORT).ok
+        (record,) = wait_for_offer(server)
+    assert (record.points, record.rejected_touches) == ((), 1)
+
+
+def test_a_finished_trial_after_it_is_offered_beside_it(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        touch(server, 2)
+        aborted = server.do(CommandName.ABORT).data["trialId"]
+        finished = server.start()
+        server.finish()
+        records = wait_for_offer(server)
+    assert [(type(record), record.trial_id) for record in records] == [
+        (AbortedTrial, aborted),
+        (TrialRecord, finished),
+    ]
+
+
+def test_the_truth_about_it_is_told_to_nobody(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        trial_id = server.start()
+        touch(server, 15)
+        server.do(CommandName.ABORT)
+        for _ in range(2):
+            told = server.do(CommandName.GET_TRIAL, trialId=trial_id)
+            assert told.data["phase"] == "aborted"
+            assert not {"headToWorld", "trueTreMm", "seed"} & told.data.keys()
+            matrix = [float(i % 5 == 0) for i in range(16)]
+            refused = server.do(
+                CommandName.TRIAL_SCORED,
+                trialId=trial_id,
+                matrix=matrix,
+                freMm=0.0,
+                expectedTreMm=0.0,
+                score=100.0,
+            )
+            assert not refused.ok
+            assert "was aborted" in refused.message
+            server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id)
+    text = server.path.read_text()
+    assert json.loads(text.splitlines()[-1])["kind"] == "acknowledged"
+
+
+def test_who_ends_the_simulator_and_begins_another_trial_has_aborted_the_first(
+    simulation, tmp_path
+):
+    with Server(simulation, tmp_path) as server:
+        trial_id = server.start()
+        touch(server, 4)
+        server.do(CommandName.UNDO)
+        server.move(ticks=50)
+        server.loop.stop()
+        elapsed = server.loop.latest.elapsed
+        left = server.path
+    with Restarted(simulation, tmp_path) as server:
+        assert server.loop.unacknowledged() == ()
+        server.start()
+        (record,) = wait_for_offer(server)
+        assert (record.trial_id, record.reason) == (trial_id, "not gone on with")
+        assert (record.phase, len(record.points), record.undone_touches) == ("running", 3, 1)
+        assert record.elapsed_s == pytest.approx(elapsed, abs=0.05)
+        assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
+    assert [entry["kind"] for entry in read_journal(left).entries[-3:]] == [
+        "stopped",
+        "attempt",
+        "acknowledged",
+    ]
+    assert trial_id not in {record.trial_id for record in TrialArchive(tmp_path).unacknowledged()}
+
+
+def test_an_interrupted_trial_is_not_aborted_as_long_as_it_can_be_gone_on_with(
+    simulation, tmp_path
+):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        touch(server, 4)
+    with Restarted(simulation, tmp_path) as server:
+        assert server.loop.unacknowledged() == ()
+    with Server(simulation, tmp_path) as server:
+        assert server.training.phase is Phase.PAUSED
+        touches = len(server.training.touches)
+        assert server.do(CommandName.ABORT, reason="trainee").ok
+        (record,) = wait_for_offer(server)
+    assert (record.phase, record.reason, len(record.points)) == ("paused", "trainee", touches)
+
+
+def test_a_journal_left_at_any_byte_tells_every_touch_that_is_whole(simulation, tmp_path):
+    original = tmp_path / "original"
+    with Server(simulation, original) as server:
+        server.start()
+        touch(server, 6)
+        server.do(CommandName.UNDO)
+        server.do(CommandName.PAUSE)
+        server.do(CommandName.RESUME)
+        touch(server, 10)
+    data = server.path.read_bytes()
+    rng = random.Random(4)
+    for number in range(25):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        path = folder / server.path.name
+        shutil.copy(server.path, path)
+        cut(path, rng.randrange(len(data)))
+        reading = read_journal(path)
+        simulation_again = Server(simulation, folder)
+        touches = simulation_again.taken_up.training.touches
+        has_trial = simulation_again.taken_up.training.phase is not Phase.IDLE
+        simulation_again.loop._writer.shutdown()
+        record = left_trial(reading)
+        assert (record is not None) == has_trial
+        if has_trial:
+            assert [p.label for p in record.points] == [t.label for t in touches]
+            archive = TrialArchive(folder)
+            archive.add_left(path)
+            assert not archive.problems
+            assert archive.unacknowledged() == ((record,) if record.is_kept else ())
+            assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
+
+
+def test_aborted_trials_of_before_this_was_kept_are_not_offered(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        touch(server, 2)
+        server.do(CommandName.ABORT)
+    lines = server.path.read_bytes().splitlines(keepends=True)
+    assert json.loads(lines[-1])["kind"] == "attempt"
+    server.path.write_bytes(b"".join(lines[:-1]))
+    assert TrialArchive(tmp_path).unacknowledged() == ()
+    with Restarted(simulation, tmp_path) as server:
+        server.start()
+        assert wait_for_offer(server) == ()
+
+
+def test_an_altered_journal_that_was_left_is_named_and_not_offered(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        touch(server, 2)
+    server.path.write_bytes(server.path.read_bytes().replace(b'"P01"', b'"P02"', 1))
+    archive = TrialArchive(tmp_path)
+    archive.add_left(server.path)
+    assert archive.unacknowledged() == ()
+    assert "altered" in archive.problems[0]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        pytest.param({"kind": "header", "settings": 3}, id="settings"),
+        pytest.param({"kind": "header", "trainee": "x" * 99}, id="trainee"),
+        pytest.param({"kind": "touch", "utc": "soon"}, id="utc"),
+        pytest.param({"kind": "phase", "phase": "scored"}, id="phase"),
+    ],
+)
+def test_a_forged_journal_that_was_left_is_refused_with_a_sentence(simulation, tmp_path, change):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        touch(server, 2)
+    reading = read_journal(server.path)
+    for entry in reading.entries:
+        if entry["kind"] == change["kind"]:
+            entry.update(change)
+    with pytest.raises(InputError):
+        left_trial(reading)
