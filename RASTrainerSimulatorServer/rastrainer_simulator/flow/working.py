@@ -31,6 +31,8 @@ PRESSED_MM = 0.5
 """How deep the tool may be pressed into the head before it is told how deep."""
 STEP_MM = 5.0
 """The distance to the target is told in such steps: a running figure cannot be read."""
+DEPTH_STEP_MM = 0.5
+"""The same of the depth: a screen reader says each change of a warning."""
 
 
 class Working:
@@ -143,8 +145,8 @@ class Working:
         warnings = []
         state = self._session.state
         if state.proximity is Proximity.CONTACT:
-            depth_mm = MM * state.depth
-            is_pressed = depth_mm > PRESSED_MM
+            depth_mm = DEPTH_STEP_MM * round(MM * state.depth / DEPTH_STEP_MM)
+            is_pressed = MM * state.depth > PRESSED_MM
             text = say("warning.pressing", depth=depth_mm) if is_pressed else say("warning.contact")
             warnings.append(Message(text, Tone.ERROR))
         if self._obstacle:
