@@ -152,7 +152,7 @@ def test_progress_tells_best_mark_and_competence():
     assert early.scores == (40.0, 41.0, 42.0)
     assert early.sentences[1] == "Not passed yet: 3 points to the mark of 45."
     assert early.sentences[2].startswith(
-        "0 % of the way to proven competence (LC-CUSUM; trials so far: 3)"
+        "0 % of the way to demonstrated competence (LC-CUSUM; trials so far: 3)"
     )
 
 

@@ -1,5 +1,6 @@
 """A study's report: the paper's tables to the digit, self-contained, honest, safe."""
 
+import csv
 import re
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from scipy.stats import pearsonr
 
 from rastrainer.cohort.outcome_model import OutcomeModel, draw_study
 from rastrainer.errors import InputError
@@ -125,6 +127,8 @@ def test_the_paired_tests_on_subject_means_are_those_of_the_shared_analysis(publ
 def test_the_report_says_what_four_subjects_cannot_show(page):
     words = words_of(page)
     assert "0.147 mm higher with the headset than with the desktop screen" in words
+    assert "95 % interval from +0.085 to +0.208 mm" in words
+    assert "compatible with anything from −20.46 to +13.94 s" in words
     assert "its smallest possible p is .125" in words
     assert "not evidence that there is none" in words
     assert "None are reported. Groups of trainees are not reported for fewer than 12" in words
@@ -170,12 +174,27 @@ def test_negative_numbers_have_a_minus_and_no_hyphen(page):
     assert "−0.00" not in words
 
 
+def mean_ctps_of_tasks(mode):
+    """Return the CTPS of each task by the printed tables alone."""
+    with PUBLISHED.open() as file:
+        rows = [row for row in csv.DictReader(file) if row["mode"] == mode]
+    times, errors = (np.array([float(row[name]) for row in rows]) for name in ("ct", "rmse"))
+    mean = 129.42 if mode == "desktop" else times.mean()
+    scores = 100 * (times / mean - (errors - errors.min()) / errors.min())
+    tasks = np.array([int(row["task"]) for row in rows])
+    return [scores[tasks == task].mean() for task in range(1, 6)]
+
+
 def test_the_claim_that_ctps_falls_with_complexity_is_examined_as_the_others(published, page):
     words = words_of(page)
     found = []
     for mode in ("hmd", "desktop"):
         scores = cohort_scores(published, mode)
         one = complexity_correlation(scores.tasks.items())
+        expected = pearsonr(range(1, 6), mean_ctps_of_tasks(mode))
+        assert (one.r, one.p) == pytest.approx((expected.statistic, expected.pvalue), abs=1e-9)
+        limits = expected.confidence_interval(0.95)
+        assert one.interval == pytest.approx((limits.low, limits.high), abs=1e-9)
         found.append((round(one.r, 2), round(one.p, 2)))
         assert one.interval[0] < 0 < one.interval[1]
     assert found == [(-0.75, 0.15), (-0.61, 0.27)]

@@ -91,7 +91,7 @@ def test_who_lacks_a_mode_is_left_out():
 
 def test_the_report_tells_it_in_a_table_with_n():
     page = report_html(drawn())
-    assert "What the trials vary by" in page
+    assert "What completion time and error vary with" in page
     assert "120 trials of the 12 trainees who did every mode" in page
     assert "Trainee × mode (SD)" in page
     assert "Headset (HMD) against Desktop" in page

@@ -11,14 +11,15 @@ from rastrainer.inference.period_effect import fit_differences
 from rastrainer.scipy_modules import scipy_module
 from Testing.error_rates.measured import Measured, share_of, share_text
 
+COVERAGE = "coverage of the 95 % interval"
 HEADER = (
     "trainees in two sequences",
     "with the period",
     "paired t-test",
     "rank sums",
-    "95 % holds",
+    COVERAGE,
 )
-STUDY_HEADER = ("outcome", "p (Holm) < .05", "p < .05", "rank test", "95 % holds")
+STUDY_HEADER = ("outcome", "p (Holm) < .05", "p < .05", "rank test", COVERAGE)
 MODES = ("desktop", "hmd")
 
 

@@ -47,7 +47,7 @@ ENGLISH: Mapping[str, str] = {
     "competent": "Your trials show competence since number {number}: of those who still fail in "
     "{failing:.0f} % of their trials, {risk:.0f} % come so far by chance within {trials} trials "
     "(LC-CUSUM).",
-    "not competent": "{share:.0f} % of the way to proven competence (LC-CUSUM; trials so "
+    "not competent": "{share:.0f} % of the way to demonstrated competence (LC-CUSUM; trials so "
     "far: {trials}).",
 }
 

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from rastrainer.inference.paired import PairedComparison
 from rastrainer.inference.power import ALPHA, TARGET_POWER, detectable_effect, subjects_needed
-from rastrainer.number_text import p_text, percent, significant
+from rastrainer.number_text import fixed, p_text, percent, signed
 
 FEW = 20
 """Below this many subjects the limits are said even where nobody asks."""
 
 
 def what_it_shows(
-    name: str, unit: str, first: str, second: str, comparison: PairedComparison, adjusted_p: float
+    name: str,
+    unit: str,
+    first: str,
+    second: str,
+    comparison: PairedComparison,
+    adjusted_p: float,
+    digits: int = 2,
 ) -> str:
     """Return a sentence that says what the comparison shows, never more.
 
@@ -22,22 +28,23 @@ def what_it_shows(
         second: Name of the second condition.
         comparison: Second minus first.
         adjusted_p: Its p, adjusted for the number of outcomes.
+        digits: After the point, of the difference and its interval.
     """
     low, high = comparison.interval
     difference = comparison.mean_difference
-    amount = f"{significant(abs(difference))} {unit}".rstrip()
-    ends = [significant(end, sign=True) for end in (low, high)]
+    amount = f"{fixed(abs(difference), digits)} {unit}".rstrip()
+    ends = [signed(end, digits) for end in (low, high)]
     span = f"from {ends[0]} to {ends[1]} {unit}".rstrip()
     direction = "higher" if difference > 0 else "lower"
     if adjusted_p < ALPHA:
         return (
             f"{name} was {amount} {direction} with {second} than with {first} "
-            f"(95 % interval {span}); this holds after the correction for several outcomes."
+            f"(95 % interval {span}); this holds after correction for testing several outcomes."
         )
     if comparison.p < ALPHA:
         return (
             f"{name} was {amount} {direction} with {second} than with {first} (95 % interval "
-            f"{span}), but this does not hold after the correction for several outcomes."
+            f"{span}), but this does not hold after correction for testing several outcomes."
         )
     return (
         f"{name}: no difference is shown. The data are compatible with anything {span}; that is "

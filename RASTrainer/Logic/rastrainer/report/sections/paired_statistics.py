@@ -43,6 +43,7 @@ def findings(comparisons: Sequence[ModeComparison]) -> list[str]:
             mode_name(comparison.second),
             comparison.result,
             comparison.adjusted_p,
+            comparison.outcome.digits + 1,
         )
         for comparison in comparisons
         if comparison.result is not None and comparison.adjusted_p is not None
@@ -89,7 +90,8 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
     separated = [c for c in comparisons if c.result is not None and c.result.sequences is not None]
     if not separated:
         return [paragraph(order_caveat(comparisons))]
-    first, second = (mode_name(mode) for mode in (separated[0].first, separated[0].second))
+    one = separated[0]
+    first, second = mode_name(one.first), mode_name(one.second)
     rows = []
     for comparison in separated:
         found, digits = comparison.result.sequences, comparison.outcome.digits + 1
@@ -101,8 +103,7 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
         rows.append([comparison.outcome.heading, *counts, later, between])
     header = [
         "Outcome",
-        f"n, {first} first",
-        f"n, {second} first",
+        *(f"n, {mode_title(mode).split(' ')[0]} first" for mode in (one.first, one.second)),
         "one period later [95\N{NO-BREAK SPACE}%]",
         "between sequences [95\N{NO-BREAK SPACE}%]",
     ]

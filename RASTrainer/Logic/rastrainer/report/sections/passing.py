@@ -28,7 +28,7 @@ from rastrainer.report.outcomes import mode_title
 from rastrainer.report.study_data import StudyData
 from rastrainer.scoring import passes
 
-HEADER = ["mode", "trials", "passed", "trainees competent", "median trial that showed it"]
+HEADER = ["mode", "trials", "passed", "trainees competent", "shown at trial (median)"]
 
 
 def passing(data: StudyData) -> str:

@@ -117,7 +117,7 @@ def _overall(mode: str, scores: CohortScores) -> str:
         ""
         if scores.sd_sample is None
         else f" ± {scores.sd_sample:.2f} "
-        f"(divided by n − 1; {scores.sd_population:.2f} divided by n)"
+        f"(SD, divided by n − 1; {scores.sd_population:.2f} divided by n)"
     )
     correlation = (
         ""

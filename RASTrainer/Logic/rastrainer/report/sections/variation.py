@@ -45,10 +45,13 @@ def variation(data: StudyData) -> str:
         ["Between trainees (SD)", *(_sd(one.trainee_variance) for one in both)],
         ["Trainee × mode (SD)", *(_sd(one.interaction_variance) for one in both)],
         ["From trial to trial (SD)", *(_sd(one.trial_variance) for one in both)],
-        ["A touch taken back", *("–" if one.lapse is None else _factor(one.lapse) for one in both)],
+        [
+            "Trials with a touch taken back against others",
+            *("–" if one.lapse is None else _factor(one.lapse) for one in both),
+        ],
     ]
     return section(
-        "What the trials vary by",
+        "What completion time and error vary with",
         table([HEADER], [[Cell(row[0], kind="text"), *row[1:]] for row in rows], "wide"),
         paragraph(_words(found), "small"),
     )
