@@ -14,14 +14,16 @@ EXPECTED = "expected TRE (mm)"
 INSIDE = "true TRE, inside (mm)"
 OUTSIDE = "true TRE, outside (mm)"
 LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
+ROOM = 1.5
+"""Of the plot's height to what it shows: the legend stands above, and hides no trial."""
 _DOTS = {
-    INSIDE: (_("True TRE, inside its interval"), (0.15, 0.4, 0.75)),
-    OUTSIDE: (_("True TRE, outside of its interval"), (0.8, 0.15, 0.1)),
+    INSIDE: (_("Inside"), (0.15, 0.4, 0.75)),
+    OUTSIDE: (_("Outside"), (0.8, 0.15, 0.1)),
 }
 _LINES = {
     EXPECTED: (_("True = expected"), (0.1, 0.1, 0.1)),
-    LOW: (_("95 % interval, lower end"), (0.55, 0.6, 0.65)),
-    HIGH: (_("95 % interval, upper end"), (0.55, 0.6, 0.65)),
+    LOW: (_("95 %, from"), (0.55, 0.6, 0.65)),
+    HIGH: (_("95 %, to"), (0.55, 0.6, 0.65)),
 }
 
 
@@ -50,7 +52,7 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
     chart.SetXAxisRangeAuto(False)
     chart.SetXAxisRange(0.0, 1.1 * largest)
     chart.SetYAxisRangeAuto(False)
-    chart.SetYAxisRange(0.0, 1.05 * max(highest, default=1.0))
+    chart.SetYAxisRange(0.0, ROOM * max(highest, default=1.0))
     return chart
 
 

@@ -93,4 +93,4 @@ def _legend(sheet: Sheet, colors: Mapping[str, tuple[str, str]]) -> None:
 def _words(sheet: Sheet, x: float, y: float, text: str) -> float:
     """Write a name and return where the next may begin."""
     sheet.text(x, y, text, 11)
-    return x + 20 + 5.4 * len(text)
+    return x + 22 + 5.1 * len(text)

@@ -12,7 +12,7 @@ from rastrainer.target_error import INTERVAL_NOTE
 from rastrainer.tre_calibration import CalibrationPoint, TreCalibration, share_text
 
 HEADER = [
-    *("mode", "n", "true TRE, RMS (mm)", "expected TRE, RMS (mm)"),
+    *("mode", "n", "true, RMS (mm)", "expected, RMS (mm)"),
     *("inside [95 %]", "larger", "smaller"),
 ]
 

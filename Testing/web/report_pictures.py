@@ -1,0 +1,93 @@
+"""Make the picture of a report's target errors: python -m Testing.web.report_pictures [PAGE.png].
+
+The study is drawn: eight trainees do all tasks on the built-in head in both modes; in the headset
+the view misleads all touches by 1 mm. With a file's name, the whole page is kept there as well.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import uuid
+from pathlib import Path
+
+import numpy as np
+from playwright.sync_api import sync_playwright
+
+from rastrainer import transforms
+from rastrainer.report.report import write_report
+from rastrainer.report.study_data import read_study_data
+from rastrainer.scenario import Scenario, Task, load_scenario
+from rastrainer.study import Study
+from rastrainer.trial_analysis import analyze_trial
+from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+from Testing.domain.trial_records import make_record
+from Testing.web.chromium import launch
+
+FOLDER = Path(__file__).parents[2] / "Screenshots"
+PICTURE = "report-target-errors.png"
+TRAINEES, MODES = 8, ("desktop", "hmd")
+SCATTER_MM = (0.4, 1.1)
+"""Of touches on each axis: of the best trainee and of the worst."""
+VIEW_BIAS_MM = {"desktop": np.zeros(3), "hmd": np.array([0.9, 0.3, -0.4])}
+SIZE = {"width": 900, "height": 800}
+
+
+def draw_study(path: Path, seed: int = 4) -> None:
+    """Fill a study with trials whose truth is known."""
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    random = np.random.default_rng(seed)
+    tasks = [task for task in scenario.tasks if task.name.startswith("task-")]
+    with Study.open(path) as study:
+        for number, scatter in enumerate(np.linspace(*SCATTER_MM, TRAINEES), start=1):
+            name = f"T-{number:03d}"
+            study.create_trainee(name, consent=True)
+            for mode in MODES if number % 2 else MODES[::-1]:
+                for task in tasks:
+                    errors = random.normal(0, scatter, (15, 3)) + VIEW_BIAS_MM[mode]
+                    _add_trial(study, scenario, task, (name, mode), errors, random)
+
+
+def _add_trial(
+    study: Study,
+    scenario: Scenario,
+    task: Task,
+    who: tuple[str, str],
+    errors_mm: np.ndarray,
+    random: np.random.Generator,
+) -> None:
+    head_to_world = scenario.perturbed_head_to_world(int(random.integers(1_000_000)))
+    touched = transforms.apply(head_to_world, task.fiducials + errors_mm)
+    trial_id = str(uuid.UUID(int=int(random.integers(2**62))))
+    (name, mode), time = who, 130.0 * float(np.exp(random.normal(0, 0.15)))
+    record = make_record(
+        trialId=trial_id, trainee=name, mode=mode, task=task.name, completionTimeS=time
+    )
+    for point, label, position in zip(record["points"], task.labels, touched, strict=True):
+        point["label"], point["positionMm"] = label, position.tolist()
+    analysis = analyze_trial(TrialRecord.from_json(record), scenario)
+    study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    target = scenario.target_position[None]
+    there = transforms.apply(analysis.rigid.matrix @ head_to_world, target)
+    study.set_truth(trial_id, float(np.linalg.norm(there - target)), head_to_world.ravel().tolist())
+
+
+def main(whole_page: str = "") -> None:
+    """Make the picture."""
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        path = Path(folder, "study.db")
+        draw_study(path)
+        written = write_report(read_study_data(path), Path(folder, "report"))
+        browser = launch(playwright)
+        page = browser.new_page(viewport=SIZE, device_scale_factor=1.5)
+        page.goto(written.page.as_uri())
+        if whole_page:
+            page.screenshot(path=whole_page, full_page=True)
+        shown = page.locator("section", has=page.locator("h2", has_text="Expected and true"))
+        shown.screenshot(path=FOLDER / PICTURE)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
