@@ -69,7 +69,7 @@ def test_the_report_counts_what_is_missing_and_tells_modes_apart():
     assert "larger: 1, smaller: 0" in page
     assert page.count("cannot be shown") == 2
     assert "of the intervals were told before" not in page
-    assert "<td>all</td><td>8</td>" in page
+    assert ">all</th><td>8</td>" in page
     assert "T-001, task-1: true 3.00 mm, expected 0.50 mm" in page
     assert INTERVAL_NOTE in page
 
