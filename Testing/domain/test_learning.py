@@ -11,6 +11,8 @@ from rastrainer.errors import InputError
 from rastrainer.learning.contrasting_groups import pass_mark
 from rastrainer.learning.cusum import failure_cusum, tabular_cusum
 from rastrainer.learning.lc_cusum import (
+    FALSE_DISCOVERY,
+    chance_of_successes,
     fewest_trials,
     lc_cusum,
     lc_cusum_limit,
@@ -148,6 +150,16 @@ def test_competence_takes_eleven_passed_trials_at_least():
     assert fewest_trials(0.05, 0.4, limit) == 11
     assert lc_cusum([False] * 10, 0.05, 0.4, limit).competent_at is None
     assert lc_cusum([False] * 11, 0.05, 0.4, limit).competent_at == 11
+
+
+def test_fewer_than_eleven_trials_cannot_show_competence_at_the_accepted_risk():
+    limit = lc_cusum_limit(0.05, 0.4, 30)
+    fewest = fewest_trials(0.05, 0.4, limit)
+    assert fewest == 11
+    assert lc_cusum([False] * (fewest - 1), 0.05, 0.4, limit).competent_at is None
+    assert lc_cusum([False] * fewest, 0.05, 0.4, limit).competent_at == fewest
+    chances = [chance_of_successes(count, 30, 0.05, 0.4) for count in (fewest - 1, fewest)]
+    assert chances[0] > FALSE_DISCOVERY > chances[1]
 
 
 def test_the_pass_mark_of_equal_spreads_is_in_the_middle():

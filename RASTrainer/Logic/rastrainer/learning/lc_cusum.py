@@ -95,12 +95,21 @@ def lc_cusum_limit(
 
 def fewest_trials(adequate: float, inadequate: float, limit: float) -> int:
     """Return how many trials show competence at the earliest: successes without a failure."""
-    return math.ceil(limit / success_step(adequate, inadequate) - 1e-12)
+    success, _ = _steps(adequate, inadequate)
+    return math.ceil(limit / success - 1e-12)
 
 
-def success_step(adequate: float, inadequate: float) -> float:
-    """Return what a success adds to the score."""
-    return _steps(adequate, inadequate)[0]
+def chance_of_successes(count: int, trials: int, adequate: float, inadequate: float) -> float:
+    """Return how probable it is that an inadequate trainee reaches the score of so many successes.
+
+    Args:
+        count: Successes without a failure between them.
+        trials: Within how many.
+        adequate: Failure rate of a competent trainee.
+        inadequate: Failure rate of one who is not.
+    """
+    success, _ = _steps(adequate, inadequate)
+    return signal_probability(inadequate, trials, adequate, inadequate, count * success)
 
 
 def signal_probability(

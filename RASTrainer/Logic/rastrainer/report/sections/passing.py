@@ -16,11 +16,11 @@ from rastrainer.feedback.progress_words import (
 from rastrainer.learning.lc_cusum import (
     FALSE_DISCOVERY,
     LcCusum,
+    chance_of_successes,
     fewest_trials,
     lc_cusum_limit,
-    success_step,
 )
-from rastrainer.number_text import fixed, percent
+from rastrainer.number_text import percent
 from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
 from rastrainer.report.markup import figure, paragraph, section, table
@@ -103,13 +103,16 @@ def _words(data: StudyData, mark: float) -> str:
     )
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     fewest = fewest_trials(ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
+    too_likely = chance_of_successes(
+        fewest - 1, TRAINING_TRIALS, ADEQUATE_FAILURES, INADEQUATE_FAILURES
+    )
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and an expected target error "
         "within the limit of its task. LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
         "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
         f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "
-        f"{fewest} trials in a mode cannot show it, even if all are passed: a passed trial adds "
-        f"{fixed(success_step(ADEQUATE_FAILURES, INADEQUATE_FAILURES), 2)}, and the limit is "
-        f"{fixed(limit, 2)}, by which at most {percent(FALSE_DISCOVERY)} of trainees who fail in "
-        f"{percent(INADEQUATE_FAILURES)} are called competent within {TRAINING_TRIALS} trials."
+        f"{fewest} trials in a mode cannot show it, even if all are passed: the score of "
+        f"{fewest - 1} passed trials would be reached by chance, within {TRAINING_TRIALS} trials, "
+        f"by {100 * too_likely:.1f} % of those who fail in {percent(INADEQUATE_FAILURES)}, and at "
+        f"most {percent(FALSE_DISCOVERY)} of them may be called competent."
     )
