@@ -6,12 +6,16 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.errors import InputError
+from rastrainer.experiment.steps import StepKind
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.slicer.study_desk import StudyDesk
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials
 from rastrainer.trial_record import TrialRecord
+from Testing.domain.aborted_records import make_aborted
 from Testing.slicer.training_room import Room
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
@@ -344,3 +348,26 @@ def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab
     lab.room.run_until(lambda: len(lab.room.sent("StudyStep")) > before)
     assert told(lab)["minutes"] == 10.0
     assert told(lab)["over"] == pytest.approx(4.0, abs=0.5)
+
+
+def test_the_simulator_is_told_to_wait_until_an_aborted_trial_has_its_reason(enrolled):
+    while enrolled.desk.progress().next_step.kind is not StepKind.TRIAL:
+        enrolled.desk.skipStep("this is not what is tested")
+    step = enrolled.desk.progress().next_step
+    started = datetime.now(timezone.utc).isoformat()
+    aborted = make_aborted(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)
+    AbortedTrials(enrolled.trainees.study).add(aborted)
+    enrolled.desk.countAborted(AbortedTrial.from_json(aborted))
+    room = enrolled.room
+    room.run_until(lambda: room.sent("StudyStep")[-1]["kind"] == "repeat")
+    assert room.sent("StudyStep")[-1]["task"] == step.task
+    for start in (enrolled.desk.startStep, lambda: enrolled.desk.startTrial(step.task, step.mode)):
+        with pytest.raises(InputError, match="only with a reason"):
+            start()
+    enrolled.tell(phase="running", mode=step.mode, task=step.task)
+    assert "once there is a reason" in enrolled.desk.beside()
+    with pytest.raises(InputError, match="10 to 500"):
+        enrolled.desk.explainRepeat("because")
+    enrolled.desk.explainRepeat("the fire alarm went off")
+    room.run_until(lambda: room.sent("StudyStep")[-1]["kind"] == "trial")
+    assert enrolled.desk.beside() == ""

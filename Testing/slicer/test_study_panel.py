@@ -1,13 +1,18 @@
 """The section Study by its buttons alone: begin, enroll, answer, skip; what is refused is told."""
 
 import json
+from datetime import datetime, timezone
 from pathlib import Path
 
 import pytest
 
+from rastrainer.aborted_trial import AbortedTrial
+from rastrainer.experiment.steps import StepKind
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.questionnaires.ssq import SSQ
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials
+from Testing.domain.aborted_records import make_aborted
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 
@@ -100,3 +105,30 @@ def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun
     begun.press("createTraineeButton")
     begun.choose("traineeComboBox", "T001")
     assert outcomes(begun)[:2] == ["left out: the sheets were missing", "next"]
+
+
+def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
+    while begun.widget.logic.session.study.progress().next_step.kind is not StepKind.TRIAL:
+        begun.answer("Why is it left out?", "this is not what is tested")
+        begun.press("skipStepButton")
+    step = begun.widget.logic.session.study.progress().next_step
+    started = datetime.now(timezone.utc).isoformat()
+    record = make_aborted(
+        trainee="T001", mode=step.mode, task=step.task, startedUtc=started, touches=15
+    )
+    with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
+        AbortedTrials(study).add(record)
+    begun.widget.logic.session.aborted.kept.emit(AbortedTrial.from_json(record))
+    begun.process_events()
+    assert "aborted with 15 of 15 points touched" in begun.text("stepText")
+    told = "Aborted: 1, of them 1 after all touches"
+    begun.wait_until(lambda: told in begun.text("traineeText"), "it is counted")
+    assert not begun.find("startStepButton").visible
+    begun.answer("Why is the aborted trial played again?", "no reason")
+    begun.answer("only with a reason", "the tracking of the headset was lost")
+    begun.press("repeatStepButton")
+    assert begun.find("startStepButton").visible
+    assert not begun.find("repeatStepButton").visible
+    with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
+        (stored,) = AbortedTrials(study).of("T001")
+    assert stored.repeat_reason == "the tracking of the headset was lost"

@@ -14,6 +14,7 @@ from rastrainer.questionnaires.catalog import find_questionnaire
 from rastrainer.registration import RIGID
 from rastrainer.report.study_data import StudyData, TrialRow, trial_rows
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials, StoredAborted
 from rastrainer.study_values import StoredTrial
 
 FIRST_COLUMNS = (
@@ -24,17 +25,33 @@ TOUCH_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "label"),
     *("sim_time_s", "x_mm", "y_mm", "z_mm", "residual_mm"),
 )
+ABORTED_COLUMNS = (
+    *("trainee", "mode", "task", "trial_id", "started_utc", "aborted_utc", "scenario"),
+    *("trial_run", "phase", "reason", "elapsed_s", "touches", "refused_touches", "undone_touches"),
+    *("counts_as_not_passed", "step", "repeat_reason"),
+)
+ABORTED_TOUCH_COLUMNS = (
+    *("trainee", "mode", "task", "trial_id", "label"),
+    *("sim_time_s", "x_mm", "y_mm", "z_mm"),
+)
 QUESTIONNAIRE_COLUMNS = ("trainee", "mode", "step", "questionnaire")
 
 
 def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> int:
     """Write all trials of trainees, trial runs too, as a CSV file; return their number.
 
+    Where trials were aborted they go into a second file beside it, `NAME-aborted.csv`.
+
     Raises:
         InputError: the study has no such trainee, or the file cannot be written.
     """
+    pseudonyms = tuple(pseudonyms)
     rows = [row for pseudonym in pseudonyms for row in trial_rows(study.history(pseudonym))]
     write_text(path, trials_csv(rows))
+    aborted = [stored for name in pseudonyms for stored in AbortedTrials(study).of(name)]
+    if aborted:
+        path = Path(path)
+        write_text(path.with_name(f"{path.stem}-aborted{path.suffix}"), aborted_csv(aborted))
     return len(rows)
 
 
@@ -71,6 +88,48 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
         for trial in trials
     ]
     return csv_text([*FIRST_COLUMNS, *names], rows)
+
+
+def aborted_csv(trials: Iterable[StoredAborted]) -> str:
+    """Return aborted trials as CSV text, with why a study's step was then played again."""
+    rows = []
+    for stored in trials:
+        record = stored.record
+        rows.append(
+            [
+                *(plain_cell(text) for text in (record.trainee, record.mode, record.task)),
+                record.trial_id,
+                record.started_utc,
+                record.aborted_utc,
+                plain_cell(record.scenario),
+                int(record.is_trial_run),
+                record.phase,
+                plain_cell(record.reason),
+                _number(record.elapsed_s),
+                len(record.points),
+                record.rejected_touches,
+                record.undone_touches,
+                int(record.counts_as_failed),
+                stored.step,
+                plain_cell(stored.repeat_reason),
+            ]
+        )
+    return csv_text(ABORTED_COLUMNS, rows)
+
+
+def aborted_touches_csv(trials: Iterable[StoredAborted]) -> str:
+    """Return the touches of aborted trials that were kept until then, as `touches_csv`."""
+    rows = [
+        [
+            *(plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)),
+            trial.trial_id,
+            plain_cell(point.label),
+            *(_number(value) for value in (point.sim_time_s, *point.position_mm)),
+        ]
+        for trial in (stored.record for stored in trials)
+        for point in trial.points
+    ]
+    return csv_text(ABORTED_TOUCH_COLUMNS, rows)
 
 
 def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:

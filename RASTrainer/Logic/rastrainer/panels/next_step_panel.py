@@ -51,6 +51,7 @@ class NextStepPanel:
         self._hasTrainees = self._hasPracticed = False
         self._isUnscored = self._hasNewResult = self._isResultShown = False
         self._studyStep: Any = None
+        self._repeatSentence = ""
         self._needsSetup = session.simulator.needsSetup
         ui.nextStepButton.connect("clicked()", self.do)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
@@ -118,7 +119,8 @@ class NextStepPanel:
             hasNewResult=self._hasNewResult,
             isResultShown=self._isResultShown,
             studyStep=None if study is None else study.kind,
-            studySentence="" if study is None else study.sentence,
+            needsRepeatReason=bool(self._repeatSentence),
+            studySentence=self._repeatSentence or ("" if study is None else study.sentence),
         )
 
     def _show(self, now: Situation, step: NextStep) -> None:
@@ -151,13 +153,15 @@ class NextStepPanel:
         if trainees.chosen != self._trainee:
             self._trainee = trainees.chosen
             self._hasPracticed = self._hasNewResult = self._isResultShown = False
-        self._studyStep = None
+        self._studyStep, self._repeatSentence = None, ""
         # The section Trainees tells what is wrong with the study.
         with contextlib.suppress(InputError):
             self._hasTrainees = bool(trainees.trainees())
             self._hasPracticed = self._hasPracticed or bool(trainees.history())
             progress = self._session.study.progress()
-            self._studyStep = None if progress is None else progress.next_step
+            if progress is not None:
+                self._studyStep = progress.next_step
+                self._repeatSentence = progress.repeat_sentence
         self.showState()
 
     def _lookAtSetup(self, _error: str = "") -> None:

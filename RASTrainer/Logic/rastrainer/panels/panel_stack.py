@@ -85,6 +85,7 @@ def _actions(sections: Mapping[type, Any]) -> dict[Action, Callable[[], None]]:
         Action.CONNECT_TO_RUNNING: sections[RunningSimulatorPanel].connectToIt,
         Action.CREATE_TRAINEE: sections[TraineesPanel].createTrainee,
         Action.START_STUDY_STEP: sections[StudyPanel].startStep,
+        Action.EXPLAIN_REPEAT: sections[StudyPanel].explainRepeat,
         Action.START_TRIAL_RUN: sections[TrainingPanel].startTrialRun,
         Action.START_TASK: sections[TrainingPanel].startTask,
         Action.PAUSE: sections[TrainingPanel].pauseOrResume,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,7 @@ class StudyPanel:
         ui.enrollButton.connect("clicked()", self.enroll)
         ui.startStepButton.connect("clicked()", self.startStep)
         ui.skipStepButton.connect("clicked()", self.skipStep)
+        ui.repeatStepButton.connect("clicked()", self.explainRepeat)
         ui.saveAnswersButton.connect("clicked()", self.saveAnswers)
         ui.protocolPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
         self._desk.changed.connect(self._show)
@@ -74,22 +76,32 @@ class StudyPanel:
 
     def skipStep(self) -> None:
         """Leave the step out, for a reason; one that does not do can be completed."""
-        reason = self._askWhy("", "")
-        with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
-            while reason:
-                try:
-                    self._desk.skipStep(reason)
-                except InputError as error:
-                    reason = self._askWhy(reason, str(error))
-                else:
-                    return
-
-    def _askWhy(self, reason: str, problem: str) -> str:
-        """Return why the step is left out, beginning with what was typed; empty if canceled."""
         question = _("Why is it left out? The reason goes into the report.")
+        with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
+            self._withReason(_("Skip the step"), question, self._desk.skipStep)
+
+    def explainRepeat(self) -> None:
+        """Say why an aborted trial is played again; only then can it be started."""
+        question = _("Why is the aborted trial played again? The reason goes into the report.")
+        with slicer.util.tryWithErrorDisplay(_("The reason was not kept.")):
+            self._withReason(_("Repeat the step"), question, self._desk.explainRepeat)
+
+    def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:
+        """Do what takes a reason; one that does not do can be completed."""
+        reason = self._askWhy(title, question, "", "")
+        while reason:
+            try:
+                do(reason)
+            except InputError as error:
+                reason = self._askWhy(title, question, reason, str(error))
+            else:
+                return
+
+    def _askWhy(self, title: str, question: str, reason: str, problem: str) -> str:
+        """Return the reason, beginning with what was typed; empty if canceled."""
         return qt.QInputDialog.getText(
             slicer.util.mainWindow(),
-            _("Skip the step"),
+            title,
             toolTip(f"{problem} {question}".strip()),
             qt.QLineEdit.Normal,
             reason,
@@ -138,7 +150,7 @@ class StudyPanel:
         ui.enrollButton.visible = protocol is not None and progress is None
         ui.stepGroupBox.visible = progress is not None
         if progress is not None:
-            setText(ui.stepText, progress.sentence)
+            setText(ui.stepText, f"{progress.sentence} {progress.repeat_sentence}".rstrip())
             ui.stepsProgressBar.maximum = len(progress.steps)
             ui.stepsProgressBar.value = len(progress.entries)
             fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])
@@ -147,7 +159,9 @@ class StudyPanel:
         ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = asked
         key = (self._session.trainees.chosen, step.name) if asked else None
         self._form.show(key, find_questionnaire(step.questionnaire) if asked else None)
-        ui.startStepButton.visible = step is not None and step.kind in TRIALS
+        isAborted = progress is not None and bool(progress.unexplained)
+        ui.repeatStepButton.visible = isAborted
+        ui.startStepButton.visible = step is not None and step.kind in TRIALS and not isAborted
         ui.skipStepButton.visible = step is not None
         self.showState()
 

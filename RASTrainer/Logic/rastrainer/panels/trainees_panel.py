@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from rastrainer.slicer.session import Session
 from rastrainer.slicer.settings import STUDY
 from rastrainer.slicer.translation import _
 from rastrainer.study import StoredTrial, Trainee
+from rastrainer.study_aborted import StoredAborted
 
 
 class TraineesPanel:
@@ -166,6 +168,7 @@ class TraineesPanel:
         try:
             trainees = self._desk.trainees(archived=ui.archivedCheckBox.checked)
             trainee, history = self._desk.chosenTrainee(), self._desk.history()
+            aborted = self._desk.aborted()
         except InputError as error:
             self._say("{error}", error=error)
             self._isProblemShown = True
@@ -194,10 +197,11 @@ class TraineesPanel:
             setUsable(button, bool(history), tip, hasTrials)
         if hasTrainee:
             self._say(
-                _("{name}, since {day}. Trials: {count}."),
+                _("{name}, since {day}. Trials: {count}. {aborted}"),
                 name=trainee.pseudonym,
                 count=len(history),
                 day=trainee.created_utc[:10],
+                aborted=_aborted(aborted),
             )
         elif not ui.traineeText.text:
             self._say(_("Choose who trains, or create a new trainee."))
@@ -209,13 +213,24 @@ class TraineesPanel:
 
     def _say(self, sentence: str, **values: Any) -> None:
         self._isProblemShown = False
-        setText(self._ui.traineeText, sentence.format(**values))
+        setText(self._ui.traineeText, sentence.format(**values).rstrip())
 
 
 def _entry(trainee: Trainee) -> str:
     if trainee.archived:
         return _("{name} (archived)").format(name=trainee.pseudonym)
     return trainee.pseudonym
+
+
+def _aborted(aborted: Sequence[StoredAborted]) -> str:
+    """Return how many trials were aborted, the trial runs apart; "" where none was."""
+    records = [stored.record for stored in aborted if not stored.record.is_trial_run]
+    runs = len(aborted) - len(records)
+    if not aborted:
+        return ""
+    return _(
+        "Aborted: {count}, of them {late} after all touches; trial runs ended early: {runs}."
+    ).format(count=len(records), late=sum(r.is_after_all_touches for r in records), runs=runs)
 
 
 def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:

@@ -63,6 +63,7 @@ class TrainingPanel:
             (self._desk.changed, self.showState),
             (self._desk.answered, self._tell),
             (session.trials.problemFound, self._tell),
+            (session.aborted.problemFound, self._tell),
             (session.trainees.changed, self.showState),
             (session.taskChosen, self.showState),
             (session.link.statusChanged, self.showState),

@@ -29,6 +29,7 @@ from typing import Any
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.scenario import load_scenario
+from rastrainer.slicer.aborted_desk import AbortedDesk
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.control_points import labelsOf, localPoints
 from rastrainer.slicer.headless_kit import headlessKit
@@ -78,10 +79,14 @@ class HeadlessHost:
             self._work,
             () if cohort is None else read_trials(cohort),
         )
+        self._aborted = AbortedDesk(self.link, lambda: openStudyIn(output), self._work)
+        self._aborted.kept.connect(
+            lambda trial: tell("aborted", trialId=trial.trial_id, reason=trial.reason)
+        )
         self.link.statusChanged.connect(self._tellStatus)
         self.link.pointsChanged.connect(self._tellPoints)
         self._desk.trialScored.connect(self._tellTrial)
-        for source in (self._desk, self._images):
+        for source in (self._desk, self._aborted, self._images):
             source.problemFound.connect(lambda sentence: tell("problem", sentence=sentence))
 
     def run(self, count: int, timeoutS: float) -> None:
@@ -108,6 +113,7 @@ class HeadlessHost:
     def close(self) -> None:
         """Disconnect and close the study."""
         self._desk.close()
+        self._aborted.close()
         self._work.close()
         self.link.disconnect()
 

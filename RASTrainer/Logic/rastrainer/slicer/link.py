@@ -51,6 +51,7 @@ class Link:
         pointsChanged: emits the list of touched points (`vtkMRMLMarkupsFiducialNode`).
         stateChanged: emits what `SimState` says, a dict.
         trialCompleted: emits the record that the simulator delivers, a dict not yet checked.
+        trialAborted: emits the record of an aborted trial, a dict not yet checked.
         stepAnswered: emits the answers to a questionnaire of a study, a dict not yet checked.
     """
 
@@ -77,6 +78,7 @@ class Link:
         self.pointsChanged = Signal()
         self.stateChanged = Signal()
         self.trialCompleted = Signal()
+        self.trialAborted = Signal()
         self.stepAnswered = Signal()
         self._scene = scene
         self._client = client
@@ -91,6 +93,7 @@ class Link:
             self.stateChanged,
             {
                 CommandName.TRIAL_COMPLETED: self.trialCompleted,
+                CommandName.TRIAL_ABORTED: self.trialAborted,
                 CommandName.STEP_ANSWERED: self.stepAnswered,
             },
         )

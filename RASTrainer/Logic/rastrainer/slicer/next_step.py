@@ -27,6 +27,7 @@ class Action(str, Enum):
     START_TRIAL_RUN = "start trial run"
     START_TASK = "start task"
     START_STUDY_STEP = "start study step"
+    EXPLAIN_REPEAT = "explain repeat"
     ANSWER = "answer"
     PAUSE = "pause"
     RESUME = "resume"
@@ -86,6 +87,7 @@ class Situation:
         hasNewResult: a trial of the chosen trainee was scored and has not been looked at.
         isResultShown: the score is what was looked at last.
         studyStep: what the study asks the chosen trainee for; None where it asks for nothing.
+        needsRepeatReason: whether that was aborted and nobody has said why it is played again.
         studySentence: the same for people.
     """
 
@@ -107,6 +109,7 @@ class Situation:
     hasNewResult: bool = False
     isResultShown: bool = False
     studyStep: StepKind | None = None
+    needsRepeatReason: bool = False
     studySentence: str = ""
 
 
@@ -201,6 +204,8 @@ _STUDY_STEPS = {
 def _trial(now: Situation) -> NextStep:
     if now.studyStep is not None:
         action, title = _STUDY_STEPS[now.studyStep]
+        if now.needsRepeatReason:
+            action, title = Action.EXPLAIN_REPEAT, _("Reason for the repeat…")
         here = Section.SCORE if now.isResultShown else Section.STUDY
         return NextStep(action, title, now.studySentence, here)
     here = Section.SCORE if now.isResultShown else Section.TRAINING

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.protocol import Phase
+from rastrainer.slicer.aborted_desk import AbortedDesk
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.borrowed_layout import BorrowedLayout
 from rastrainer.slicer.connector_kit import ConnectorKit
@@ -79,6 +81,7 @@ class Session:
         slices: keeps the slice views at the next point, or at the tool.
         study: leads through the protocol.
         trials: where finished trials arrive.
+        aborted: where aborted trials arrive.
         replay: feedback on stored trials, and their replay.
         registration: that is looked at.
         plan: of a target.
@@ -142,6 +145,7 @@ class Session:
             self.cohort,
             places.records,
         )
+        self.aborted = AbortedDesk(self.link, self.openStudyPatiently, self.work)
         self.replay = ReplayDesk(
             scene,
             self.openStudyPatiently,
@@ -161,6 +165,7 @@ class Session:
         self._trial = ""
         self.trials.trialKept.connect(self.study.countTrial)
         self.trials.trialScored.connect(self._takeScored)
+        self.aborted.kept.connect(self._takeAborted)
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
 
@@ -186,6 +191,7 @@ class Session:
         openStudyFile(path, self._patience).close()
         self.studyPath = path
         self.trials.forgetWaiting()
+        self.aborted.forgetWaiting()
         self.trainees.reopen()
 
     def chooseTask(self, name: str, title: str) -> None:
@@ -234,6 +240,7 @@ class Session:
         self.study.close()
         self.training.close()
         self.trials.close()
+        self.aborted.close()
         self.work.close()
         self.link.disconnect()
         self.trainees.close()
@@ -251,6 +258,10 @@ class Session:
         record = trial.analysis.record
         self.plan.takeTruth(trial)
         self.replay.takeFeedback(record.trial_id, trial.analysis.feedback)
+        self._showTrainees()
+
+    def _takeAborted(self, trial: AbortedTrial) -> None:
+        self.study.countAborted(trial)
         self._showTrainees()
 
     def _noticeNewTrial(self, state: dict[str, Any]) -> None:

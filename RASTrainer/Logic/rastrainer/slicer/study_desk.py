@@ -9,6 +9,7 @@ from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.errors import InputError
 from rastrainer.experiment.progress import Progress
 from rastrainer.experiment.step_answers import StepAnswers
@@ -139,6 +140,10 @@ class StudyDesk:
             return ""
         try:
             progress = StudyProgress(self._trainees.study).progress(trial.trainee)
+            if progress.unexplained:
+                return _(
+                    "{trainee} plays an aborted trial again: it will count once there is a reason."
+                ).format(trainee=trial.trainee)
             progress.check_start(trial.mode, trial.task)
         except InputError:
             return _(
@@ -179,6 +184,20 @@ class StudyDesk:
         step = self._next()
         StudyProgress(self._trainees.study).skip(self._trainees.chosen, step.name, reason)
         self._leadOn(self._trainees.chosen)
+
+    def explainRepeat(self, reason: str) -> None:
+        """Say why the next step is played again after it was aborted; it goes into the report.
+
+        Raises:
+            InputError: it was not aborted, or there is no reason of ten characters.
+        """
+        self._progress()
+        StudyProgress(self._trainees.study).explain_repeat(self._trainees.chosen, reason)
+        self._leadOn(self._trainees.chosen)
+
+    def countAborted(self, trial: AbortedTrial) -> None:
+        """Lead the trainee of an aborted trial that has just been stored: it may need a reason."""
+        self._leadOn(trial.trainee)
 
     def countTrial(self, record: TrialRecord) -> None:
         """Count a trial that has just been stored, if it is what the study asks its trainee for."""

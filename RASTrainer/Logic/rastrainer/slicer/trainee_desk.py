@@ -14,6 +14,7 @@ from rastrainer.progress import Progress
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.signal import Signal
 from rastrainer.study import StoredTrial, Study, StudyBusyError, Trainee
+from rastrainer.study_aborted import AbortedTrials, StoredAborted
 from rastrainer.tre_calibration import TreCalibration, calibration_of
 
 LOOK_EVERY_S = 1.0
@@ -150,7 +151,10 @@ class TraineeDesk:
         return export_trainee(self.study, self.chosen, path)
 
     def exportHistory(self, path: Path) -> int:
-        """Write the trials of the chosen trainee as a CSV file; return their number."""
+        """Write the trials of the chosen trainee as a CSV file; return their number.
+
+        Aborted ones go into a second file beside it, see `write_history`.
+        """
         return write_history(self.study, [self.chosen], path)
 
     def exportHistories(
@@ -192,6 +196,10 @@ class TraineeDesk:
                 return calibration_of(trial for history in histories for trial in history)
 
         return inBackground(read, progress)
+
+    def aborted(self) -> tuple[StoredAborted, ...]:
+        """Return the aborted trials of the chosen trainee in the order they were started."""
+        return AbortedTrials(self.study).of(self.chosen) if self.chosenTrainee() else ()
 
     def history(self) -> tuple[StoredTrial, ...]:
         """Return the trials of the chosen trainee in the order they were started."""
