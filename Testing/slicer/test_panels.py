@@ -293,6 +293,28 @@ def test_fits_residuals_and_the_error_to_expect_are_shown_with_their_units(panel
     assert len(cells(panels, "residualsTable")) == 15
 
 
+def test_a_point_with_a_larger_error_of_its_own_weighs_less_until_undo(panels, touched):
+    touched[2] += [2.0, -1.0, 0.5]
+    touch(panels, touched)
+    before = cells(panels, "residualsTable")
+    assert [row[3] for row in before] == ["–"] * 15
+    with pytest.raises(AssertionError, match="Choose a row"):
+        panels.press("fleButton")
+    panels.choose("residualsTable", 2)
+    panels.type("fleSpinBox", "20")
+    panels.press("fleButton")
+    after = cells(panels, "residualsTable")
+    assert after[2][3] == "20.00"
+    assert float(after[2][1]) > float(before[2][1])
+    # A point that hardly counts lies where the others put it, fitted or left out.
+    assert float(after[2][1]) == pytest.approx(float(after[2][2]), abs=0.02)
+    assert "weighted by the stated FLE; the score of the trial is not" in panels.text(
+        "registrationText"
+    )
+    panels.press("undoButton")
+    assert cells(panels, "residualsTable") == before
+
+
 def test_a_warning_has_a_button_that_mends_it_and_undo_brings_it_back(panels, touched):
     touched[6] += [9.0, -6.0, 5.0]
     touch(panels, touched)

@@ -14,6 +14,7 @@ from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.head_colors import SCALARS
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.registration_desk import RegistrationDesk
+from rastrainer.slicer.registration_input import Choices
 from rastrainer.slicer.registration_nodes import (
     fixedNode,
     isApplied,
@@ -173,6 +174,38 @@ def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
     assert "at least 3" in table.desk.problem
     table.desk.undo()
     assert len(table.desk.shown.labels) == 3
+
+
+def test_a_stated_localization_error_weights_the_rigid_fit_alone_and_is_undone(table):
+    table.touch()
+    plain = table.desk.comparison
+    table.desk.localize("4", 5.0)
+    weighted = table.desk.comparison
+    fixed = table.scenario.task("task-1").fiducials
+    weights = np.array([0.04 if label == "4" else 1.0 for label in LABELS])
+    again = register(table.touched, fixed, "rigid", LABELS, weights)
+    np.testing.assert_allclose(weighted.fits["rigid"].matrix, again.matrix, atol=1e-4)
+    assert weighted.fits["affine"].fre_mm == plain.fits["affine"].fre_mm
+    expected = target_error(again, table.scenario.target_position)
+    assert weighted.errors["rigid"].expected_mm == pytest.approx(expected.expected_mm, rel=1e-3)
+    table.desk.exclude("1", "2")
+    assert len(table.desk.comparison.fits["rigid"].weights) == 13
+    table.desk.undo()
+    table.desk.undo()
+    assert table.desk.comparison.fits["rigid"].weights is None
+    assert table.desk.comparison.fits["rigid"].fre_mm == plain.fits["rigid"].fre_mm
+
+
+def test_the_usual_localization_error_takes_the_weights_back(table):
+    table.touch()
+    table.desk.localize("4", 5.0)
+    table.desk.localize("4", 1.0)
+    assert table.desk.choices == Choices()
+
+
+def test_points_put_in_order_keep_their_localization_errors():
+    choices = Choices().localized("2", 3.0).rename({"1": "2", "2": "1"}).without(("5",))
+    assert choices == Choices(frozenset({"5"}), (("1", "2"), ("2", "1")), (("2", 3.0),))
 
 
 def test_another_trial_begins_without_the_changes_of_the_one_before(table):

@@ -47,6 +47,7 @@ class RegistrationPanel:
         ui.targetComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseTarget)
         ui.residualsTable.connect("itemSelectionChanged()", self._chooseFiducial)
         ui.excludeButton.connect("clicked()", self.excludeChosen)
+        ui.fleButton.connect("clicked()", self.localizeChosen)
         ui.undoButton.connect("clicked()", self.undo)
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
         ui.headColoredCheckBox.connect("toggled(bool)", self._desk.setHeadColored)
@@ -64,6 +65,13 @@ class RegistrationPanel:
             row = self._ui.residualsTable.currentRow()
             if row >= 0 and self._desk.shown is not None:
                 self._desk.exclude(self._desk.shown.labels[row])
+
+    def localizeChosen(self) -> None:
+        """Register again with the stated localization error of the chosen fiducial."""
+        with slicer.util.tryWithErrorDisplay(_("The localization error was not set.")):
+            row = self._ui.residualsTable.currentRow()
+            if row >= 0 and self._desk.shown is not None:
+                self._desk.localize(self._desk.shown.labels[row], self._ui.fleSpinBox.value)
 
     def undo(self) -> None:
         """Take the last change of the pairs back."""
@@ -123,6 +131,15 @@ class RegistrationPanel:
             _("Choose a row of the table first."),
         )
         setUsable(
+            ui.fleButton,
+            hasRow,
+            _(
+                "Weight the chosen fiducial by 1/FLE² in the rigid fit. Only ratios matter: "
+                "others have 1 mm, and the size of the errors is told from the residuals."
+            ),
+            _("Choose a row of the table first."),
+        )
+        setUsable(
             ui.undoButton,
             self._desk.canUndo,
             _("Take the last change of the pairs back."),
@@ -133,8 +150,9 @@ class RegistrationPanel:
         without = self._desk.leaveOneOut
         if without is None:
             without = [None] * len(shown.labels)
+        sizes = dict(self._desk.choices.fle)
         return [
-            (label, _number(residual), _number(alone))
+            (label, _number(residual), _number(alone), _number(sizes.get(label)))
             for label, residual, alone in zip(
                 shown.labels, shown.residuals_mm, without, strict=True
             )
@@ -181,6 +199,10 @@ def _told(comparison: Comparison) -> str:
         sentence += " " + _(
             "Left out: {labels}; the score of the trial stays that of all pairs."
         ).format(labels=", ".join(pairs.excluded))
+    if comparison.fits[RIGID].weights is not None:
+        sentence += " " + _(
+            "The rigid fit is weighted by the stated FLE; the score of the trial is not."
+        )
     return sentence
 
 

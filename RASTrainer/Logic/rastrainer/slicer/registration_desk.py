@@ -147,6 +147,10 @@ class RegistrationDesk:
         """Leave pairs out."""
         self.change(self.choices.without(labels))
 
+    def localize(self, label: str, fleMm: float) -> None:
+        """State how well a point is localized, RMS length in mm; the rigid fit weights it so."""
+        self.change(self.choices.localized(label, fleMm))
+
     def undo(self) -> None:
         """Take the last change back."""
         if self.canUndo:
@@ -184,7 +188,8 @@ class RegistrationDesk:
         self.changed.emit()
 
     def _compare(self, pairs: Pairs) -> Comparison:
-        fits = {RIGID: register(pairs.moving, pairs.fixed, RIGID, pairs.labels)}
+        weights = self.choices.weights(pairs.labels)
+        fits = {RIGID: register(pairs.moving, pairs.fixed, RIGID, pairs.labels, weights)}
         for kind in (SIMILARITY, AFFINE):
             # Points in one plane allow no affine fit; it is only looked at anyway.
             with contextlib.suppress(InputError):
@@ -206,6 +211,9 @@ class RegistrationDesk:
         return target_error(fit, position, self._errorOnSkin(fit))
 
     def _errorOnSkin(self, fit: Registration) -> LocalizationError | None:
+        if fit.weights is not None:
+            # What was stated of single points takes the place of what the skin tells of all.
+            return None
         fixed = self.fixed()
         expected = None if fixed is None else worldPoints(fixed)
         return self._normals.errorOnSkin(self._head(), fit, expected)

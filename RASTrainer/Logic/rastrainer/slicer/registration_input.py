@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,10 @@ from rastrainer.point_list import PointList, pair
 from rastrainer.slicer.control_points import labelsOf, localPoints, worldPoints
 from rastrainer.slicer.translation import _
 
+USUAL_FLE_MM = 1.0
+"""Of points that no localization error is stated for. Only ratios matter: the size of the errors is
+told from the residuals."""
+
 
 @dataclass(frozen=True)
 class Choices:
@@ -21,23 +25,36 @@ class Choices:
     Attributes:
         excluded: labels of pairs that are left out.
         renamed: label as it stands in the moving list → label that it belongs to.
+        fle: label → localization error, RMS length in mm, of points that do not have the usual one.
     """
 
     excluded: frozenset[str] = frozenset()
     renamed: tuple[tuple[str, str], ...] = ()
+    fle: tuple[tuple[str, float], ...] = ()
 
     def without(self, labels: tuple[str, ...]) -> Choices:
         """Return the choices with some more pairs left out."""
-        return Choices(self.excluded | set(labels), self.renamed)
+        return replace(self, excluded=self.excluded | set(labels))
+
+    def localized(self, label: str, fleMm: float) -> Choices:
+        """Return the choices with the localization error of a point, on top of before."""
+        sizes = {**dict(self.fle), label: fleMm}
+        if fleMm == USUAL_FLE_MM:
+            del sizes[label]
+        return replace(self, fle=tuple(sorted(sizes.items())))
+
+    def weights(self, labels: Sequence[str]) -> np.ndarray | None:
+        """Return the weight of each point, 1/FLE², (n,) float; None where all count alike."""
+        sizes = dict(self.fle)
+        fle = np.array([sizes.get(label, USUAL_FLE_MM) for label in labels])
+        return None if (fle == USUAL_FLE_MM).all() else 1.0 / fle**2
 
     def rename(self, order: dict[str, str]) -> Choices:
         """Return the choices with moving points given to other labels, on top of before."""
         names = dict(self.renamed)
         shown = {label: names.get(label, label) for label in {*order, *names}}
-        return Choices(
-            self.excluded,
-            tuple(sorted((label, order.get(name, name)) for label, name in shown.items())),
-        )
+        renamed = sorted((label, order.get(name, name)) for label, name in shown.items())
+        return replace(self, renamed=tuple(renamed))
 
 
 @dataclass(frozen=True)
