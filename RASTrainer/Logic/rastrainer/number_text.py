@@ -18,9 +18,9 @@ def signed(value: float, digits: int) -> str:
     return text if text.startswith("−") or float(text) == 0 else f"+{text}"
 
 
-def significant(value: float, digits: int = 3) -> str:
-    """Return a number with so many significant digits."""
-    return f"{_past_half(value):.{digits}g}".replace("-", "−")
+def significant(value: float, digits: int = 3, sign: bool = False) -> str:
+    """Return a number with so many significant digits, with its sign even where that is +."""
+    return f"{_past_half(value):{'+' if sign else ''}.{digits}g}".replace("-", "−")
 
 
 def p_text(p: float) -> str:
