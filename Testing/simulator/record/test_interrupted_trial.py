@@ -13,7 +13,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_reader import Integrity, read_journal
 from rastrainer.journal.recording import Recording
-from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput
@@ -208,6 +208,30 @@ def test_the_time_of_the_trial_stands_still_until_it_is_gone_on_with(simulation,
     assert elapsed <= record.completion_time_s < at_end - started - 500 * 0.004
     times = Recording.of(read_journal(server.path).entries).trajectory().times_s
     assert np.all(np.diff(times) > 0.0)
+
+
+def test_a_trial_interrupted_while_the_tool_is_pressed_in_goes_on_unpressed_and_replays(
+    simulation, anywhere, tmp_path
+):
+    with Server(simulation, tmp_path) as server:
+        server.start()
+        while server.loop.latest.depth < 0.002:
+            server.move((0.0, 0.0, -0.6), 10)
+        # Until a sample tells what the stick has pressed before it was let go.
+        server.move((0.0, 0.0, 0.0), 20)
+        pressed_mm = 1000.0 * server.loop.latest.depth
+    with Server(simulation, tmp_path) as server:
+        assert server.taken_up.proximity is Proximity.CONTACT
+        assert server.taken_up.depth == 0.0
+        assert server.do(CommandName.RESUME).ok
+        server.move((0.0, 0.0, 0.6), 60)
+        server.finish()
+        (record,) = server.loop.unacknowledged()
+    reading = read_journal(server.path)
+    assert replay(reading, anywhere).difference is None
+    contacts = Recording.of(reading.entries).trajectory().contacts
+    assert max(contact.greatest_depth_mm for contact in contacts) >= pressed_mm
+    assert record.motion["pressing_depth_mm"] >= pressed_mm / np.sqrt(15)
 
 
 def test_a_trial_that_waits_leaves_its_journal_as_it_is(simulation, tmp_path):
