@@ -16,7 +16,8 @@ from rastrainer.experiment.steps import mode_order
 from rastrainer.experiment.study_protocol import StudyProtocol, read_study_protocol
 from rastrainer.number_text import significant
 from rastrainer.protocol import Mode
-from rastrainer.scoring import TASK_REFERENCES
+from rastrainer.scenario import load_scenario
+from rastrainer.score_reference import score_reference
 from rastrainer.scripted_trainee import Skill
 from rastrainer_simulator.assets import asset_path
 
@@ -189,11 +190,12 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
     if not 10 <= arguments.power <= 100_000 or len(protocol.modes) != 2:
         raise InputError("Power needs 10 to 100000 studies of a protocol with two modes.")
     population = _population(arguments)
-    fallback = TASK_REFERENCES["task-1"]
-    tasks = protocol.tasks * protocol.repetitions
+    scenario = load_scenario(arguments.scenario or asset_path("scenarios", "colin27"))
+    times_s = [score_reference(scenario, task).time_s for task in protocol.tasks]
+    times_s *= protocol.repetitions
     model = OutcomeModel(
-        task_times_s=[TASK_REFERENCES.get(task, fallback).time_s for task in tasks],
-        task_fle_mm=[TYPICAL_FLE_MM] * len(tasks),
+        task_times_s=times_s,
+        task_fle_mm=[TYPICAL_FLE_MM] * len(times_s),
         trainee_time_sd=population.speed_spread,
         trainee_fle_sd=population.aim_spread,
         interaction_sd=population.interaction,

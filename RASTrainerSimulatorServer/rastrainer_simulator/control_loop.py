@@ -32,7 +32,7 @@ from rastrainer_simulator.setup import SimulationSetup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
 from rastrainer_simulator.subscribers import Subscribers
-from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
+from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.trial_limits import TrialLimits
 
@@ -47,7 +47,7 @@ ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says
 _OF_ANY_TRIAL = (
     CommandName.GET_TRIAL,
     CommandName.ACKNOWLEDGE_TRIAL,
-    CommandName.TRIAL_SCORED,
+    *ENDING_A_TRIAL,
 )
 _PASSING = frozenset(
     {
@@ -278,14 +278,14 @@ class ControlLoop:
         return self._state.training.phase in OPEN_PHASES
 
     def _is_for_the_archive(self, command: Command) -> bool:
-        """Return whether a command is about a trial whose record is written, and not its score."""
+        """Return whether a command is about a trial whose record is written, unless it ends it."""
         if command.name not in _OF_ANY_TRIAL:
             return False
         training = self._state.training
         if command.name == CommandName.ACKNOWLEDGE_TRIAL:
             return True
         is_present = command.arguments["trialId"] == training.trial_id
-        if command.name == CommandName.TRIAL_SCORED:
+        if command.name in ENDING_A_TRIAL:
             return not is_present
         return not is_present or training.phase in FINISHED_PHASES
 

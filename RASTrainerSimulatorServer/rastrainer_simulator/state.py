@@ -83,17 +83,24 @@ class PlannedTarget:
 
 
 @dataclass(frozen=True)
-class TrialResult:
-    """What the trainee is told once the client has registered and scored the trial (mm).
+class FinalRegistration:
+    """The registration that a client has found for a trial: after it the truth is told (mm).
 
-    `matrix` is the registration found, WorldToHead, 16 floats row by row, mm.
+    `matrix` is WorldToHead, 16 floats row by row, mm.
     """
 
+    matrix: tuple[float, ...]
     fre_mm: float
     expected_tre_mm: float
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """What the trainee is told once the client has registered and scored the trial (mm)."""
+
+    registration: FinalRegistration
     true_tre_mm: float
     score: float
-    matrix: tuple[float, ...]
     details: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -102,6 +109,7 @@ class TrainingState:
     """Where the trial stands. The same object is handed out until something changes.
 
     `revision` rises with every change that must not be lost (phase, touch, undo, score).
+    `registration` is what a client has submitted, None before.
     `next_point` is the label of the fiducial to touch, None when there is none; `rejected` and
     `undone` count the touches that were refused and taken back.
     """
@@ -117,6 +125,7 @@ class TrainingState:
     touches: tuple[Touch, ...] = ()
     rejected: int = 0
     undone: int = 0
+    registration: FinalRegistration | None = None
     result: TrialResult | None = None
 
 

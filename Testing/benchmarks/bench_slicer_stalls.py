@@ -161,7 +161,7 @@ class _Steps:
             print(f"    {step}: {1e3 * stall.seconds:.0f} ms  {stall.ran}")
 
     def _answer(self, name: str, arguments: dict) -> dict:
-        if name != "TrialScored":
+        if name != "SubmitRegistration":
             return {}
         head_to_world = self._colin.perturbed_head_to_world(SEED)
         target = self._colin.target_position

@@ -10,11 +10,12 @@ from rastrainer.errors import InputError
 from rastrainer.export.erasure import erase_trainee
 from rastrainer.export.trainee_json import export_trainee
 from rastrainer.feedback.progress_words import competence_of, progress_of
-from rastrainer.scoring import passes, score_trial, task_reference
+from rastrainer.scoring import passes
 from rastrainer.study import DeletedTrialError, Study
 from rastrainer.study_aborted import AbortedTrials
 from rastrainer.study_schema import APPLICATION_ID, MIGRATIONS
 from Testing.domain.aborted_records import make_aborted
+from Testing.domain.made_up_scores import gentle_score
 from Testing.domain.trial_records import make_record
 
 
@@ -162,7 +163,7 @@ def test_an_aborted_trial_of_a_scored_task_with_a_touch_counts_as_not_passed(
 
 
 def test_attempts_stand_in_the_order_they_were_begun(study):
-    score = score_trial(110.0, 0.5, task_reference("task-1"))
+    score = gentle_score(110.0, 0.5)
     for number, minute in ((1, 10), (2, 30)):
         utc = f"2024-05-17T09:{minute}:00Z"
         record = make_record(trialId=f"00000000-0000-0000-0000-00000000000{number}", startedUtc=utc)
@@ -178,7 +179,7 @@ def test_attempts_stand_in_the_order_they_were_begun(study):
 
 
 def test_who_aborts_every_bad_trial_gains_nothing_on_the_way_to_competence(study):
-    score = score_trial(110.0, 0.4, task_reference("task-1"))
+    score = gentle_score(110.0, 0.4)
     for number in range(24):
         utc = f"2024-05-17T{10 + number // 2}:{30 * (number % 2):02d}:00Z"
         trial_id = f"00000000-0000-0000-0000-0000000000{number:02d}"

@@ -321,9 +321,9 @@ def test_the_place_of_a_deleted_trainee_is_given_again(study):
             {"questionnaires": [{"name": "sus", "when": "after-all", "modes": ["hmd"]}]},
             "belongs to no mode",
         ),
-        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 1"),
+        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 2"),
         (
-            {"scoring": {"version": "1", "references": {"task-9": {}}}},
+            {"scoring": {"version": "2", "references": {"task-9": {}}}},
             "references.task-9 must be one of the study's tasks",
         ),
         ({"taskorder": "fixed"}, "taskorder must be left out"),

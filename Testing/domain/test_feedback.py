@@ -14,12 +14,11 @@ from rastrainer.feedback.touch_findings import Reason, touch_findings
 from rastrainer.feedback.trial_feedback import MOST_SHORT, trial_feedback
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.registration import register
-from rastrainer.scoring import score_trial, task_reference
 from rastrainer.study_values import PastTrial
 from Testing.domain.conftest import head_points
+from Testing.domain.made_up_scores import gentle_score
 
 LABELS = tuple(str(i + 1) for i in range(15))
-REFERENCE = task_reference("task-1")
 FIXED = head_points(np.random.default_rng(2))
 NORMALS = FIXED / np.linalg.norm(FIXED, axis=1, keepdims=True)
 TANGENTS = np.cross(NORMALS, [0.3, 0.2, 0.9])
@@ -83,7 +82,7 @@ def test_hurry_and_tremor_are_seen_in_the_recording():
 def test_without_recording_and_skin_only_the_residuals_are_told():
     findings = touch_findings(registered(np.zeros((15, 3))))
     assert all(f.depth_mm is None and f.replay_s is None for f in findings)
-    feedback = trial_feedback(score_trial(100.0, 0.4, REFERENCE), registered(np.zeros((15, 3))))
+    feedback = trial_feedback(gentle_score(100.0, 0.4), registered(np.zeros((15, 3))))
     assert feedback.score_sentences[0] == "Score 52 of 100."
 
 
@@ -97,7 +96,7 @@ def test_the_most_rewarding_advice_comes_first_and_safety_before_all():
         "refused_touches": 1,
         "unintended_contacts": 2,
     }
-    advice = advise(score_trial(110.0, 1.2, REFERENCE), findings, motion)
+    advice = advise(gentle_score(110.0, 1.2), findings, motion)
     assert len(advice) == 3
     assert advice[0].topic == "contacts"
     assert "2 times" in advice[0].sentence
@@ -108,14 +107,14 @@ def test_the_most_rewarding_advice_comes_first_and_safety_before_all():
 def test_a_slow_and_exact_trial_is_told_to_be_faster():
     findings = touch_findings(registered(np.zeros((15, 3))))
     motion = {"idle_time_s": 150.0, "path_efficiency": 0.2}
-    topics = [a.topic for a in advise(score_trial(400.0, 0.1, REFERENCE), findings, motion)]
+    topics = [a.topic for a in advise(gentle_score(400.0, 0.1), findings, motion)]
     assert set(topics) == {"idle time", "detours", "pace"}
 
 
 def test_depth_is_advised_where_most_of_the_error_is_in_depth():
     errors = NORMALS * np.random.default_rng(4).normal(0, 3.0, (15, 1))
     findings = touch_findings(registered(errors), NORMALS)
-    topics = [a.topic for a in advise(score_trial(100.0, 1.0, REFERENCE), findings, {})]
+    topics = [a.topic for a in advise(gentle_score(100.0, 1.0), findings, {})]
     assert "depth" in topics
 
 
@@ -127,7 +126,7 @@ def test_depth_is_advised_where_most_of_the_error_is_in_depth():
     st.integers(0, 20),
 )
 def test_advice_never_promises_more_than_the_whole_score(time, error, idle, efficiency, refused):
-    score = score_trial(time, error, REFERENCE)
+    score = gentle_score(time, error)
     motion = {"idle_time_s": idle * time, "path_efficiency": efficiency, "refused_touches": refused}
     advice = advise(score, EVEN, motion)
     assert len(advice) <= 3
@@ -175,7 +174,7 @@ def test_a_trial_with_an_unacceptable_error_never_passes():
     bad = past(1, 99.0, acceptable=False)
     progress = progress_of([bad], bad.trial_id, pass_mark=10.0)
     assert not progress.passes
-    assert progress.sentences[1].startswith("Not passed: the expected target error")
+    assert progress.sentences[1].startswith("Not passed: the true target error")
     with pytest.raises(InputError, match="scored trial of the trainee's own"):
         progress_of([], bad.trial_id, 10.0)
 
@@ -185,7 +184,7 @@ def test_the_feedback_reads_in_order():
     errors[3] = 5.0 * NORMALS[3]
     history = [past(1, 50.0), past(2, 60.0)]
     feedback = trial_feedback(
-        score_trial(150.0, 2.5, REFERENCE),
+        gentle_score(150.0, 2.5),
         registered(errors),
         NORMALS,
         {"idle_time_s": 40.0},
@@ -195,11 +194,12 @@ def test_the_feedback_reads_in_order():
     assert feedback.worst.label == "4"
     assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
     sentences = feedback.sentences
-    assert "more than 2 mm is not acceptable" in sentences[2]
-    assert sentences[3].startswith("Point 4 was")
-    assert sentences[4].startswith("1. ")
+    assert "more than 1.5 mm is not acceptable" in sentences[2]
+    assert sentences[3].startswith("Safety: 0.0 s")
+    assert sentences[4].startswith("Point 4 was")
+    assert sentences[5].startswith("1. ")
     short = feedback.short_sentences
-    assert short[0] == sentences[3]
+    assert short[0] == sentences[4]
     assert len(short) <= MOST_SHORT
     assert tuple(short[-2:]) == feedback.progress.sentences[-2:]
     busy = replace(feedback, advice=feedback.advice[:1] * 3).short_sentences

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from rastrainer.experiment.study_protocol import read_study_protocol
-from rastrainer.scoring import score_trial, task_reference
 from rastrainer.study import Study
 from rastrainer_simulator.cli import main
+from Testing.domain.made_up_scores import gentle_score
 from Testing.domain.trial_records import make_record
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
@@ -24,7 +24,7 @@ def add(study, trainee, number, time_s, task="task-1"):
         task=task,
         startedUtc=f"2024-05-{number + 1:02d}T09:30:00Z",
     )
-    study.add_trial(record, score=score_trial(time_s, 0.4, task_reference("task-1")))
+    study.add_trial(record, score=gentle_score(time_s, 0.4))
 
 
 @pytest.fixture

@@ -14,10 +14,10 @@ import pytest
 from rastrainer.commands import export_command, pass_mark_command, report_command
 from rastrainer.errors import InputError
 from rastrainer.experiment.study_progress import StudyProgress
-from rastrainer.scoring import score_trial, task_reference
 from rastrainer.study import Study
 from rastrainer.study_reading import read_only_uri
 from rastrainer.study_schema import APPLICATION_ID, MIGRATIONS
+from Testing.domain.made_up_scores import gentle_score
 from Testing.domain.played_study import play, study_with_trials
 from Testing.domain.trial_records import make_record
 
@@ -46,7 +46,7 @@ def path(tmp_path):
                     trialId=f"00000000-0000-0000-0001-0000000000{number}{each}", trainee=name
                 )
                 error_mm = (0.9 if name[0] == "N" else 0.3) + 0.02 * number
-                score = score_trial(110.0, error_mm, task_reference("task-1"))
+                score = gentle_score(110.0, error_mm)
                 study.add_trial(record, score=score)
     os.utime(path, (1_000_000_000, 1_000_000_000))
     return path

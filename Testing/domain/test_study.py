@@ -13,11 +13,11 @@ from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import write_history
 from rastrainer.export.trainee_json import export_trainee
 from rastrainer.registration import KINDS, register
-from rastrainer.scoring import score_trial, task_reference
 from rastrainer.study import DeletedTrialError, StoredRegistration, Study
 from rastrainer.study_trials import find
 from rastrainer.target_error import target_error
 from rastrainer.trial_record import TrialRecord
+from Testing.domain.made_up_scores import gentle_score
 from Testing.domain.trial_records import make_record
 
 
@@ -37,7 +37,7 @@ def results(touched_head):
     moving, fixed, _ = touched_head(0)
     registrations = [register(moving, fixed, kind) for kind in KINDS]
     errors = {r.kind: target_error(r, [0.0, 10.0, 20.0]) for r in registrations}
-    score = score_trial(110.0, errors["rigid"].expected_mm, task_reference("task-1"))
+    score = gentle_score(110.0, errors["rigid"].expected_mm)
     return registrations, errors, score
 
 
@@ -195,7 +195,7 @@ def test_later_results_count_and_earlier_ones_stay(study, results, path):
     registrations, errors, score = results
     study.add_trial(record(), registrations, errors, score)
     fewer = registrations[0].without("3")
-    better = score_trial(50.0, 0.2, task_reference("task-1"))
+    better = gentle_score(50.0, 0.2)
     study.add_results(record()["trialId"], [fewer], score=better)
     stored = study.trial(record()["trialId"])
     assert "3" not in stored.registrations["rigid"].labels
@@ -285,7 +285,7 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     study.add_trial(record(3, mode="hmd"))
     study.add_trial(record(4, task="task-2"))
     study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
-    better = score_trial(50.0, 0.2, task_reference("task-1"))
+    better = gentle_score(50.0, 0.2)
     study.add_results(record(1)["trialId"], score=better)
     first, second = study.outcomes("task-1", "desktop")
     assert (first.trainee, first.score, first.true_tre_mm) == ("T-001", better.score, 0.5)

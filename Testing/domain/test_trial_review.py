@@ -4,12 +4,15 @@ import uuid
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rastrainer.experiment.study_progress import StudyProgress
 from rastrainer.experiment.study_protocol import read_study_protocol
 from rastrainer.protocol import TRIAL_RUN
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scenario import load_scenario
+from rastrainer.scoring import SAFETY_METRICS
 from rastrainer.study import Study
 from rastrainer.trial_record import TrialRecord
 from rastrainer.trial_review import review, with_progress
@@ -36,7 +39,9 @@ def reviewed(study, number, task="task-1"):
     )
     points = zip(record["points"], SCENARIO.task(task).fiducials.tolist(), strict=True)
     record["points"] = [{**point, "positionMm": place} for point, place in points]
-    analysis = review(TrialRecord.from_json(record), SCENARIO, study)
+    record["motion"] = dict.fromkeys(SAFETY_METRICS, 0.0)
+    truth = RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.0)
+    analysis = review(TrialRecord.from_json(record), SCENARIO, study, truth=truth)
     study.add_trial(record, [analysis.rigid], score=analysis.score)
     return with_progress(analysis, study)
 

@@ -19,12 +19,12 @@ from Testing.simulator.view_server.served import ViewClient
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 SPEED = ("--speed", "4")
-SCORE = {
+REGISTRATION = {
     "matrix": np.eye(4).ravel().tolist(),
     "freMm": 1.25,
     "expectedTreMm": 1.5,
-    "score": 81.0,
 }
+SCORE = {"score": 81.0}
 
 
 @pytest.fixture
@@ -45,8 +45,9 @@ def slicer(simulator):
     with Client(port=simulator.port) as slicer:
         say_hello(slicer, "Slicer")
         trial = play_trial(slicer, scenario, "task-1", "P07", 5, BRISK)
-        score = {"trialId": trial.trial_id, **SCORE}
-        assert slicer.send_command("TrialScored", score, timeout=20).ok
+        for command, arguments in (("SubmitRegistration", REGISTRATION), ("TrialScored", SCORE)):
+            arguments = {"trialId": trial.trial_id, **arguments}
+            assert slicer.send_command(command, arguments, timeout=20).ok
         yield slicer
 
 

@@ -102,7 +102,9 @@ def trial(scenario, tmp_path_factory) -> dict:
         seen["offers"] = [player.next_offer(), player.next_offer()]
         trial_id = seen["StartTask"]["trialId"]
         seen["before"] = player.do("GetTrial", trialId=trial_id)
-        seen["TrialScored"] = player.do("TrialScored", **score(trial_id, seen["points"], scenario))
+        found = registration(trial_id, seen["points"], scenario)
+        seen["truth"] = player.do("SubmitRegistration", **found)
+        player.do("TrialScored", trialId=trial_id, score=80)
         seen["phase"] = phase_of(player, "scored")
         simulator.kill()
     with SimulatorProcess(records) as simulator, Player(simulator.port) as player:
@@ -118,15 +120,14 @@ def trial(scenario, tmp_path_factory) -> dict:
     return seen
 
 
-def score(trial_id: str, points: tuple[Point, ...], scenario: Scenario) -> dict:
+def registration(trial_id: str, points: tuple[Point, ...], scenario: Scenario) -> dict:
     touched = np.array([point.position for point in points])
-    registration = register(touched, scenario.task(TASK).fiducials)
+    found = register(touched, scenario.task(TASK).fiducials)
     return {
         "trialId": trial_id,
-        "matrix": registration.matrix.ravel().tolist(),
-        "freMm": registration.fre_mm,
+        "matrix": found.matrix.ravel().tolist(),
+        "freMm": found.fre_mm,
         "expectedTreMm": 0.5,
-        "score": 80,
     }
 
 
@@ -162,12 +163,12 @@ def test_finished_trial_is_offered_as_a_valid_record_until_acknowledged(trial):
     np.testing.assert_allclose(record.positions_mm, sent, atol=1e-4)
 
 
-def test_where_the_head_was_stays_secret_until_the_trial_is_scored(trial, scenario):
+def test_where_the_head_was_stays_secret_until_a_registration_is_submitted(trial, scenario):
     assert "headToWorld" not in json.dumps([trial["Register"], trial["offers"], trial["before"]])
-    told = np.array(trial["TrialScored"]["headToWorld"]).reshape(4, 4)
+    told = np.array(trial["truth"]["headToWorld"]).reshape(4, 4)
     np.testing.assert_allclose(told, scenario.perturbed_head_to_world(SEED), atol=1e-9)
-    assert trial["TrialScored"]["trueTreMm"] < 2 * NEAR_MM
-    assert trial["after"]["headToWorld"] == trial["TrialScored"]["headToWorld"]
+    assert trial["truth"]["trueTreMm"] < 2 * NEAR_MM
+    assert trial["after"]["headToWorld"] == trial["truth"]["headToWorld"]
 
 
 def test_views_are_told_that_the_trial_is_scored(trial):

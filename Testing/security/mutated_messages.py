@@ -29,14 +29,13 @@ COMMANDS = {
     "Pause": {},
     "Resume": {},
     "SetCamera": {"camera": "far"},
-    "TrialScored": {
+    "SubmitRegistration": {
         "trialId": TRIAL,
         "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
         "freMm": 1.0,
         "expectedTreMm": 1.5,
-        "score": 70,
-        "details": {"version": "1"},
     },
+    "TrialScored": {"trialId": TRIAL, "score": 70, "details": {"version": "2"}},
     "PlanTarget": {"positionMm": [500, 0, 300], "entryMm": [500, 0, 400], "name": "target"},
     "StudyStep": {"trainee": "P01", "kind": "trial", "number": 2, "count": 9, "task": "task-1"},
     "GetTrial": {"trialId": TRIAL},

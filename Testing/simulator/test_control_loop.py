@@ -56,15 +56,17 @@ class Client:
             assert self.do(CommandName.CAPTURE).ok
         assert self.do(CommandName.REGISTER).ok
 
-    def score(self, trial_id):
+    def register(self, trial_id):
         return self.do(
-            CommandName.TRIAL_SCORED,
+            CommandName.SUBMIT_REGISTRATION,
             trialId=trial_id,
             matrix=np.eye(4).ravel().tolist(),
             freMm=1.0,
             expectedTreMm=1.0,
-            score=70.0,
         )
+
+    def score(self, trial_id):
+        return self.do(CommandName.TRIAL_SCORED, trialId=trial_id, score=70.0)
 
     def ticks(self, count):
         """Wait until so many more ticks have been told."""
@@ -112,7 +114,8 @@ def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_by_bit(
     assert "headToWorld" not in running.do(CommandName.GET_TRIAL, trialId=trial_id).data
     assert running.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
     assert running.loop.unacknowledged() == ()
-    answer = running.score(trial_id)
+    answer = running.register(trial_id)
+    assert running.score(trial_id).ok
     assert running.loop.latest.training.phase is Phase.SCORED
     told = running.do(CommandName.GET_TRIAL, trialId=trial_id).data
     assert told["headToWorld"] == answer.data["headToWorld"]
@@ -251,7 +254,8 @@ def test_a_finished_trial_waits_for_its_acknowledgment_also_after_a_restart(
         client = Client(loop)
         assert [record.trial_id for record in loop.unacknowledged()] == [trial_id]
         client.start()
-        assert client.score(trial_id).data["trueTreMm"] > 0.0
+        assert client.register(trial_id).data["trueTreMm"] > 0.0
+        assert client.score(trial_id).ok
         assert loop.latest.training.phase is Phase.RUNNING
         assert client.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
         assert loop.unacknowledged() == ()
@@ -260,6 +264,7 @@ def test_a_finished_trial_waits_for_its_acknowledgment_also_after_a_restart(
 def test_a_question_about_an_older_trial_that_fails_unforeseen_is_answered(running, caplog):
     trial_id = running.start()
     running.finish()
+    assert running.register(trial_id).ok
     assert running.score(trial_id).ok
     running.start()
     deep = []

@@ -409,12 +409,11 @@ def test_a_whole_trial_is_played_by_moves_and_every_touch_is_where_its_fiducial_
     assert trial.do(CommandName.REGISTER).ok
     exact = np.linalg.inv(truth.head_to_world).ravel().tolist()
     answer = trial.do(
-        CommandName.TRIAL_SCORED,
+        CommandName.SUBMIT_REGISTRATION,
         trialId=trial.state.training.trial_id,
         matrix=exact,
         freMm=0.0,
         expectedTreMm=0.0,
-        score=100.0,
     )
     assert max(answer.data["touchErrorsMm"].values()) < 0.1
     assert answer.data["trueTreMm"] < 1e-9

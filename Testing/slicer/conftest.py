@@ -124,6 +124,11 @@ def make_record(scenario):
             "rejectedTouches": 1,
             "undoneTouches": 1,
             "versions": {"simulator": "0.1.0"},
+            "motion": {
+                "unintended_contact_time_s": 0.0,
+                "unintended_contact_path_mm": 0.0,
+                "pressing_depth_mm": 0.2,
+            },
             **changes,
         }
 

@@ -38,7 +38,7 @@ class PlayingDouble(SimulatorDouble):
     def respond(self, name, arguments):
         if name == "Hello":
             threading.Thread(target=self.play, daemon=True).start()
-        if name != "TrialScored":
+        if name != "SubmitRegistration":
             return {}
         head_to_world = self.scenario.perturbed_head_to_world(SEED)
         found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world

@@ -185,6 +185,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [False, False]
     assert not rendering.GetVisibility()
     host.press("previewHeadButton")
+    assert host.messages == []
     host.wait_until(
         lambda: all(node.GetDisplayVisibility() for node in draft), "the draft is seen again"
     )

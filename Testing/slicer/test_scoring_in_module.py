@@ -24,7 +24,7 @@ def test_a_trial_is_kept_scored_and_judged_while_the_window_answers(host, simula
 
     def answer(name, _arguments):
         truth = {"headToWorld": head_to_world.ravel().tolist(), "trueTreMm": 0.5}
-        return truth if name == "TrialScored" else {}
+        return truth if name == "SubmitRegistration" else {}
 
     simulator.responder = answer
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", TRIAL, 16.0)
@@ -40,6 +40,7 @@ def test_a_trial_is_kept_scored_and_judged_while_the_window_answers(host, simula
     host.wait_until(lambda: host.text("feedbackText").startswith("Score "), "it is judged")
     assert [name for name, _arguments in simulator.commands if name != "Hello"] == [
         "AcknowledgeTrial",
+        "SubmitRegistration",
         "TrialScored",
     ]
     true_error = lambda: host.find("historyTable").item(0, 4).text()  # noqa: E731

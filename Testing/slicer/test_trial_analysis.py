@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
+from rastrainer.brain_region import region_of
 from rastrainer.errors import InputError
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scoring import ScoreReference
 from rastrainer.trial_analysis import analyze_trial
 from rastrainer.trial_files import read_trials
 from rastrainer.trial_record import TrialRecord
-from rastrainer.trial_results import RevealedTruth, results_json
+from rastrainer.trial_results import results_json
 
 PUBLISHED = Path(__file__).parents[2] / "assets" / "studies" / "published.csv"
 
@@ -22,6 +24,11 @@ PUBLISHED = Path(__file__).parents[2] / "assets" / "studies" / "published.csv"
 @pytest.fixture
 def record(make_record):
     return TrialRecord.from_json(make_record(str(uuid.UUID(int=1))))
+
+
+def truth_of(scenario, seed=1):
+    pose = scenario.perturbed_head_to_world(seed)
+    return RevealedTruth(tuple(pose.ravel().tolist()), 0.3)
 
 
 def true_tre(scenario, analysis, seed):
@@ -51,11 +58,52 @@ def test_touches_are_paired_with_fiducials_by_label(scenario, make_record):
     np.testing.assert_allclose(turned.matrix, expected.matrix, atol=1e-9)
 
 
-def test_all_three_kinds_are_fitted_and_the_rigid_one_is_scored(scenario, record):
-    analysis = analyze_trial(record, scenario)
+def test_all_three_kinds_are_fitted_and_the_true_error_of_the_rigid_one_is_scored(scenario, record):
+    truth = truth_of(scenario)
+    analysis = analyze_trial(record, scenario, truth=truth)
     assert set(analysis.fits) == {"rigid", "similarity", "affine"}
-    assert analysis.score.expected_tre_mm == analysis.target_errors["rigid"].independent_mm
+    region = region_of(scenario)
+    errors = [
+        np.linalg.norm(
+            transforms.apply(analysis.rigid.matrix @ truth.matrix, points) - points, axis=1
+        )
+        for points in (region.targets, region.grid)
+    ]
+    expected = np.sqrt((np.mean(errors[0] ** 2) + np.mean(errors[1] ** 2)) / 2)
+    assert analysis.score.measures.tre_mm == pytest.approx(expected)
     assert 0 < analysis.score.score < 100
+
+
+def test_there_is_no_score_before_the_truth_is_told(scenario, record):
+    analysis = analyze_trial(record, scenario)
+    assert analysis.score is None
+    assert not any(sentence.startswith("Score") for sentence in analysis.feedback.sentences)
+
+
+def test_an_offset_that_all_touches_share_is_seen_by_the_score_alone(scenario, make_record):
+    value = make_record(str(uuid.UUID(int=1)))
+    for point in value["points"]:
+        point["positionMm"] = [point["positionMm"][0] + 9.0, *point["positionMm"][1:]]
+    truth = truth_of(scenario)
+    aside = analyze_trial(TrialRecord.from_json(value), scenario, truth=truth)
+    record = TrialRecord.from_json(make_record(str(uuid.UUID(int=1))))
+    honest = analyze_trial(record, scenario, truth=truth)
+    assert aside.expected_tre.expected_mm == pytest.approx(honest.expected_tre.expected_mm)
+    assert aside.score.measures.tre_mm == pytest.approx(9.0, abs=1.0)
+    assert not aside.score.acceptable
+    assert aside.score.score < 10 < honest.score.score
+
+
+def test_a_score_keeps_the_version_that_it_was_made_in(scenario, record):
+    first = replace(
+        analyze_trial(record, scenario, truth=truth_of(scenario)).score,
+        version="1",
+        safety_desirability=None,
+        is_safe=None,
+    )
+    analysis = analyze_trial(record, scenario).scored_as(first)
+    assert analysis.score == analysis.feedback.score == first
+    assert "expected at the target" in analysis.feedback.score_sentences[2]
 
 
 def test_ctps_compares_with_the_published_trials_of_the_same_mode(scenario, record):
@@ -71,16 +119,18 @@ def test_without_a_cohort_there_is_no_ctps(scenario, record):
 
 
 def test_the_mode_plays_no_part_and_the_protocols_references_count(scenario, record):
-    plain = analyze_trial(record, scenario)
-    assert analyze_trial(replace(record, mode="hmd"), scenario).score == plain.score
+    def score(record=record, **others):
+        return analyze_trial(record, scenario, truth=truth_of(scenario), **others).score
+
+    assert score(replace(record, mode="hmd")) == score()
     strict = {record.task: ScoreReference(20.0, 0.1, 0.5)}
-    assert analyze_trial(record, scenario, references=strict).score.score < plain.score.score
+    assert score(references=strict).score < score().score
     others = {"task-5": ScoreReference(20.0, 0.1, 0.5)}
-    assert analyze_trial(record, scenario, references=others).score == plain.score
+    assert score(references=others) == score()
 
 
 def test_the_trainee_is_told_which_touches_hurt_and_where_on_the_skin(scenario, record):
-    feedback = analyze_trial(record, scenario).feedback
+    feedback = analyze_trial(record, scenario, truth=truth_of(scenario)).feedback
     assert [touch.label for touch in feedback.touches] == list(record.labels)
     for touch in feedback.touches:
         assert touch.depth_mm**2 + touch.aside_mm**2 == pytest.approx(touch.residual_mm**2)
@@ -94,9 +144,9 @@ def test_a_task_that_the_scenario_lacks_gets_a_sentence(scenario, make_record):
 
 
 def test_the_results_are_json_with_finite_numbers(scenario, record):
-    analysis = analyze_trial(record, scenario, read_trials(PUBLISHED))
-    truth = RevealedTruth(tuple(np.eye(4).ravel()), 0.3)
-    value = json.loads(json.dumps(results_json(analysis, truth), allow_nan=False))
+    cohort, truth = read_trials(PUBLISHED), truth_of(scenario)
+    analysis = analyze_trial(record, scenario, cohort, truth=truth)
+    value = json.loads(json.dumps(results_json(analysis), allow_nan=False))
     assert value["fits"]["rigid"]["fre_mm"] == analysis.rigid.fre_mm
     assert value["truth"]["true_tre_mm"] == 0.3
     assert np.shape(value["truth"]["head_to_world"]) == (4, 4)

@@ -56,7 +56,7 @@ class Lab:
         self.run_until(lambda: opened)
 
     def answer(self, name, arguments):
-        if name != "TrialScored":
+        if name != "SubmitRegistration":
             return {}
         if self.refusal is not None:
             return self.refusal
@@ -111,6 +111,7 @@ def test_a_finished_trial_is_kept_acknowledged_scored_and_its_truth_kept(lab, ma
     assert [name for name, _ in lab.simulator.commands] == [
         "Hello",
         "AcknowledgeTrial",
+        "SubmitRegistration",
         "TrialScored",
     ]
     assert stored.record.trial_id == TRIAL
@@ -186,9 +187,20 @@ def test_a_refused_score_is_told_and_the_trial_kept(lab, make_record):
     lab.refusal = "There is no such trial."
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.problems)
-    assert lab.problems == ["The score was not taken: There is no such trial."]
+    assert lab.problems == ["The trial was not scored: There is no such trial."]
     assert lab.stored().true_tre_mm is None
-    assert lab.stored().score is not None
+    assert lab.stored().score is None
+
+
+def test_a_trial_whose_contacts_were_not_measured_is_kept_with_its_truth_and_not_scored(
+    lab, make_record
+):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL, motion={}))
+    lab.run_until(lambda: lab.problems)
+    assert "contacts were not measured" in lab.problems[0]
+    assert lab.stored().true_tre_mm is not None
+    assert lab.stored().score is None
+    assert not lab.sent("TrialScored")
 
 
 def test_a_score_that_nobody_heard_is_told_over_the_next_connection(lab, make_record):
@@ -208,7 +220,7 @@ def test_scores_that_nobody_heard_are_told_one_after_the_other(lab, make_record)
     for trial in trials:
         lab.simulator.send_command("TrialCompleted", make_record(trial))
         lab.run_until(lambda trial=trial: {"trialId": trial} in lab.sent("AcknowledgeTrial"))
-    lab.run_until(lambda: len(lab.sent("TrialScored")) == 3)
+    lab.run_until(lambda: len(lab.sent("SubmitRegistration")) == 3)
     lab.link.disconnect()
     lab.refusal = None
     kept = []
@@ -231,7 +243,7 @@ def test_each_score_is_told_once_though_the_link_opens_again_while_they_are_told
     lab.refusal = "Not now."
     for trial in trials:
         lab.simulator.send_command("TrialCompleted", make_record(trial, seed=SEED))
-    lab.run_until(lambda: len(lab.sent("TrialScored")) == 4 and not lab.work.isBusy)
+    lab.run_until(lambda: len(lab.sent("SubmitRegistration")) == 4 and not lab.work.isBusy)
     lab.run_until(lambda: not lab.desk._told)
     lab.refusal = None
     lab.simulator.commands.clear()
@@ -241,7 +253,7 @@ def test_each_score_is_told_once_though_the_link_opens_again_while_they_are_told
     lab.run_until(lambda: not lab.desk._told)
     told = [arguments["trialId"] for arguments in lab.sent("TrialScored")]
     assert sorted(told) == trials
-    assert sorted(trial.analysis.record.trial_id for trial in lab.scored) == trials
+    assert sorted(trial.record.trial_id for trial in lab.scored) == trials
 
 
 def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
@@ -295,7 +307,7 @@ def reviews(monkeypatch):
 def test_the_main_thread_neither_scores_nor_opens_the_study(lab, make_record, reviews):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
-    assert len(reviews) == 1
+    assert len(reviews) == 2
     main = threading.get_ident()
     assert main not in lab.threads | {thread for _trial, thread in reviews}
 
@@ -306,7 +318,7 @@ def test_what_is_known_is_acknowledged_and_not_scored_again(lab, make_record, re
     for count in range(2, 5):
         lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
         lab.run_until(lambda count=count: len(lab.sent("AcknowledgeTrial")) == count)
-    assert len(reviews) == 1
+    assert len(reviews) == 2
 
 
 def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, reviews):
@@ -319,7 +331,9 @@ def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, revie
     ):
         lab.simulator.send_command("TrialCompleted", make_record(**changes))
         lab.run_until(lambda told=told: lab.problems and told in lab.problems[-1])
-    assert len(reviews) == len(lab.sent("AcknowledgeTrial")) == 1
+    assert len(lab.sent("AcknowledgeTrial")) == 1
+    # Once to register it, once with its truth.
+    assert len(reviews) == 2
     with Study.open(lab.path) as study:
         assert [trainee.pseudonym for trainee in study.trainees()] == ["T-001"]
 

@@ -16,12 +16,12 @@ from Testing.web.place import WITHOUT_GRAPHICS, Place
 # A trial is played first: minutes.
 pytestmark = pytest.mark.soak
 
-SCORE = {
+REGISTRATION = {
     "matrix": np.eye(4).ravel().tolist(),
     "freMm": 1.25,
     "expectedTreMm": 1.5,
-    "score": 81.0,
 }
+SCORE = {"score": 81.0}
 POINTS = 15
 
 
@@ -34,8 +34,12 @@ def place(tmp_path_factory):
         with Client(port=place.simulator.port) as slicer:
             say_hello(slicer, "Slicer")
             trial = play_trial(slicer, scenario, "task-1", "P07", 5)
-            score = {"trialId": trial.trial_id, **SCORE}
-            assert slicer.send_command("TrialScored", score, timeout=20).ok
+            for command, arguments in (
+                ("SubmitRegistration", REGISTRATION),
+                ("TrialScored", SCORE),
+            ):
+                arguments = {"trialId": trial.trial_id, **arguments}
+                assert slicer.send_command(command, arguments, timeout=20).ok
         yield place
 
 

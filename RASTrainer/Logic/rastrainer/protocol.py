@@ -16,7 +16,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_message_object
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
 DEFAULT_HOST = "127.0.0.1"
 DEFAULT_PORT = 18944
 FIDUCIAL_COUNT = 15
@@ -131,6 +131,7 @@ class CommandName:
     PAUSE = "Pause"
     RESUME = "Resume"
     SET_CAMERA = "SetCamera"
+    SUBMIT_REGISTRATION = "SubmitRegistration"
     TRIAL_SCORED = "TrialScored"
     PLAN_TARGET = "PlanTarget"
     STUDY_STEP = "StudyStep"
@@ -295,11 +296,14 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.PAUSE: {},
     CommandName.RESUME: {},
     CommandName.SET_CAMERA: {"camera": Argument(one_of("close-up", "far"))},
-    CommandName.TRIAL_SCORED: {
+    CommandName.SUBMIT_REGISTRATION: {
         "trialId": Argument(trial_id),
         "matrix": Argument(numbers(16, 1e6)),
         "freMm": Argument(number(0, 1e6, "mm")),
         "expectedTreMm": Argument(number(0, 1e6, "mm")),
+    },
+    CommandName.TRIAL_SCORED: {
+        "trialId": Argument(trial_id),
         "score": Argument(number(0, 100)),
         "details": Argument(plain_object, {}),
     },

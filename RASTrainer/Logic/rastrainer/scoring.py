@@ -1,9 +1,14 @@
-"""RASTrainer's own score of a trial: 0 to 100, from completion time and expected target error.
+"""RASTrainer's own score of a trial: 0 to 100, from completion time, true target error and safety.
 
-The score is the geometric mean of two desirabilities (Harrington 1965, Derringer and Suich 1980),
-each strictly falling: faster is better, more accurate is better. An error beyond the limit of
-acceptance is cut so far that even the fastest such trial stays below every acceptable one. The
-references are fixed per task before anyone trains, and the mode plays no part.
+Each is a desirability (Harrington 1965, Derringer and Suich 1980) that falls strictly: faster, more
+accurate and gentler are better. The score is the geometric mean of time and accuracy, times the
+square root of safety, which is 1 for a trial without unintended contact. What is beyond a limit of
+acceptance is cut so far that no such trial, however good otherwise, reaches any acceptable one.
+
+Accuracy is the true error, which only a simulator knows, over the region that the registration has
+to be right in (`rastrainer.brain_region`): neither an FRE nor an expected TRE can see an offset
+that all touches share. The references come from the scenario (`rastrainer.score_reference`), and
+the mode plays no part.
 
 A pause is no completion time: the arm stands still, and a trainee who is called away shall not lose
 for it. But it is time to think that is not scored. So its length stands beside the score, and
@@ -18,45 +23,98 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRIAL_RUN
 
-SCORE_VERSION = "1"
-"""Changes with any change of a formula or reference, so that scores stay comparable."""
+SCORE_VERSION = "2"
+"""Changes with any change of a formula or a reference, so that scores stay comparable."""
+FIRST_SCORE_VERSION = "1"
+"""Scored time and the expected TRE at one target; such scores are read, and made no more."""
 PASS_MARK = 70.0
 """Score to reach where a study's protocol has no mark of its own from contrasting groups."""
 LONG_PAUSE_S = 30.0
 """Our own convention: what a sip of water or a word with the instructor takes."""
 TIME_FLOOR = 0.04
-TIME_LIMIT_S = 1e6
-ERROR_LIMIT_MM = 1e6
+LIMIT_MM = 1.5
+"""Largest acceptable true TRE. Image-guided neurosurgery asks for 2 mm in all, of which the images,
+the robot and its instrument take the rest: √(2² − 1.5²) = 1.3 mm."""
+HALF_CONTACT_S, CONTACT_LIMIT_S = 4.0, 8.0
+"""Unintended contact in a trial that halves the desirability, and the most that is acceptable: a
+brush of a second now and then, not the tool's way of traveling. Our own convention, as the next."""
+HALF_CONTACT_PATH_MM, CONTACT_PATH_LIMIT_MM = 80.0, 160.0
+HALF_DEPTH_MM = DEPTH_LIMIT_MM = 1.5
+LARGEST = 1e6
+"""Of any measure: what is above is a mistake."""
 
 
 @dataclass(frozen=True)
 class ScoreReference:
-    """What a score is measured against.
+    """What a trial is measured against.
 
     Attributes:
-        time_s: Completion time of half the range of the time desirability.
-        tre_mm: Expected target error of accuracy desirability one half.
-        limit_mm: Largest acceptable expected target error.
+        time_s: completion time of half the range of the time desirability.
+        tre_mm: true TRE of accuracy desirability one half.
+        limit_mm: largest acceptable true TRE.
     """
 
     time_s: float
-    tre_mm: float = 0.4
-    limit_mm: float = 2.0
+    tre_mm: float
+    limit_mm: float = LIMIT_MM
 
 
-# Times: pooled means of both modes of the published study, rounded to 5 s; the trial run is a
-# little easier than Task 1. Error: what the study's mean RMSE of 1.4 mm over fifteen fiducials
-# means at the center of the head. Limit: the 2 mm that image-guided neurosurgery asks for.
-TASK_REFERENCES = {
-    TRIAL_RUN: ScoreReference(100.0),
-    "task-1": ScoreReference(105.0),
-    "task-2": ScoreReference(125.0),
-    "task-3": ScoreReference(130.0),
-    "task-4": ScoreReference(135.0),
-    "task-5": ScoreReference(140.0),
-}
+@dataclass(frozen=True)
+class ScoreMeasures:
+    """What is scored of a trial.
+
+    Attributes:
+        completion_time_s: above 0.
+        tre_mm: RMS true TRE over the region; expected TRE at the target in version 1.
+        contact_time_s: of unintended contact; None in version 1, as the next two.
+        contact_path_mm: of the tip during that.
+        pressing_depth_mm: RMS over the fiducials of how deep the tool was pressed in.
+    """
+
+    completion_time_s: float
+    tre_mm: float
+    contact_time_s: float | None
+    contact_path_mm: float | None
+    pressing_depth_mm: float | None
+
+    @classmethod
+    def of(
+        cls, completion_time_s: float, tre_mm: float, motion: Mapping[str, float]
+    ) -> ScoreMeasures:
+        """Return the measures of a trial with these motion metrics.
+
+        Raises:
+            InputError: its contacts were not measured.
+        """
+        try:
+            return cls(completion_time_s, tre_mm, *(float(motion[name]) for name in SAFETY_METRICS))
+        except KeyError as error:
+            raise InputError(
+                f"The trial's contacts were not measured ({error.args[0]} is missing), so it "
+                "cannot be scored."
+            ) from None
+
+    def check(self) -> None:
+        """Raise `InputError` unless these are numbers that a trial can have."""
+        if not 0 < self.completion_time_s <= LARGEST:
+            raise InputError("The completion time must be a number of seconds above 0.")
+        for value, what in (
+            (self.tre_mm, "true target error must be a number of mm"),
+            (self.contact_time_s, "time of unintended contact must be a number of seconds"),
+            (self.contact_path_mm, "path of unintended contact must be a number of mm"),
+            (self.pressing_depth_mm, "pressing depth must be a number of mm"),
+        ):
+            if value is None or not 0 <= value <= LARGEST:
+                raise InputError(f"The {what}, 0 or above.")
+
+
+SAFETY_METRICS = (
+    "unintended_contact_time_s",
+    "unintended_contact_path_mm",
+    "pressing_depth_mm",
+)
+"""Motion metrics of `rastrainer.motion` that are scored."""
 
 
 @dataclass(frozen=True)
@@ -64,24 +122,32 @@ class TrialScore:
     """The score of one trial and its parts.
 
     Attributes:
-        score: Above 0 up to 100; about 51 for a trial at both references.
-        time_desirability: From `TIME_FLOOR` (never done) to 1 (at once).
-        accuracy_desirability: From 0 (no registration) to 1 (no error).
-        acceptable: Whether the expected target error is within the limit.
-        completion_time_s: The time that was scored, in s.
-        expected_tre_mm: The error that was scored, in mm.
-        reference: What they were measured against.
-        version: Version of the formula and the shipped references.
+        score: above 0 up to 100; about 51 for a gentle trial at both references.
+        time_desirability: from `TIME_FLOOR` (never done) to 1 (at once).
+        accuracy_desirability: from 0 (no registration) to 1 (no error).
+        safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in); None in
+            version 1.
+        is_accurate: whether the target error is within the limit.
+        is_safe: whether contact and pressing are; None in version 1.
+        measures: what was scored.
+        reference: what it was measured against.
+        version: of the formula and the references.
     """
 
     score: float
     time_desirability: float
     accuracy_desirability: float
-    acceptable: bool
-    completion_time_s: float
-    expected_tre_mm: float
+    safety_desirability: float | None
+    is_accurate: bool
+    is_safe: bool | None
+    measures: ScoreMeasures
     reference: ScoreReference
     version: str = SCORE_VERSION
+
+    @property
+    def acceptable(self) -> bool:
+        """Whether the trial is within all limits."""
+        return self.is_accurate and self.is_safe is not False
 
     def to_json(self) -> dict[str, Any]:
         """Return the score as a JSON object."""
@@ -89,9 +155,11 @@ class TrialScore:
             "score": self.score,
             "time_desirability": self.time_desirability,
             "accuracy_desirability": self.accuracy_desirability,
+            "safety_desirability": self.safety_desirability,
             "acceptable": self.acceptable,
-            "completion_time_s": self.completion_time_s,
-            "expected_tre_mm": self.expected_tre_mm,
+            "is_accurate": self.is_accurate,
+            "is_safe": self.is_safe,
+            "measures": dict(vars(self.measures)),
             "reference_time_s": self.reference.time_s,
             "reference_tre_mm": self.reference.tre_mm,
             "limit_mm": self.reference.limit_mm,
@@ -100,14 +168,23 @@ class TrialScore:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> TrialScore:
-        """Return the score that `to_json` described."""
+        """Return the score that `to_json` described, of this version or the first."""
+        if "measures" not in value:
+            is_accurate, is_safe = value["acceptable"], None
+            measures = ScoreMeasures(
+                value["completion_time_s"], value["expected_tre_mm"], None, None, None
+            )
+        else:
+            is_accurate, is_safe = value["is_accurate"], value["is_safe"]
+            measures = ScoreMeasures(**value["measures"])
         return cls(
             score=value["score"],
             time_desirability=value["time_desirability"],
             accuracy_desirability=value["accuracy_desirability"],
-            acceptable=value["acceptable"],
-            completion_time_s=value["completion_time_s"],
-            expected_tre_mm=value["expected_tre_mm"],
+            safety_desirability=value.get("safety_desirability"),
+            is_accurate=is_accurate,
+            is_safe=is_safe,
+            measures=measures,
             reference=ScoreReference(
                 value["reference_time_s"], value["reference_tre_mm"], value["limit_mm"]
             ),
@@ -115,58 +192,62 @@ class TrialScore:
         )
 
 
-def task_reference(task: str) -> ScoreReference:
-    """Return the fixed reference of a shipped task.
-
-    Raises:
-        InputError: the task has none; the sentence lists those that have.
-    """
-    try:
-        return TASK_REFERENCES[task]
-    except KeyError:
-        known = ", ".join(TASK_REFERENCES)
-        raise InputError(
-            f"The task {task!r} has no reference for scoring; those that have are {known}."
-        ) from None
-
-
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
-    """Tell whether a trial reaches the mark with an acceptable expected target error."""
+    """Tell whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
 
 
-def score_trial(
-    completion_time_s: float, expected_tre_mm: float, reference: ScoreReference
-) -> TrialScore:
+def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScore:
     """Return the score of a trial.
 
     Args:
-        completion_time_s: Above 0, in s.
-        expected_tre_mm: Expected error at the scenario's target, not below 0, in mm.
-        reference: Of the trial's task.
+        measures: what is scored of it.
+        reference: of its task in its scenario.
 
     Raises:
-        InputError: the time or the error is no such number.
+        InputError: a measure is no such number.
     """
-    if not 0 < completion_time_s <= TIME_LIMIT_S:
-        raise InputError("The completion time must be a number of seconds above 0.")
-    if not 0 <= expected_tre_mm <= ERROR_LIMIT_MM:
-        raise InputError("The expected target error must be a number of mm, 0 or above.")
-    time = TIME_FLOOR + (1 - TIME_FLOOR) * _falling(completion_time_s, reference.time_s)
-    accuracy = _falling(expected_tre_mm, reference.tre_mm)
-    acceptable = expected_tre_mm <= reference.limit_mm
-    if not acceptable:
-        # The cut equals the whole range of the time desirability: speed cannot make up for it.
-        accuracy *= TIME_FLOOR
+    measures.check()
+    time = TIME_FLOOR + (1 - TIME_FLOOR) * _falling(measures.completion_time_s, reference.time_s)
+    accuracy = _falling(measures.tre_mm, reference.tre_mm)
+    safety = _safety(measures.contact_time_s, measures.contact_path_mm, measures.pressing_depth_mm)
+    is_accurate = measures.tre_mm <= reference.limit_mm
+    is_safe = (
+        measures.contact_time_s <= CONTACT_LIMIT_S
+        and measures.contact_path_mm <= CONTACT_PATH_LIMIT_MM
+        and measures.pressing_depth_mm <= DEPTH_LIMIT_MM
+    )
+    product = time * accuracy * safety
+    if not (is_accurate and is_safe):
+        product *= _worst_acceptable(reference)
     return TrialScore(
-        score=100 * math.sqrt(time * accuracy),
+        score=100 * math.sqrt(product),
         time_desirability=time,
         accuracy_desirability=accuracy,
-        acceptable=acceptable,
-        completion_time_s=completion_time_s,
-        expected_tre_mm=expected_tre_mm,
+        safety_desirability=safety,
+        is_accurate=is_accurate,
+        is_safe=is_safe,
+        measures=measures,
         reference=reference,
     )
+
+
+def _safety(contact_time_s: float, contact_path_mm: float, depth_mm: float) -> float:
+    return (
+        _falling(contact_time_s, HALF_CONTACT_S)
+        * _falling(contact_path_mm, HALF_CONTACT_PATH_MM)
+        * _falling(depth_mm, HALF_DEPTH_MM)
+    )
+
+
+def _worst_acceptable(reference: ScoreReference) -> float:
+    """Return the product of the desirabilities of a trial at all limits that takes for ever.
+
+    As a factor it brings every trial beyond a limit below every acceptable one.
+    """
+    accuracy = _falling(reference.limit_mm, reference.tre_mm)
+    safety = _safety(CONTACT_LIMIT_S, CONTACT_PATH_LIMIT_MM, DEPTH_LIMIT_MM)
+    return TIME_FLOOR * accuracy * safety
 
 
 def _falling(value: float, half: float) -> float:

@@ -8,6 +8,9 @@ import numpy as np
 
 from rastrainer.head_mesh import HeadMesh
 
+POINTS_AT_ONCE = 128
+"""So that the distances of so many points to all vertices fit into a processor's cache."""
+
 
 @dataclass(frozen=True)
 class NearestPoint:
@@ -37,6 +40,19 @@ def nearest_on_mesh(mesh: HeadMesh, point: np.ndarray) -> NearestPoint:
     distances = np.linalg.norm(positions - point, axis=1)
     best = int(np.argmin(distances))
     return NearestPoint(positions[best], float(distances[best]), int(near[best]), weights[best])
+
+
+def nearest_vertices(mesh: HeadMesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far the nearest vertex is from each point, (n,) float, mm, and its index."""
+    distances, indices = np.empty(len(points)), np.empty(len(points), dtype=int)
+    squares = np.einsum("ij,ij->i", mesh.vertices, mesh.vertices)
+    for start in range(0, len(points), POINTS_AT_ONCE):
+        rows = slice(start, start + POINTS_AT_ONCE)
+        # |v|² − 2 v·p: as |v − p|², without what all vertices share.
+        nearest = (squares - 2.0 * points[rows] @ mesh.vertices.T).argmin(axis=1)
+        indices[rows] = nearest
+        distances[rows] = np.linalg.norm(mesh.vertices[nearest] - points[rows], axis=1)
+    return distances, indices
 
 
 def outward_normal(mesh: HeadMesh, point: np.ndarray) -> np.ndarray:

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rastrainer import ctps
+from rastrainer.brain_region import region_of
 from rastrainer.errors import InputError
+from rastrainer.feedback.advice import advise
 from rastrainer.feedback.trial_feedback import TrialFeedback, trial_feedback
 from rastrainer.fiducial_normals import fiducial_normals
 from rastrainer.localization_error import error_along_surface
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.point_list import PointList, pair
 from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration, register
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scenario import Scenario
-from rastrainer.scoring import ScoreReference, TrialScore, score_trial, task_reference
+from rastrainer.score_reference import score_reference
+from rastrainer.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
 from rastrainer.target_error import TargetError, target_error
 from rastrainer.trial_record import TrialRecord
 
@@ -44,7 +48,8 @@ class TrialAnalysis:
         target_name: of the scenario's target, at which the target errors are told.
         fits: the registration of each kind that the points allow; rigid is always there.
         target_errors: by kind, the error to expect at the target.
-        score: ours, of the rigid registration.
+        truth: what the simulator has revealed; None before.
+        score: ours, of the rigid registration; None without the truth.
         published_score: CTPS of the rigid registration; None where no cohort was given.
         feedback: what the trainee is told of this trial alone.
     """
@@ -53,7 +58,8 @@ class TrialAnalysis:
     target_name: str
     fits: Mapping[str, Registration]
     target_errors: Mapping[str, TargetError]
-    score: TrialScore
+    truth: RevealedTruth | None
+    score: TrialScore | None
     published_score: PublishedScore | None
     feedback: TrialFeedback
 
@@ -67,6 +73,13 @@ class TrialAnalysis:
         """The error to expect at the target with the registration that is scored."""
         return self.target_errors[RIGID]
 
+    def scored_as(self, score: TrialScore | None) -> TrialAnalysis:
+        """Return the analysis with the score that was once made of the trial, in its version."""
+        advice = advise(score, self.feedback.touches, self.record.motion)
+        return replace(
+            self, score=score, feedback=replace(self.feedback, score=score, advice=advice)
+        )
+
 
 def analyze_trial(
     record: TrialRecord,
@@ -74,19 +87,24 @@ def analyze_trial(
     cohort: Sequence[ctps.Trial] = (),
     references: Mapping[str, ScoreReference] | None = None,
     trajectory: Trajectory | None = None,
+    truth: RevealedTruth | None = None,
 ) -> TrialAnalysis:
     """Register a trial's touches to its task's fiducials, paired by label, and score it.
+
+    The score is made of the true error of the rigid registration of all touches.
 
     Args:
         record: the trial.
         scenario: in which it was played.
         cohort: trials that CTPS compares with; those of the trial's own mode count.
-        references: of the score, by task, as a study's protocol sets them; the shipped ones for
-            tasks that it leaves out.
+        references: of the score, by task, as a study's protocol sets them; those of the scenario
+            for tasks that it leaves out.
         trajectory: of the trial, from its journal; it tells why a touch was off.
+        truth: what the simulator has revealed; without it there is no score.
 
     Raises:
-        InputError: the scenario has no such task or labels, or the points cannot be registered.
+        InputError: the scenario has no such task or labels, or the points cannot be registered, or
+            the trial's contacts were not measured.
     """
     task = scenario.task(record.task)
     labels, moving, fixed = pair(
@@ -103,13 +121,19 @@ def analyze_trial(
         kind: target_error(fit, scenario.target_position, error_along_surface(fit, normals))
         for kind, fit in fits.items()
     }
-    reference = (references or {}).get(record.task) or task_reference(record.task)
-    score = score_trial(record.completion_time_s, errors[RIGID].independent_mm, reference)
+    score = None
+    if truth is not None:
+        tre_mm = region_of(scenario).tre_mm(fits[RIGID].matrix, truth.matrix)
+        score = score_trial(
+            ScoreMeasures.of(record.completion_time_s, tre_mm, record.motion),
+            score_reference(scenario, record.task, references),
+        )
     return TrialAnalysis(
         record=record,
         target_name=scenario.target_name,
         fits=fits,
         target_errors=errors,
+        truth=truth,
         score=score,
         published_score=published_score(record, fits[RIGID].fre_mm, cohort),
         feedback=trial_feedback(score, fits[RIGID], normals, record.motion, trajectory),

@@ -1,4 +1,4 @@
-"""A delivered trial goes into the study: checked first, then scored, then stored, all in one call.
+"""A delivered trial goes into the study: checked, registered, then stored, all in one call.
 
 It may run in a thread of its own: it works on plain data and the study that it is given.
 """
@@ -13,7 +13,6 @@ from rastrainer.errors import InputError
 from rastrainer.study import Study
 from rastrainer.trial_analysis import TrialAnalysis
 from rastrainer.trial_record import TrialRecord
-from rastrainer.trial_review import with_progress
 
 
 @dataclass(frozen=True)
@@ -22,9 +21,8 @@ class Intake:
 
     Attributes:
         record: the trial.
-        analysis: what it is scored by, with the trainee's progress; None where it is not to be
-            scored now, or cannot be.
-        problem: why it cannot be scored, a sentence; empty otherwise.
+        analysis: its registration; None where it is not to be scored now, or cannot be.
+        problem: why it cannot be registered, a sentence; empty otherwise.
     """
 
     record: TrialRecord
@@ -38,13 +36,13 @@ def take_in(
     analyze: Callable[[TrialRecord], TrialAnalysis],
     is_being_told: bool = False,
 ) -> Intake:
-    """Store a trial with its results, once; what is known already is not scored again.
+    """Store a trial with its registration, once; what is known already is not scored again.
 
     Args:
         value: the trial as it was delivered.
         study: in which it is stored.
-        analyze: scores a record; `InputError` where that cannot be.
-        is_being_told: whether its score is on its way to the simulator.
+        analyze: registers a record; `InputError` where that cannot be.
+        is_being_told: whether its registration or score is on its way to the simulator.
 
     Raises:
         InputError: it is no record of a trial, or cannot be stored.
@@ -59,5 +57,5 @@ def take_in(
     except InputError as error:
         study.add_trial(value)
         return Intake(record, problem=str(error))
-    study.add_trial(value, analysis.fits.values(), analysis.target_errors, analysis.score)
-    return Intake(record, with_progress(analysis, study))
+    study.add_trial(value, analysis.fits.values(), analysis.target_errors)
+    return Intake(record, analysis)

@@ -2,51 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
-from rastrainer import protocol
 from rastrainer.ctps import CTPS_WARNING
-from rastrainer.errors import InputError
 from rastrainer.registration import Registration
 from rastrainer.target_error import TargetError
 from rastrainer.trial_analysis import PublishedScore, TrialAnalysis
 
 
-@dataclass(frozen=True)
-class RevealedTruth:
-    """What the simulator tells once a trial is scored.
-
-    Attributes:
-        head_to_world: 16 numbers, row by row, mm: where the head was, from MRI RAS to World.
-        true_tre_mm: how far the registration put the target from where it is.
-    """
-
-    head_to_world: tuple[float, ...]
-    true_tre_mm: float
-
-    @classmethod
-    def from_json(cls, answer: Mapping[str, Any]) -> RevealedTruth:
-        """Return what the answer to TrialScored or GetTrial reveals.
-
-        Raises:
-            InputError: it reveals nothing, or not numbers.
-        """
-        try:
-            return cls(
-                protocol.numbers(16, 1e6)(answer.get("headToWorld")),
-                protocol.number(0, 1e6)(answer.get("trueTreMm")),
-            )
-        except ValueError:
-            raise InputError(
-                "The simulator's answer must hold headToWorld, 16 numbers, and trueTreMm."
-            ) from None
-
-
-def results_json(analysis: TrialAnalysis, truth: RevealedTruth | None = None) -> dict[str, Any]:
+def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
     """Return the numbers of a trial as a JSON object; lengths in mm, times in s."""
     record = analysis.record
     return {
@@ -67,8 +31,8 @@ def results_json(analysis: TrialAnalysis, truth: RevealedTruth | None = None) ->
             "name": analysis.target_name,
             "position_ras_mm": list(analysis.expected_tre.target_mm),
         },
-        "truth": None if truth is None else _truth_json(truth, analysis.expected_tre),
-        "score": analysis.score.to_json(),
+        "truth": None if analysis.truth is None else _truth_json(analysis),
+        "score": None if analysis.score is None else analysis.score.to_json(),
         "feedback": list(analysis.feedback.sentences),
         "motion": dict(record.motion),
         "ctps": None if analysis.published_score is None else _ctps_json(analysis.published_score),
@@ -88,10 +52,10 @@ def _fit_json(fit: Registration, error: TargetError) -> dict[str, Any]:
     }
 
 
-def _truth_json(truth: RevealedTruth, expected: TargetError) -> dict[str, Any]:
-    low, high = expected.interval_mm
+def _truth_json(analysis: TrialAnalysis) -> dict[str, Any]:
+    truth, (low, high) = analysis.truth, analysis.expected_tre.interval_mm
     return {
-        "head_to_world": np.reshape(truth.head_to_world, (4, 4)).tolist(),
+        "head_to_world": truth.matrix.tolist(),
         "true_tre_mm": truth.true_tre_mm,
         "within_interval": low <= truth.true_tre_mm <= high,
     }

@@ -12,6 +12,7 @@ from rastrainer.experiment.study_protocol import pass_mark_of
 from rastrainer.feedback.progress_words import progress_of
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.protocol import TRIAL_RUN
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scenario import Scenario
 from rastrainer.study import Study
 from rastrainer.study_aborted import AbortedTrials
@@ -25,6 +26,7 @@ def review(
     study: Study,
     records: Path | None = None,
     cohort: Sequence[Trial] = (),
+    truth: RevealedTruth | None = None,
 ) -> TrialAnalysis:
     """Analyze a trial as its study's protocol says, with the feedback that its journal allows.
 
@@ -34,6 +36,7 @@ def review(
         study: whose protocol sets the references of the score.
         records: folder of journals; None, or one that is not there, tells less about the touches.
         cohort: trials that CTPS compares with.
+        truth: what the simulator has revealed; without it there is no score.
 
     Raises:
         InputError: the trial cannot be registered, or the study not be read.
@@ -42,7 +45,7 @@ def review(
     references = None if protocol is None else protocol.references
     here = records is not None and records.is_dir()
     trajectory = read_trajectory(records, record.trial_id) if here else None
-    return analyze_trial(record, scenario, cohort, references, trajectory)
+    return analyze_trial(record, scenario, cohort, references, trajectory, truth)
 
 
 def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:

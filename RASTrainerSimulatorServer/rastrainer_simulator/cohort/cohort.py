@@ -141,4 +141,4 @@ def _store(store: CohortStore, trial: PlayedTrial) -> None:
     if trial.analysis is None:
         store.add_stuck(trial.job.trial_id)
     else:
-        store.add(trial.analysis, trial.true_tre_mm, trial.head_to_world.ravel().tolist())
+        store.add(trial.analysis)

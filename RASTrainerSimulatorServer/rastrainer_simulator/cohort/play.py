@@ -18,6 +18,7 @@ from rastrainer import transforms
 from rastrainer.cohort.jobs import TrialJob
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.protocol import Mode
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scoring import ScoreReference
 from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
 from rastrainer.trial_record import TrialRecord
@@ -41,7 +42,7 @@ class PlaySettings:
     Attributes:
         scenario: Folder; None for the one that comes with RASTrainer.
         step_s: Length of a step of the simulation.
-        references: Of the score, by task; the shipped ones for tasks that it leaves out.
+        references: Of the score, by task; the scenario's for tasks that it leaves out.
         records: Folder for the journals; None for none.
     """
 
@@ -53,12 +54,10 @@ class PlaySettings:
 
 @dataclass(frozen=True)
 class PlayedTrial:
-    """What a job gave; `analysis` and the truth are None where the trainee got stuck."""
+    """What a job gave; `analysis` is None where the trainee got stuck."""
 
     job: TrialJob
     analysis: TrialAnalysis | None
-    head_to_world: np.ndarray | None = None
-    true_tre_mm: float | None = None
 
     @property
     def record(self) -> TrialRecord:
@@ -95,11 +94,15 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     if settings.records is not None:
         _write_journal(settings.records, entries, job.started)
     scenario = simulation.setup.scenario
-    analysis = analyze_trial(record, scenario, references=settings.references)
+    rigid = analyze_trial(record, scenario).rigid
     target = scenario.target_position
-    there_and_back = transforms.apply(analysis.rigid.matrix @ trial.head_to_world, target)
-    true_tre_mm = float(np.linalg.norm(there_and_back - target))
-    return PlayedTrial(job, analysis, trial.head_to_world, true_tre_mm)
+    there_and_back = transforms.apply(rigid.matrix @ trial.head_to_world, target)
+    truth = RevealedTruth(
+        tuple(trial.head_to_world.ravel().tolist()), float(np.linalg.norm(there_and_back - target))
+    )
+    return PlayedTrial(
+        job, analyze_trial(record, scenario, references=settings.references, truth=truth)
+    )
 
 
 class _Watch:

@@ -22,7 +22,9 @@ LONGEST_TRIAL_TICKS = 10_000_000
 """A journal that claims more (11 hours at 250 Hz) is not replayed."""
 SHORTEST_TICK_S, LONGEST_TICK_S = 1e-4, 0.1
 
-_NOT_SIMULATED = frozenset({"header", "display", "stopped", "attempt", "scored", "acknowledged"})
+_NOT_SIMULATED = frozenset(
+    {"header", "display", "stopped", "attempt", "registration", "scored", "acknowledged"}
+)
 _TOLD_SINCE = frozenset({"depthMm"})
 """Keys that older journals lack; where a part of a journal has one it is compared there."""
 _OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record", "versions"})

@@ -21,6 +21,7 @@ from rastrainer.protocol import CommandName
 from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.true_error import Truth
 
 FIRST_REACH = 1 << 16
@@ -28,7 +29,9 @@ FIRST_REACH = 1 << 16
 
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
 _OVER = frozenset({b"registered", b"aborted", b"attempt"})
-_AFTER_THE_TRIAL = frozenset({b"registered", b"attempt", b"scored", b"acknowledged"})
+_AFTER_THE_TRIAL = frozenset(
+    {b"registered", b"attempt", b"registration", b"scored", b"acknowledged"}
+)
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,7 @@ class ArchivedTrial:
         record: as it is delivered.
         truth: where the head really was.
         seed: of the trial, told with the truth.
+        registration: the arguments of SubmitRegistration; None before.
         scored: the arguments of TrialScored; None before.
         acknowledged: whether a client has said that it has stored the record.
     """
@@ -46,22 +50,25 @@ class ArchivedTrial:
     record: TrialRecord
     truth: Truth
     seed: int
+    registration: Mapping[str, Any] | None = None
     scored: Mapping[str, Any] | None = None
     acknowledged: bool = False
 
     def told(self) -> dict[str, Any]:
-        """Return what GetTrial answers: the truth only once the trial is scored."""
+        """Return what GetTrial answers: the truth only once a registration was submitted."""
         data: dict[str, Any] = {
             "trialId": self.record.trial_id,
             "phase": "registered" if self.scored is None else "scored",
             "record": self.record.to_json(),
             "acknowledged": self.acknowledged,
         }
-        return data if self.scored is None else {**data, "seed": self.seed, **self.revealed()}
+        if self.registration is None:
+            return data
+        return {**data, "seed": self.seed, **self.revealed()}
 
     def revealed(self) -> dict[str, Any]:
-        """Return what TrialScored answers; the trial has to be scored."""
-        matrix = np.array(self.scored["matrix"], dtype=float).reshape(4, 4)
+        """Return what SubmitRegistration answers, once it was submitted."""
+        matrix = np.array(self.registration["matrix"], dtype=float).reshape(4, 4)
         touches = zip(self.record.labels, self.record.positions_mm, strict=True)
         return self.truth.revealed(matrix, touches)
 
@@ -112,12 +119,12 @@ class TrialArchive:
     def answer(
         self, command: str, arguments: Mapping[str, Any], times: Mapping[str, Any]
     ) -> dict[str, Any]:
-        """Carry out GetTrial, AcknowledgeTrial or TrialScored and return the answer's data.
+        """Carry out a command about one of the trials and return the answer's data.
 
         `times` are the stamps of the entry that is appended to the trial's journal.
 
         Raises:
-            InputError: there is no such trial.
+            InputError: there is no such trial, or its registration is final, or missing.
             RecordError: its journal cannot be written.
         """
         if arguments["trialId"] not in self._trials:
@@ -132,15 +139,30 @@ class TrialArchive:
         if command == CommandName.ACKNOWLEDGE_TRIAL and not trial.acknowledged:
             self._append(trial_id, {"kind": "acknowledged", **times})
             trial = replace(trial, acknowledged=True)
+        elif command == CommandName.SUBMIT_REGISTRATION:
+            trial = self._with_registration(trial, arguments, times)
+        elif command == CommandName.TRIAL_SCORED and trial.registration is None:
+            raise InputError(Texts().say("no registration"))
         elif command == CommandName.TRIAL_SCORED and trial.scored != arguments:
             self._append(trial_id, {"kind": "scored", **times, "arguments": arguments})
             trial = replace(trial, scored=arguments)
         self._keep(trial)
         if command == CommandName.GET_TRIAL:
             return trial.told()
-        if command == CommandName.ACKNOWLEDGE_TRIAL:
-            return {"trialId": trial_id}
-        return {"trialId": trial_id, **trial.revealed()}
+        revealed = trial.revealed() if command == CommandName.SUBMIT_REGISTRATION else {}
+        return {"trialId": trial_id, **revealed}
+
+    def _with_registration(
+        self, trial: ArchivedTrial, arguments: Mapping[str, Any], times: Mapping[str, Any]
+    ) -> ArchivedTrial:
+        """Take a registration; told the truth, nobody may register again."""
+        if trial.registration is None:
+            entry = {"kind": "registration", **times, "arguments": arguments}
+            self._append(trial.record.trial_id, entry)
+            return replace(trial, registration=arguments)
+        if any(trial.registration[name] != value for name, value in arguments.items()):
+            raise InputError(Texts().say("registration is final"))
+        return trial
 
     def _keep(self, trial: ArchivedTrial) -> None:
         """Keep a trial at hand until all is done with it; then its journal suffices."""
@@ -211,15 +233,18 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
     if not registered:
         return None
     scores = reading.of_kind("scored")
+    # In the first version of the protocol the score brought the registration.
+    registrations = reading.of_kind("registration") or scores[:1]
     trial = ArchivedTrial(
         record=TrialRecord.from_json(registered[-1]["record"]),
         truth=Truth.from_json(registered[-1]["truth"]),
         seed=reading.header["seed"],
+        registration=registrations[0]["arguments"] if registrations else None,
         scored=scores[-1]["arguments"] if scores else None,
         acknowledged=bool(reading.of_kind("acknowledged")),
     )
-    # What GetTrial and TrialScored tell can be computed from it.
-    replace(trial, scored=trial.scored or {"matrix": np.eye(4)}).told()
+    # What GetTrial and SubmitRegistration tell can be computed from it.
+    replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).told()
     return trial
 
 

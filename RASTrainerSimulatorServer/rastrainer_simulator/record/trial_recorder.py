@@ -19,7 +19,7 @@ from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_order import newest_journal, number_of
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.state import SimulationState, StepResult
-from rastrainer_simulator.training.phase_rules import RECORDING_FAILED
+from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
 
 if TYPE_CHECKING:
     from rastrainer_simulator.simulation import Simulation
@@ -192,13 +192,13 @@ class TrialRecorder:
     def _after_registration(
         self, operator_input: OperatorInput, result: StepResult
     ) -> Written | None:
-        """Write the score, the only thing that comes after the record."""
+        """Write the final registration or the score: nothing else comes after the record."""
         if not any(event.kind in MUST_LAST for event in result.events):
             return None
-        scores = [c for c in operator_input.commands if c.name == CommandName.TRIAL_SCORED]
+        ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL]
         times = stamp(result.state.tick, result.state.sim_time)
         future = self._writer.submit(
-            self._archive.answer, scores[-1].name, scores[-1].arguments, times
+            self._archive.answer, ending[-1].name, ending[-1].arguments, times
         )
         return Written(future, is_awaited=True)
 

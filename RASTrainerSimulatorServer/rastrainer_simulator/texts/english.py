@@ -41,8 +41,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "nothing to undo": "No point is touched yet: Capture point {point} first.",
         "not registered": "The trial is not registered yet: Capture its {count} points and "
         "Register them first.",
-        "no such trial": "There is no trial {trial_id} here: GetTrial and TrialScored take the ID "
-        "that StartTask answered.",
+        "no registration": "The trial has no registration yet: SubmitRegistration comes before "
+        "TrialScored.",
+        "registration is final": "The registration of this trial is final: the truth was told in "
+        "return for it, so that another one is not taken.",
+        "no such trial": "There is no trial {trial_id} here: GetTrial, SubmitRegistration and "
+        "TrialScored take the ID that StartTask answered.",
         "not a simulation command": "{command} is not a command of the simulation.",
         # When the record cannot be written.
         "not recorded": "The trial cannot be recorded ({reason}). What was not recorded does not "

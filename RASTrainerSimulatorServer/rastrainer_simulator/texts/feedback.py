@@ -21,6 +21,10 @@ GERMAN_FEEDBACK: Mapping[str, str] = {
     "nächsten Punkt fährst.",
     "feedback.contacts": "Du bist unterwegs {count}-mal an den Kopf gestoßen. Heb ab, bevor du zum "
     "nächsten Punkt fährst.",
+    "feedback.dragging": "Das Werkzeug lag abseits der Punkte {time:.0f} s auf dem Kopf, über "
+    "{path:.0f} mm: heb ab, bevor du zum nächsten Punkt fährst.",
+    "feedback.pressing": "Du hast an den Punkten {depth:.1f} mm in den Kopf gedrückt: halt an, "
+    "sobald die Spitze die Haut berührt.",
     "feedback.worst touch": "Achte mehr auf den Punkt {points}: ohne diesen Fehler wäre die "
     "Registrierung etwa {share:.0f} % genauer.",
     "feedback.worst touches": "Achte mehr auf die Punkte {points}: ohne diese Fehler wäre die "
@@ -47,8 +51,8 @@ GERMAN_FEEDBACK: Mapping[str, str] = {
     "feedback.less points than last": "{points:.0f} Punkte weniger als in deinem letzten Versuch "
     "dieser Aufgabe.{best}",
     "feedback.best": " Es ist dein bisher bester.",
-    "feedback.unacceptable": "Nicht bestanden: der zu erwartende Fehler am Ziel ist größer als "
-    "zulässig.",
+    "feedback.unacceptable": "Nicht bestanden: der wahre Fehler am Ziel oder der Kontakt mit dem "
+    "Kopf ist größer als zulässig.",
     "feedback.passed": "Bestanden: die Marke ist {mark:.0f}.",
     "feedback.not passed": "Noch nicht bestanden: {points:.0f} Punkte bis zur Marke von "
     "{mark:.0f}.",

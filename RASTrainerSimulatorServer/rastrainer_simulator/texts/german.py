@@ -44,8 +44,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "nothing to undo": "Noch ist kein Punkt berührt: erst Capture für Punkt {point}.",
         "not registered": "Der Versuch ist noch nicht registriert: erst Capture für seine {count} "
         "Punkte und Register.",
-        "no such trial": "Es gibt hier keinen Versuch {trial_id}: GetTrial und TrialScored nehmen "
-        "die ID, die StartTask geantwortet hat.",
+        "no registration": "Der Versuch ist noch nicht registriert: Vor TrialScored kommt "
+        "SubmitRegistration.",
+        "registration is final": "Die Registrierung dieses Versuchs steht fest: Auf sie hin wurde "
+        "die Wahrheit gesagt, deshalb gilt keine andere mehr.",
+        "no such trial": "Es gibt hier keinen Versuch {trial_id}: GetTrial, SubmitRegistration und "
+        "TrialScored nehmen die ID, mit der StartTask geantwortet hat.",
         "not a simulation command": "{command} ist kein Befehl der Simulation.",
         # When the record cannot be written.
         "not recorded": "Der Versuch kann nicht aufgezeichnet werden ({reason}). Was nicht "

@@ -42,6 +42,7 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
         Phase.COMPLETE: "all touched",
     },
     CommandName.SET_CAMERA: {},
+    CommandName.SUBMIT_REGISTRATION: _AFTER_REGISTRATION,
     CommandName.TRIAL_SCORED: _AFTER_REGISTRATION,
     CommandName.PLAN_TARGET: _AFTER_REGISTRATION,
     CommandName.GET_TRIAL: {Phase.IDLE: "no trial"},
@@ -50,7 +51,10 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
 }
 """For each command of the simulation the phases that it is wrong in, and the sentence's key."""
 
-NAMING_A_TRIAL = (CommandName.TRIAL_SCORED, CommandName.GET_TRIAL)
+ENDING_A_TRIAL = (CommandName.SUBMIT_REGISTRATION, CommandName.TRIAL_SCORED)
+"""Commands by which a client ends a registered trial: its registration, then its score."""
+
+NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.GET_TRIAL)
 
 
 def refusal(command: Command, state: TrainingState, texts: Texts) -> str | None:

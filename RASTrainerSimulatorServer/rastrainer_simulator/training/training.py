@@ -11,7 +11,14 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase
 from rastrainer_simulator.operator_input import Command
-from rastrainer_simulator.state import Event, EventKind, Touch, TrainingState, TrialResult
+from rastrainer_simulator.state import (
+    Event,
+    EventKind,
+    FinalRegistration,
+    Touch,
+    TrainingState,
+    TrialResult,
+)
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED, refusal
 from rastrainer_simulator.training.touch_rule import MM, Moment, TrainingSettings, refused_touch
@@ -69,6 +76,7 @@ class Training:
             CommandName.ABORT: self._abort,
             CommandName.PAUSE: self._pause,
             CommandName.RESUME: self._resume,
+            CommandName.SUBMIT_REGISTRATION: self._take_registration,
             CommandName.TRIAL_SCORED: self._scored,
             CommandName.GET_TRIAL: self._get_trial,
             RECORDING_FAILED: self._recording_failed,
@@ -211,16 +219,32 @@ class Training:
             True, events=(self._enter(replace(self.state, phase=Phase.RUNNING), "resumed", now),)
         )
 
-    def _scored(self, command: Command, now: Moment) -> Reply:
-        arguments = command.arguments
-        revealed = self._revealed(arguments["matrix"])
-        data = {"trialId": self.state.trial_id, **revealed}
-        result = TrialResult(
+    def _take_registration(self, command: Command, now: Moment) -> Reply:
+        """Tell the truth in return for a registration, which then cannot be changed any more."""
+        arguments, known = command.arguments, self.state.registration
+        registration = FinalRegistration(
+            matrix=arguments["matrix"],
             fre_mm=arguments["freMm"],
             expected_tre_mm=arguments["expectedTreMm"],
-            true_tre_mm=revealed["trueTreMm"],
+        )
+        if known is not None and known != registration:
+            return Reply(False, self._texts.say("registration is final"))
+        data = {"trialId": self.state.trial_id, **self._revealed(registration.matrix)}
+        if known is not None:
+            return Reply(True, data=data)
+        final = replace(self.state, registration=registration)
+        event = self._enter(final, "registered", now)
+        return Reply(True, data=data, events=(event,))
+
+    def _scored(self, command: Command, now: Moment) -> Reply:
+        arguments, registration = command.arguments, self.state.registration
+        data = {"trialId": self.state.trial_id}
+        if registration is None:
+            return Reply(False, self._texts.say("no registration"))
+        result = TrialResult(
+            registration=registration,
+            true_tre_mm=self._revealed(registration.matrix)["trueTreMm"],
             score=arguments["score"],
-            matrix=arguments["matrix"],
             details=arguments["details"],
         )
         if result == self.state.result:
@@ -231,7 +255,7 @@ class Training:
             "scored",
             now,
             score=result.score,
-            fre=result.fre_mm,
+            fre=registration.fre_mm,
             tre=result.true_tre_mm,
         )
         return Reply(True, data=data, events=(event,))
@@ -247,8 +271,8 @@ class Training:
             }
             for touch in state.touches
         ]
-        if state.result is not None:
-            data.update(self._revealed(state.result.matrix))
+        if state.registration is not None:
+            data.update(self._revealed(state.registration.matrix))
         return Reply(True, data=data)
 
     def _recording_failed(self, command: Command, now: Moment) -> Reply:

@@ -44,7 +44,7 @@ def test_a_view_that_misleads_moves_the_target_more_than_the_residuals():
     population = Population(BRISK, 0.0, 0.0, 0.0, modes)
     errors = np.array(
         [
-            [(trial.true_tre_mm, trial.analysis.rigid.fre_mm) for trial in of_mode]
+            [(trial.analysis.truth.true_tre_mm, trial.analysis.rigid.fre_mm) for trial in of_mode]
             for of_mode in (
                 [played(population, mode, 1, seed) for seed in (1, 2, 3)]
                 for mode in ("desktop", "hmd")

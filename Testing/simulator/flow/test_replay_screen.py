@@ -13,7 +13,7 @@ from rastrainer_simulator.flow.screen import screen_to_json
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.view_server.operator_desk import Hello
 from Testing.simulator.flow.conftest import Outside
-from Testing.simulator.flow.test_whole_flow import SCORE
+from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
 from Testing.simulator.flow.trainee import STEP_S, Keys, Trainee
 
 WAYS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0))
@@ -63,7 +63,9 @@ class Place(Trainee):
             self.until(lambda kept=number: len(self.state.training.touches) > kept, "a touch")
         self.submit("Register")
         self.until_menu("waiting")
-        assert self.submit("TrialScored", trialId=self.state.training.trial_id, **SCORE).ok
+        trial_id = self.state.training.trial_id
+        assert self.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
+        assert self.submit("TrialScored", trialId=trial_id, **SCORE).ok
         self.until_menu("result")
 
     def show_again(self, item="replay"):

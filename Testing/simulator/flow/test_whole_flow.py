@@ -10,10 +10,12 @@ from rastrainer_simulator.flow.screen import Tone
 from rastrainer_simulator.record.replay import replay
 
 ABOVE = say("touch above", depth=1.25)
-SCORE = {
+REGISTRATION = {
     "matrix": np.eye(4).ravel().tolist(),
     "freMm": 1.25,
     "expectedTreMm": 1.5,
+}
+SCORE = {
     "score": 81.0,
     "details": {
         "ctps": 62.5,
@@ -59,6 +61,7 @@ def train_and_look_at_the_result(trainee, outside):
     training = trainee.state.training
     assert (training.trainee, training.task, training.mode) == ("P07", "task-1", "desktop")
     outside.has_slicer = True
+    assert trainee.submit("SubmitRegistration", trialId=training.trial_id, **REGISTRATION).ok
     assert trainee.submit("TrialScored", trialId=training.trial_id, **SCORE).ok
     trainee.until_menu("result")
     assert (trainee.menu.facts[0].value, trainee.menu.facts[0].tone) == ("81 / 100", Tone.PLAIN)

@@ -25,13 +25,13 @@ ARGUMENTS = {
     "Jog": {"velocityMmS": [1, 2, 3]},
     "MoveTipTo": {"positionMm": [500, 0, 300], "direction": None},
     "SetCamera": {"camera": "far"},
-    "TrialScored": {
+    "SubmitRegistration": {
         "trialId": TRIAL,
         "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
         "freMm": 0.5,
         "expectedTreMm": 0.6,
-        "score": 80,
     },
+    "TrialScored": {"trialId": TRIAL, "score": 80},
     "PlanTarget": {"positionMm": [0, 0, 0]},
     "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},
     "GetTrial": {"trialId": TRIAL},

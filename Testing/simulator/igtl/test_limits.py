@@ -97,9 +97,6 @@ def test_commands_wait_only_up_to_so_many_bytes(start):
     details = {"text": "x" * 30_000}
     scored = {
         "trialId": "6b8f2f1e-6a60-4c0e-9a37-111111111111",
-        "matrix": [0] * 16,
-        "freMm": 1,
-        "expectedTreMm": 1,
         "score": 1,
         "details": details,
     }

@@ -165,12 +165,11 @@ def test_the_truth_about_it_is_told_to_nobody(simulation, tmp_path):
             assert not {"headToWorld", "trueTreMm", "seed"} & told.data.keys()
             matrix = [float(i % 5 == 0) for i in range(16)]
             refused = server.do(
-                CommandName.TRIAL_SCORED,
+                CommandName.SUBMIT_REGISTRATION,
                 trialId=trial_id,
                 matrix=matrix,
                 freMm=0.0,
                 expectedTreMm=0.0,
-                score=100.0,
             )
             assert not refused.ok
             assert "was aborted" in refused.message

@@ -3,6 +3,7 @@
 import pytest
 
 from rastrainer.protocol import CommandName
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scoring import LONG_PAUSE_S
 from rastrainer.scripted_trainee import Skill
 from rastrainer.trial_analysis import analyze_trial
@@ -53,8 +54,9 @@ def played(setup):
 
     def play(*inputs):
         meanwhile = Meanwhile(*inputs)
-        play_virtual_trial(simulation, "task-1", 3, BRISK, DT, meanwhile)
-        return analyze_trial(meanwhile.record, setup.scenario)
+        trial = play_virtual_trial(simulation, "task-1", 3, BRISK, DT, meanwhile)
+        truth = RevealedTruth(tuple(trial.head_to_world.ravel().tolist()), 0.0)
+        return analyze_trial(meanwhile.record, setup.scenario, truth=truth)
 
     return play(), play(*IDLE), play(PAUSE, *IDLE, RESUME), play(*ROUND_TRIP)
 

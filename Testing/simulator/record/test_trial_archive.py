@@ -46,11 +46,14 @@ RECORD = TrialRecord(
     undone_touches=0,
     versions={"rastrainer": "0"},
 )
-SCORE = {
+REGISTRATION = {
     "trialId": TRIAL_ID,
     "matrix": tuple(np.linalg.inv(HEAD_TO_WORLD).ravel()),
     "freMm": 1.0,
     "expectedTreMm": 1.0,
+}
+SCORE = {
+    "trialId": TRIAL_ID,
     "score": 50.0,
     "details": {"kind": "acknowledged", "previous": "0" * 64},
 }
@@ -89,13 +92,13 @@ def test_an_acknowledgment_that_arrives_twice_is_written_once(tmp_path):
     assert len(read_journal(path).of_kind("acknowledged")) == 1
 
 
-def test_the_truth_of_an_older_trial_is_told_only_once_it_is_scored(tmp_path):
+def test_the_truth_of_an_older_trial_is_told_only_for_a_registration(tmp_path):
     write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
     before = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
     assert before["record"] == RECORD.to_json()
     assert not {"headToWorld", "trueTreMm", "seed"} & set(before)
-    answer = archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+    answer = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
     assert answer["headToWorld"] == list(HEAD_TO_WORLD.ravel())
     assert answer["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
     assert max(answer["touchErrorsMm"].values()) == pytest.approx(0.0, abs=1e-9)
@@ -104,14 +107,39 @@ def test_the_truth_of_an_older_trial_is_told_only_once_it_is_scored(tmp_path):
     assert after["seed"] == 7
 
 
-def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(tmp_path):
+def test_once_the_truth_of_an_older_trial_is_told_nobody_registers_it_again(tmp_path):
     write_trial(tmp_path)
+    for archive in (TrialArchive(tmp_path), TrialArchive(tmp_path)):
+        told = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
+        assert told["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
+        with pytest.raises(InputError, match="registration of this trial is final"):
+            archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION | {"freMm": 2.0}, NOW)
+
+
+def test_an_older_trial_without_a_registration_is_not_scored(tmp_path):
+    write_trial(tmp_path)
+    with pytest.raises(InputError, match="SubmitRegistration comes before"):
+        TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+
+
+def test_a_trial_that_was_scored_by_the_first_protocol_has_its_registration(tmp_path):
+    write_trial(tmp_path, {"kind": "scored", "arguments": {**SCORE, **REGISTRATION}})
+    archive = TrialArchive(tmp_path)
+    told = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert told["phase"] == "scored"
+    assert told["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
+    with pytest.raises(InputError, match="final"):
+        archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION | {"freMm": 2.0}, NOW)
+
+
+def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(tmp_path):
+    write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
     TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
     assert TrialArchive(tmp_path).unacknowledged() == (RECORD,)
 
 
 def test_a_score_as_deep_as_a_message_may_be_leaves_a_journal_that_can_be_read(tmp_path):
-    path = write_trial(tmp_path)
+    path = write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
     levels = DEEPEST - 2
     details = '{"a":' * levels + "1" + "}" * levels
     score = json.dumps({**SCORE, "details": "here"}).replace('"here"', f'{{"b":{details}}}')
@@ -136,25 +164,28 @@ def test_a_trial_that_was_acknowledged_can_still_be_asked_for_and_scored(tmp_pat
     archive = TrialArchive(tmp_path)
     assert archive.unacknowledged() == ()
     assert archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)["acknowledged"]
-    assert "headToWorld" in archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+    assert "headToWorld" in archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
 
 
 def test_a_trial_that_is_done_takes_no_memory_and_is_answered_as_before(tmp_path):
     path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
     archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    truth = archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
+    truth = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
+    archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW)
     gc.collect()
     assert not [each for each in gc.get_objects() if type(each) is ArchivedTrial]
     for _ in range(3):
-        assert archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW) == truth
+        assert archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW) == truth
+        assert archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW) == {"trialId": TRIAL_ID}
         assert archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
         told = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
         assert told["phase"] == "scored"
         assert told["trueTreMm"] == truth["trueTreMm"]
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT
-    assert len(reading.of_kind("scored")) == len(reading.of_kind("acknowledged")) == 1
+    for kind in ("registration", "scored", "acknowledged"):
+        assert len(reading.of_kind(kind)) == 1
 
 
 def test_a_half_written_line_after_the_record_does_not_hide_the_trial(tmp_path):
@@ -199,8 +230,8 @@ def test_a_journal_of_right_hashes_and_odd_content_is_named_and_holds_up_no_othe
     assert "not delivered" in problem
 
 
-def test_a_score_that_is_none_is_named(tmp_path):
-    path = write_trial(tmp_path, {"kind": "scored", "arguments": {"matrix": [1.0]}})
+def test_a_registration_that_is_none_is_named(tmp_path):
+    path = write_trial(tmp_path, {"kind": "registration", "arguments": {"matrix": [1.0]}})
     archive = TrialArchive(tmp_path)
     assert archive.unacknowledged() == ()
     assert path.name in archive.problems[0]

@@ -18,13 +18,13 @@ from rastrainer_simulator.training.touch_rule import Moment, TrainingSettings
 from rastrainer_simulator.training.training import Training
 
 ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())
-SCORE = {
-    "matrix": ANY_MATRIX,
-    "freMm": 1.2,
-    "expectedTreMm": 0.9,
-    "score": 81.0,
-    "details": {},
-}
+REGISTRATION = {"matrix": ANY_MATRIX, "freMm": 1.2, "expectedTreMm": 0.9}
+SCORE = {"score": 81.0, "details": {}}
+NAMING_A_TRIAL = (
+    CommandName.SUBMIT_REGISTRATION,
+    CommandName.TRIAL_SCORED,
+    CommandName.GET_TRIAL,
+)
 
 
 class Trial:
@@ -36,7 +36,7 @@ class Trial:
 
     def do(self, name, tip=(0.0, 0.0, 0.0), above_mm=0.0, **arguments):
         command = Command(name, arguments)
-        if name in (CommandName.TRIAL_SCORED, CommandName.GET_TRIAL):
+        if name in NAMING_A_TRIAL:
             trial_id = self.state.trial_id
             command = Command(name, {"trialId": trial_id, **arguments})
         return self.training.handle(command, Moment(self.now, tip, above_mm / 1000.0))
@@ -71,6 +71,7 @@ def in_phase(scenario, phase):
     if phase in (Phase.REGISTERED, Phase.SCORED):
         trial.do(CommandName.REGISTER)
     if phase is Phase.SCORED:
+        trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION)
         trial.do(CommandName.TRIAL_SCORED, **SCORE)
     assert trial.state.phase is phase
     return trial
@@ -84,7 +85,7 @@ RIGHT = {
     CommandName.ABORT: {Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE},
     CommandName.PAUSE: {Phase.RUNNING},
     CommandName.RESUME: {Phase.PAUSED},
-    CommandName.TRIAL_SCORED: {Phase.REGISTERED, Phase.SCORED},
+    CommandName.SUBMIT_REGISTRATION: {Phase.REGISTERED, Phase.SCORED},
     CommandName.GET_TRIAL: set(Phase) - {Phase.IDLE},
 }
 WHAT_WOULD_BE_RIGHT = ("StartTask", "Register", "Capture", "Resume", "Abort", "Undo")
@@ -98,7 +99,7 @@ def test_each_command_is_carried_out_in_its_phases_and_else_refused_with_what_wo
     before = trial.state
     arguments = {
         CommandName.START_TASK: {"task": "task-2", "trainee": "P02", "mode": "hmd"},
-        CommandName.TRIAL_SCORED: SCORE,
+        CommandName.SUBMIT_REGISTRATION: REGISTRATION,
     }.get(name, {})
     tip = trial.fiducial(before.next_point) if before.next_point else (0.0, 0.0, 0.0)
     reply = trial.do(name, tip, **arguments)
@@ -126,6 +127,7 @@ def test_a_whole_trial_goes_through_its_phases_and_says_what_is_next(scenario):
     assert trial.state.next_point is None
     assert [touch.label for touch in trial.state.touches] == [str(i) for i in range(1, 16)]
     trial.do(CommandName.REGISTER)
+    trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION)
     trial.do(CommandName.TRIAL_SCORED, **SCORE)
     assert trial.state.phase is Phase.SCORED
     assert "81 of 100" in trial.state.instruction
@@ -234,10 +236,10 @@ def test_after_undoing_the_fifteenth_touch_the_time_has_gone_on(scenario):
     assert trial.state.touches[-1].elapsed == pytest.approx(5.0)
 
 
-def test_where_the_head_is_stays_secret_until_the_trial_is_scored(scenario):
+def test_where_the_head_is_stays_secret_until_a_registration_is_submitted(scenario):
     trial = in_phase(scenario, Phase.REGISTERED)
     assert "headToWorld" not in trial.do(CommandName.GET_TRIAL).data
-    answer = trial.do(CommandName.TRIAL_SCORED, **SCORE).data
+    answer = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION).data
     assert answer["headToWorld"] == list(trial.training.truth.head_to_world.ravel())
     assert trial.do(CommandName.GET_TRIAL).data["headToWorld"] == answer["headToWorld"]
 
@@ -245,7 +247,8 @@ def test_where_the_head_is_stays_secret_until_the_trial_is_scored(scenario):
 def test_the_true_errors_of_a_perfect_registration_of_perfect_touches_are_zero(scenario):
     trial = in_phase(scenario, Phase.REGISTERED)
     exact = np.linalg.inv(trial.training.truth.head_to_world)
-    answer = trial.do(CommandName.TRIAL_SCORED, **SCORE | {"matrix": tuple(exact.ravel())}).data
+    registration = {**REGISTRATION, "matrix": tuple(exact.ravel())}
+    answer = trial.do(CommandName.SUBMIT_REGISTRATION, **registration).data
     assert answer["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
     assert max(answer["touchErrorsMm"].values()) == pytest.approx(0.0, abs=1e-9)
 
@@ -259,13 +262,41 @@ def test_the_true_errors_of_a_registration_that_is_off_by_a_shift_are_the_shift(
     trial.do(CommandName.REGISTER)
     shifted = np.linalg.inv(trial.training.truth.head_to_world)
     shifted[:3, 3] += (1.0, 2.0, 2.0)
-    answer = trial.do(CommandName.TRIAL_SCORED, **SCORE | {"matrix": tuple(shifted.ravel())}).data
+    registration = {**REGISTRATION, "matrix": tuple(shifted.ravel())}
+    answer = trial.do(CommandName.SUBMIT_REGISTRATION, **registration).data
     assert answer["trueTreMm"] == pytest.approx(3.0)
     assert answer["touchErrorsMm"]["15"] == pytest.approx(4.0)
 
 
+def test_a_registration_that_arrives_twice_is_answered_twice_and_kept_once(scenario):
+    trial = in_phase(scenario, Phase.REGISTERED)
+    first = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION)
+    second = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION)
+    assert (second.ok, second.data, second.events) == (True, first.data, ())
+
+
+@pytest.mark.parametrize("phase", [Phase.REGISTERED, Phase.SCORED])
+def test_nobody_registers_again_once_the_truth_is_told(scenario, phase):
+    trial = in_phase(scenario, phase)
+    told = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION).data
+    truth = tuple(np.linalg.inv(trial.training.truth.head_to_world).ravel())
+    answer = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION | {"matrix": truth})
+    assert not answer.ok
+    assert "final" in answer.message
+    assert trial.do(CommandName.GET_TRIAL).data["trueTreMm"] == told["trueTreMm"]
+
+
+def test_there_is_no_score_before_a_registration(scenario):
+    trial = in_phase(scenario, Phase.REGISTERED)
+    answer = trial.do(CommandName.TRIAL_SCORED, **SCORE)
+    assert not answer.ok
+    assert "SubmitRegistration comes before" in answer.message
+    assert trial.state.phase is Phase.REGISTERED
+
+
 def test_a_score_that_arrives_twice_counts_once(scenario):
     trial = in_phase(scenario, Phase.REGISTERED)
+    trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION)
     first = trial.do(CommandName.TRIAL_SCORED, **SCORE)
     second = trial.do(CommandName.TRIAL_SCORED, **SCORE)
     assert second.ok

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import importlib.util
 import sys
 import time
@@ -332,8 +333,18 @@ class Host:
             if self.errors:
                 raise AssertionError(f"While waiting until {what}: {self.errors[0]}")
             if time.monotonic() > deadline:
-                raise AssertionError(f"In {timeout_s} s it did not happen: {what}.")
+                faulthandler.dump_traceback(file=sys.__stderr__)
+                raise AssertionError(f"In {timeout_s} s it did not happen: {what}. {self._now()}")
             self._wait()
+
+    def _now(self) -> str:
+        """Return what may tell why nothing happens."""
+        told = [message.text for message in self.messages]
+        work = None if self.widget is None else vars(self.widget.logic.session.work)
+        return (
+            f"Messages: {told}. Work: {work}. The scene is being processed as a batch: "
+            f"{bool(self.scene.IsBatchProcessing())}. Clicks: {self.clicks}."
+        )
 
     def let_pass(self, seconds: float) -> None:
         """Let some time pass, as a user does who waits."""

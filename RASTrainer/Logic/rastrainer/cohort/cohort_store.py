@@ -7,7 +7,7 @@ all are done after the last. A study in between is told from a whole one, whatev
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -104,17 +104,13 @@ class CohortStore:
                 return True
             return study_trials.exists(connection, trial_id)
 
-    def add(
-        self, analysis: TrialAnalysis, true_tre_mm: float, head_to_world: Sequence[float]
-    ) -> None:
+    def add(self, analysis: TrialAnalysis) -> None:
         """Store a finished trial with all that is known of it, together or not at all.
 
         Args:
-            analysis: Its record, fits, target errors and score.
-            true_tre_mm: True error at the scenario's target.
-            head_to_world: 16 numbers row by row, RAS to `World`, mm.
+            analysis: Its record, fits, target errors, truth and score.
         """
-        record = analysis.record
+        record, truth = analysis.record, analysis.truth
         with self._database.writing() as connection:
             if not study_trainees.exists(connection, record.trainee):
                 study_trainees.create(connection, record.trainee, consent=True)
@@ -127,7 +123,9 @@ class CohortStore:
                     analysis.target_errors,
                     analysis.score,
                 )
-                study_trials.set_truth(connection, record.trial_id, true_tre_mm, head_to_world)
+                study_trials.set_truth(
+                    connection, record.trial_id, truth.true_tre_mm, truth.head_to_world
+                )
 
     def add_stuck(self, trial_id: str) -> None:
         """Note that a trial was played, but not to its end."""

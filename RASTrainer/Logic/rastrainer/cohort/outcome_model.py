@@ -22,11 +22,11 @@ import numpy as np
 from rastrainer.cohort.jobs import pseudonym
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.report.study_data import StudyData, TrialRow
-from rastrainer.scoring import ScoreReference, score_trial
+from rastrainer.scoring import ScoreMeasures, ScoreReference, score_trial
 
 DOF = 3 * FIDUCIAL_COUNT - 6
-TRE_PER_RMSE = 0.4 / 1.4
-"""As in the references of the score."""
+REFERENCE_RMSE_MM, REFERENCE_TRE_MM = 1.4, 0.4
+"""The published study's mean RMSE over fifteen fiducials, and what it means at their center."""
 
 
 @dataclass(frozen=True)
@@ -191,14 +191,15 @@ def _draw(
 def model_scores(model: OutcomeModel, times_s: np.ndarray, errors_mm: np.ndarray) -> np.ndarray:
     """Return the scores of drawn trials, in their shape (…, tasks).
 
-    The target error is what the registration error means at the center of the head; the reference
-    of a task is its own time.
+    The target error is what the registration error means at the center of the head; nobody touches
+    it but at the fiducials; the reference of a task is its own time.
     """
     scores = np.empty(times_s.shape)
     for index in np.ndindex(times_s.shape):
-        reference = ScoreReference(model.task_times_s[index[-1]])
-        error = TRE_PER_RMSE * errors_mm[index]
-        scores[index] = score_trial(times_s[index], error, reference).score
+        reference = ScoreReference(model.task_times_s[index[-1]], REFERENCE_TRE_MM)
+        error = REFERENCE_TRE_MM / REFERENCE_RMSE_MM * errors_mm[index]
+        measures = ScoreMeasures(times_s[index], error, 0.0, 0.0, 0.0)
+        scores[index] = score_trial(measures, reference).score
     return scores
 
 

@@ -12,7 +12,7 @@ from rastrainer.checked_json import Fields, read_fields
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Mode
 from rastrainer.questionnaires.catalog import find_questionnaire
-from rastrainer.scoring import PASS_MARK, SCORE_VERSION, ScoreReference
+from rastrainer.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
 from rastrainer.tasks import is_task_name
 
 FORMAT_VERSION = 1
@@ -25,6 +25,8 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "after-all",
 )
 MOST_STEPS = 1000
+READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, SCORE_VERSION)
+"""A study that was begun with the first goes on with the present one; each score tells its own."""
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
@@ -55,7 +57,7 @@ class StudyProtocol:
         break_between_modes_min: At least so long, in min; 0 for none.
         break_between_tasks_min: The same between tasks.
         asked: Questionnaires.
-        references: Of the score, by task; a task without one has the shipped reference.
+        references: Of the score, by task; a task without one has that of the scenario.
         score_version: Version of the score that the study was planned with.
         pass_mark: Score that passes; None where the protocol sets none and the default holds.
     """
@@ -152,6 +154,9 @@ def _protocol(fields: Fields) -> StudyProtocol:
     if not all(is_task_name(task) and task != TRIAL_RUN for task in tasks):
         raise fields.error("tasks", "names of tasks, such as task-1; the trial run is not one")
     breaks, scoring = fields.fields("breaks"), fields.fields("scoring")
+    version = scoring.text("version", 20)
+    if version not in READABLE_SCORE_VERSIONS:
+        raise scoring.error("version", f"{SCORE_VERSION}, the score that this version computes")
     protocol = StudyProtocol(
         name=name,
         title=fields.text("title", 120),
@@ -166,14 +171,15 @@ def _protocol(fields: Fields) -> StudyProtocol:
         asked=tuple(
             _asked(entry, modes) for entry in fields.list_of_fields("questionnaires", 0, 20)
         ),
-        references=_references(scoring.fields("references"), tasks),
-        score_version=scoring.text("version", 20),
+        # Those of the first version are of the expected TRE, which is scored no more.
+        references=_references(scoring.fields("references"), tasks)
+        if version == SCORE_VERSION
+        else {},
+        score_version=version,
         pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
     )
     if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MOST_STEPS} trials")
-    if protocol.score_version != SCORE_VERSION:
-        raise scoring.error("version", f"{SCORE_VERSION}, the score that this version computes")
     return protocol
 
 

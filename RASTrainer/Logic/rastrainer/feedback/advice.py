@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rastrainer.feedback.touch_findings import TouchFinding
 from rastrainer.feedback.wording import Sentence, say
-from rastrainer.scoring import TrialScore, score_trial
+from rastrainer.scoring import DEPTH_LIMIT_MM, SCORE_VERSION, TrialScore, score_trial
 
 GOOD_EFFICIENCY = 0.35
 """What straight ways with lifts of 35 mm reach even where fiducials are near each other.
@@ -18,6 +18,8 @@ GOOD_EFFICIENCY = 0.35
 Virtual trainees who move so reach 0.36 in task 1 and 0.50 in task 5."""
 ATTEMPT_S = 3.0
 """What a refused touch costs at least: to notice, to move, to touch again."""
+LONG_CONTACT_S = 2.0
+"""From here on a contact is told by its length, not as a bump."""
 LEAST_GAIN = 0.5
 MOST = 3
 
@@ -38,26 +40,41 @@ class Advice:
 
 
 def advise(
-    score: TrialScore, findings: Sequence[TouchFinding], motion: Mapping[str, float]
+    score: TrialScore | None, findings: Sequence[TouchFinding], motion: Mapping[str, float]
 ) -> tuple[Advice, ...]:
     """Return up to three things to improve, the most rewarding first.
 
-    A contact that was not meant comes first whatever it costs: safety is not bought with points.
+    A contact that was not meant, and pressing, come first whatever they cost: safety is not bought
+    with points. Without a score of this version nothing else can be told.
     """
+    if score is None or score.version != SCORE_VERSION:
+        return tuple(_contacts(motion, 0.0))
     candidates = [
         *_accuracy(score, findings),
         *_time(score, motion),
     ]
     ranked = sorted(candidates, key=lambda advice: -advice.gain)
     worth = [advice for advice in ranked if advice.gain >= LEAST_GAIN]
-    return (*_safety(motion), *worth)[:MOST]
+    return (*_safety(score, motion), *worth)[:MOST]
 
 
-def _safety(motion: Mapping[str, float]) -> Iterator[Advice]:
+def _safety(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
+    yield from _contacts(motion, _gain(score, contact_time_s=0.0, contact_path_mm=0.0))
+    depth = score.measures.pressing_depth_mm
+    gain = _gain(score, pressing_depth_mm=0.0)
+    if depth > DEPTH_LIMIT_MM or gain >= LEAST_GAIN:
+        yield Advice("pressing", say("pressing", depth=float(depth)), gain)
+
+
+def _contacts(motion: Mapping[str, float], gain: float) -> Iterator[Advice]:
     count = int(motion.get("unintended_contacts", 0))
-    if count:
+    seconds = float(motion.get("unintended_contact_time_s", 0.0))
+    if seconds >= LONG_CONTACT_S:
+        path = float(motion.get("unintended_contact_path_mm", 0.0))
+        yield Advice("contacts", say("dragging", time=seconds, path=path), gain)
+    elif count:
         sentence = say("contact") if count == 1 else say("contacts", count=count)
-        yield Advice("contacts", sentence, 0.0)
+        yield Advice("contacts", sentence, gain)
 
 
 def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[Advice]:
@@ -92,7 +109,7 @@ def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[A
 
 
 def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
-    time = score.completion_time_s
+    time = score.measures.completion_time_s
     idle = motion.get("idle_time_s", 0.0)
     if idle > 0:
         yield Advice(
@@ -125,11 +142,17 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
         )
 
 
-def _gain(score: TrialScore, time_s: float | None = None, error_factor: float = 1.0) -> float:
-    better = score_trial(
-        max(time_s or score.completion_time_s, 1e-3),
-        # The expected target error is proportional to the registration error.
-        score.expected_tre_mm * min(error_factor, 1.0),
-        score.reference,
+def _gain(
+    score: TrialScore,
+    time_s: float | None = None,
+    error_factor: float = 1.0,
+    **safety: float,
+) -> float:
+    measures = replace(
+        score.measures,
+        completion_time_s=max(time_s or score.measures.completion_time_s, 1e-3),
+        # The target error is, on the average, proportional to the registration error.
+        tre_mm=score.measures.tre_mm * min(error_factor, 1.0),
+        **safety,
     )
-    return max(0.0, better.score - score.score)
+    return max(0.0, score_trial(measures, score.reference).score - score.score)

@@ -14,7 +14,14 @@ from rastrainer.feedback.wording import Sentence, say
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.registration import Registration
-from rastrainer.scoring import LONG_PAUSE_S, TrialScore
+from rastrainer.scoring import (
+    CONTACT_LIMIT_S,
+    CONTACT_PATH_LIMIT_MM,
+    DEPTH_LIMIT_MM,
+    FIRST_SCORE_VERSION,
+    LONG_PAUSE_S,
+    TrialScore,
+)
 
 MOST_SHORT = 6
 """Sentences that fit beside the figures of a result at 1280 × 720."""
@@ -25,7 +32,7 @@ class TrialFeedback:
     """What a trainee is told.
 
     Attributes:
-        score: With its parts.
+        score: With its parts; None where the trial has none.
         touches: Every touch, in the order of touching.
         worst: The touch with the largest error; its `replay_s` is what to look at again.
         advice: Up to three things to improve, the first first.
@@ -33,7 +40,7 @@ class TrialFeedback:
         paused_s: How long the trial was paused in all, as far as that is known.
     """
 
-    score: TrialScore
+    score: TrialScore | None
     touches: tuple[TouchFinding, ...]
     worst: TouchFinding
     advice: tuple[Advice, ...]
@@ -42,25 +49,23 @@ class TrialFeedback:
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
-        """The score and what it is made of."""
-        score = self.score
-        pauses = (
-            f"Paused for {fixed(self.paused_s, 0)} s in all, which the score leaves out: compare "
-            "it with care to trials that were played in one go.",
-        )
-        return (
-            f"Score {fixed(score.score, 0)} of 100.",
-            f"Time: {fixed(score.completion_time_s, 0)} s, worth "
-            f"{fixed(100 * score.time_desirability, 0)} of 100.",
-            f"Accuracy: {fixed(score.expected_tre_mm, 2)} mm expected at the target, worth "
-            f"{fixed(100 * score.accuracy_desirability, 0)} of 100"
-            + (
-                "."
-                if score.acceptable
-                else f"; more than {score.reference.limit_mm:g} mm is not acceptable."
-            ),
-            *(pauses if self.paused_s > LONG_PAUSE_S else ()),
-        )
+        """The score and what it is made of; what is not known is left out."""
+        score, told = self.score, []
+        if score is not None:
+            seconds = fixed(score.measures.completion_time_s, 0)
+            told = [
+                f"Score {fixed(score.score, 0)} of 100.",
+                f"Time: {seconds} s, worth {fixed(100 * score.time_desirability, 0)} of 100.",
+                _accuracy_sentence(score),
+            ]
+            if score.safety_desirability is not None:
+                told.append(_safety_sentence(score))
+        if self.paused_s > LONG_PAUSE_S:
+            told.append(
+                f"Paused for {fixed(self.paused_s, 0)} s in all, which the score leaves out: "
+                "compare it with care to trials that were played in one go."
+            )
+        return tuple(told)
 
     @property
     def touch_sentences(self) -> tuple[Sentence, ...]:
@@ -89,7 +94,7 @@ class TrialFeedback:
 
 
 def trial_feedback(
-    score: TrialScore,
+    score: TrialScore | None,
     registration: Registration,
     normals: np.ndarray | None = None,
     motion: Mapping[str, float] | None = None,
@@ -99,7 +104,7 @@ def trial_feedback(
     """Return the feedback on a trial; what is not known is left out.
 
     Args:
-        score: Of the trial.
+        score: Of the trial; None where it has none.
         registration: That was scored.
         normals: (n, 3) float, outward unit normals of the skin at the fiducials, RAS.
         motion: Motion metrics; those with `path_efficiency` tell of detours too.
@@ -114,4 +119,30 @@ def trial_feedback(
         advice=advise(score, findings, motion or {}),
         progress=progress,
         paused_s=(motion or {}).get("pause_time_s", 0.0),
+    )
+
+
+def _accuracy_sentence(score: TrialScore) -> str:
+    is_first = score.version == FIRST_SCORE_VERSION
+    what = "expected at the target" if is_first else "true target error"
+    limit = f"; more than {score.reference.limit_mm:g} mm is not acceptable."
+    beyond = "." if score.is_accurate else limit
+    return (
+        f"Accuracy: {fixed(score.measures.tre_mm, 2)} mm {what}, worth "
+        f"{fixed(100 * score.accuracy_desirability, 0)} of 100{beyond}"
+    )
+
+
+def _safety_sentence(score: TrialScore) -> str:
+    measures = score.measures
+    beyond = (
+        "."
+        if score.is_safe
+        else f"; more than {CONTACT_LIMIT_S:g} s, {CONTACT_PATH_LIMIT_MM:g} mm or "
+        f"{DEPTH_LIMIT_MM:g} mm deep is not acceptable."
+    )
+    return (
+        f"Safety: {fixed(measures.contact_time_s, 1)} s and {fixed(measures.contact_path_mm, 0)} "
+        f"mm of unintended contact, pressed {fixed(measures.pressing_depth_mm, 1)} mm deep, worth "
+        f"{fixed(100 * score.safety_desirability, 0)} of 100{beyond}"
     )

@@ -17,6 +17,10 @@ ENGLISH: Mapping[str, str] = {
     "point.",
     "contacts": "You bumped into the head {count} times on the way. Lift off before you travel to "
     "the next point.",
+    "dragging": "The tool lay on the head for {time:.0f} s away from the points, over {path:.0f} "
+    "mm: lift off before you travel to the next point.",
+    "pressing": "You pressed {depth:.1f} mm into the head at the points: stop as soon as the tip "
+    "touches the skin.",
     "worst touch": "Take more care at the point {points}: without this error the registration "
     "would be about {share:.0f} % more exact.",
     "worst touches": "Take more care at the points {points}: without these errors the registration "
@@ -41,7 +45,8 @@ ENGLISH: Mapping[str, str] = {
     "more points than last": "{points:.0f} points more than in your last trial of this task.{best}",
     "less points than last": "{points:.0f} points less than in your last trial of this task.{best}",
     "best": " It is your best so far.",
-    "unacceptable": "Not passed: the expected target error is beyond what is acceptable.",
+    "unacceptable": "Not passed: the true target error, or the contact with the head, is beyond "
+    "what is acceptable.",
     "passed": "Passed: the mark is {mark:.0f}.",
     "not passed": "Not passed yet: {points:.0f} points to the mark of {mark:.0f}.",
     "competent": "Your trials show competence since number {number}: of those who still fail in "

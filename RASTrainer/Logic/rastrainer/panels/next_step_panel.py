@@ -17,7 +17,7 @@ from rastrainer.slicer.heartbeat import LinkState
 from rastrainer.slicer.next_step import Action, NextStep, Section, Situation, nextStep
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
-from rastrainer.slicer.trial_desk import ScoredTrial
+from rastrainer.trial_analysis import TrialAnalysis
 
 SHORTCUT = "Ctrl+Return"
 THIS_COMPUTER = ("", "127.0.0.1", "localhost", "::1")
@@ -175,9 +175,9 @@ class NextStepPanel:
             self._hasPracticed = self._hasPracticed or state.get("trainee") == self._trainee
         self.showState()
 
-    def _takeResult(self, trial: ScoredTrial) -> None:
+    def _takeResult(self, analysis: TrialAnalysis) -> None:
         # The sections show it each in a turn of its own; only then is there something to look at.
-        self._session.work.later(lambda: self._noteResult(trial.analysis.record.trainee))
+        self._session.work.later(lambda: self._noteResult(analysis.record.trainee))
 
     def _noteResult(self, trainee: str) -> None:
         if trainee == self._trainee:

@@ -39,8 +39,8 @@ from rastrainer.slicer.score_board import (
 )
 from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
-from rastrainer.slicer.trial_desk import ScoredTrial
 from rastrainer.study import StoredTrial
+from rastrainer.trial_analysis import TrialAnalysis
 
 
 class ScorePanel:
@@ -140,9 +140,9 @@ class ScorePanel:
         if isFolded:
             self._session.layout.giveBack(TABLES)
 
-    def _noteNewTrial(self, trial: ScoredTrial) -> None:
+    def _noteNewTrial(self, analysis: TrialAnalysis) -> None:
         """Note a trial of the chosen trainee that has just been scored: it is shown next."""
-        record = trial.analysis.record
+        record = analysis.record
         if record.trainee == self._trainees.chosen:
             self._newTrial = record.trial_id
 

@@ -119,7 +119,7 @@ class BackgroundWork:
     @property
     def isBusy(self) -> bool:
         """Whether there is anything that `process` has not yet handed over."""
-        return self._job is not None or bool(self._slices)
+        return self._job is not None or bool(self._waiting or self._slices)
 
     def do(
         self,

@@ -41,7 +41,8 @@ from rastrainer.slicer.scenario import showScenario
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from rastrainer.slicer.scenario_volume import VolumeLoader
 from rastrainer.slicer.study_place import STUDY_FILE, openStudyIn
-from rastrainer.slicer.trial_desk import ScoredTrial, TrialDesk
+from rastrainer.slicer.trial_desk import TrialDesk
+from rastrainer.trial_analysis import TrialAnalysis
 from rastrainer.trial_files import read_trials
 from rastrainer.trial_results import results_json
 
@@ -65,7 +66,7 @@ class HeadlessHost:
     def __init__(self, shelf: ScenarioShelf, output: Path, cohort: Path | None) -> None:
         self.application = HeadlessScene()
         self.link = Link(self.application.scene, headlessKit, client="headless Slicer")
-        self.latest: ScoredTrial | None = None
+        self.latest: TrialAnalysis | None = None
         self.scored = 0
         self._output = output
         self._touches = 0
@@ -128,10 +129,10 @@ class HeadlessHost:
             tell("removed", count=len(labels))
         self._touches = len(labels)
 
-    def _tellTrial(self, trial: ScoredTrial) -> None:
-        results = results_json(trial.analysis, trial.truth)
+    def _tellTrial(self, analysis: TrialAnalysis) -> None:
+        results = results_json(analysis)
         appendResults(self._output, results)
-        self.latest = trial
+        self.latest = analysis
         self.scored += 1
         tell("trial", results=results)
 

@@ -14,7 +14,7 @@ from rastrainer.scenario import Scenario
 from rastrainer.slicer.headless_scene import HeadlessScene
 from rastrainer.slicer.residual_glyphs import magnification
 from rastrainer.slicer.residual_picture import writeResidualPicture
-from rastrainer.slicer.trial_desk import ScoredTrial
+from rastrainer.trial_analysis import TrialAnalysis
 
 SCENE = "trial.mrb"
 PICTURE = "residuals.png"
@@ -38,7 +38,7 @@ def appendResults(folder: Path, results: Mapping[str, Any]) -> None:
 
 
 def writeOutput(
-    folder: Path, application: HeadlessScene, scenario: Scenario, latest: ScoredTrial
+    folder: Path, application: HeadlessScene, scenario: Scenario, latest: TrialAnalysis
 ) -> dict[str, str]:
     """Write scene and picture of the latest trial; return the paths of all files.
 
@@ -51,8 +51,7 @@ def writeOutput(
     return {name: str(path) for name, path in files.items()}
 
 
-def _writePicture(path: Path, scenario: Scenario, trial: ScoredTrial) -> None:
-    analysis = trial.analysis
+def _writePicture(path: Path, scenario: Scenario, analysis: TrialAnalysis) -> None:
     task = scenario.task(analysis.record.task)
     expected = analysis.expected_tre
     low, high = expected.interval_mm
@@ -64,7 +63,7 @@ def _writePicture(path: Path, scenario: Scenario, trial: ScoredTrial) -> None:
         "Ball and number: fiducial in the MRI and its residual in mm. Arrow: towards where the "
         f"registration puts the touch, {magnification(analysis.rigid):g} times as long.",
         f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
-        f"(95 %: {low:.2f} to {high:.2f} mm), true TRE {trial.truth.true_tre_mm:.2f} mm. "
+        f"(95 %: {low:.2f} to {high:.2f} mm), true TRE {analysis.truth.true_tre_mm:.2f} mm. "
         "FRE does not predict TRE case by case.",
     ]
     head = read_head_mesh(scenario.head_mesh)

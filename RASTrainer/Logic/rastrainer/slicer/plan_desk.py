@@ -18,8 +18,8 @@ from rastrainer.slicer.plan_points import LINE, PlanPoints, placedRows
 from rastrainer.slicer.registration_desk import RegistrationDesk
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
-from rastrainer.slicer.trial_desk import ScoredTrial
 from rastrainer.target_error import TargetError
+from rastrainer.trial_analysis import TrialAnalysis
 
 LONGEST_NAME = 64
 SAME_PLACE_MM = 0.01
@@ -143,9 +143,9 @@ class PlanDesk:
         self.sentence = "" if self._isRefused else stale
         self.changed.emit()
 
-    def takeTruth(self, trial: ScoredTrial) -> None:
+    def takeTruth(self, analysis: TrialAnalysis) -> None:
         """Know where the head of the trial really was: from now on, true errors can be told."""
-        self._headToWorld = np.reshape(trial.truth.head_to_world, (4, 4))
+        self._headToWorld = analysis.truth.matrix
         self._tellTrueError()
 
     def forgetTruth(self) -> None:

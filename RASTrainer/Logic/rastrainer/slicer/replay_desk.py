@@ -149,8 +149,10 @@ class ReplayDesk:
     def _judge(self, trial: StoredTrial) -> TrialFeedback:
         record = trial.record
         with self._openStudy() as study:
-            analysis = review(record, self._findScenario(record.scenario), study, self._records)
-            return with_progress(analysis, study).feedback
+            scenario = self._findScenario(record.scenario)
+            analysis = review(record, scenario, study, self._records)
+            # A score keeps its version, however it would be made today.
+            return with_progress(analysis.scored_as(trial.score), study).feedback
 
     def _put(self, trial: StoredTrial, progress: Progress) -> None:
         if self._isTrialOpen():

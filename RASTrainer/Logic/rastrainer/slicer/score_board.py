@@ -12,6 +12,12 @@ from rastrainer.ctps import CTPS_WARNING, Trial
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.number_text import fixed
 from rastrainer.registration import RIGID
+from rastrainer.scoring import (
+    CONTACT_LIMIT_S,
+    CONTACT_PATH_LIMIT_MM,
+    DEPTH_LIMIT_MM,
+    TrialScore,
+)
 from rastrainer.slicer.scene import Role
 from rastrainer.slicer.tables import Column, showTable
 from rastrainer.slicer.translation import _
@@ -75,18 +81,7 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
     score, rigid = trial.score, trial.registrations.get(RIGID)
     rows = []
     if score is not None:
-        limit = score.reference.limit_mm
-        verdict = _("within") if score.acceptable else _("beyond")
-        rows += [
-            Row(_("Score"), score.score, "/ 100", _("Version {v}").format(v=score.version)),
-            Row(_("… its part for time"), 100 * score.time_desirability, "%"),
-            Row(
-                _("… its part for accuracy"),
-                100 * score.accuracy_desirability,
-                "%",
-                _("{verdict} the limit of {limit:g} mm").format(verdict=verdict, limit=limit),
-            ),
-        ]
+        rows += _parts(score)
     paused = trial.motion.get("pause_time_s", 0.0)
     note = _("{s:.0f} s of pauses are left out").format(s=paused) if paused else ""
     rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s", note))
@@ -102,8 +97,54 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
                 INTERVAL_NOTE,
             ),
         ]
-    rows.append(Row(_("True TRE"), trial.true_tre_mm, "mm", _("only a simulator can tell it")))
+    rows.append(
+        Row(_("True TRE at the target"), trial.true_tre_mm, "mm", _("only a simulator can tell it"))
+    )
     return rows
+
+
+def _parts(score: TrialScore) -> list[Row]:
+    """Return a score and the parts that it has in its version."""
+    limit = score.reference.limit_mm
+    accuracy = _("within the limit of {limit:g} mm")
+    if not score.is_accurate:
+        accuracy = _("beyond the limit of {limit:g} mm")
+    rows = [
+        Row(_("Score"), score.score, "/ 100", _("Version {v}").format(v=score.version)),
+        Row(_("… its part for time"), 100 * score.time_desirability, "%"),
+        Row(
+            _("… its part for accuracy"),
+            100 * score.accuracy_desirability,
+            "%",
+            accuracy.format(limit=limit),
+        ),
+    ]
+    if score.safety_desirability is None:
+        return rows
+    measures = score.measures
+    safety = _("within the limits") if score.is_safe else _("beyond a limit")
+    return [
+        *rows,
+        Row(_("… its part for safety"), 100 * score.safety_desirability, "%", safety),
+        Row(
+            _("True TRE in the brain"),
+            measures.tre_mm,
+            "mm",
+            _("root mean square over the targets and a grid of the brain"),
+        ),
+        Row(_("Unintended contact"), measures.contact_time_s, "s", _limit(CONTACT_LIMIT_S, "s")),
+        Row(
+            _("… its path"),
+            measures.contact_path_mm,
+            "mm",
+            _limit(CONTACT_PATH_LIMIT_MM, "mm"),
+        ),
+        Row(_("Pressing depth"), measures.pressing_depth_mm, "mm", _limit(DEPTH_LIMIT_MM, "mm")),
+    ]
+
+
+def _limit(value: float, unit: str) -> str:
+    return _("at most {value:g} {unit}").format(value=value, unit=unit)
 
 
 def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:

@@ -32,10 +32,11 @@ from rastrainer.slicer.study_desk import StudyDesk
 from rastrainer.slicer.study_place import openStudyFile
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.slicer.training_desk import TrainingDesk
-from rastrainer.slicer.trial_desk import ScoredTrial, TrialDesk
+from rastrainer.slicer.trial_desk import TrialDesk
 from rastrainer.slicer.world_placement import followPlacement
 from rastrainer.study import Study
 from rastrainer.study_patience import Patience
+from rastrainer.trial_analysis import TrialAnalysis
 from rastrainer.trial_files import read_trials
 
 ROBOT = Path("robots", "iiwa7")
@@ -254,10 +255,10 @@ class Session:
         for listener in self.trainees.changed.listeners:
             self.work.later(listener)
 
-    def _takeScored(self, trial: ScoredTrial) -> None:
-        record = trial.analysis.record
-        self.plan.takeTruth(trial)
-        self.replay.takeFeedback(record.trial_id, trial.analysis.feedback)
+    def _takeScored(self, analysis: TrialAnalysis) -> None:
+        record = analysis.record
+        self.plan.takeTruth(analysis)
+        self.replay.takeFeedback(record.trial_id, analysis.feedback)
         self._showTrainees()
 
     def _takeAborted(self, trial: AbortedTrial) -> None:

@@ -1,7 +1,7 @@
-"""What happens when a finished trial arrives: scored, kept, acknowledged, told, one by one.
+"""What happens when a finished trial arrives: registered, kept, acknowledged, scored, one by one.
 
-Checking, scoring and storing is done in the background; the scene and the link are the main
-thread's.
+Checking, registering, scoring and storing is done in the background; the scene and the link are the
+main thread's.
 
 Nothing is lost and nothing counts twice, whatever is cut on the way. The simulator offers a trial
 until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
@@ -13,40 +13,27 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rastrainer.ctps import Trial
-from rastrainer.errors import InputError
-from rastrainer.igtl.client import Reply
 from rastrainer.protocol import OPEN_PHASES, CommandName
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link import Link
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.slicer.trial_scene import showTrial
+from rastrainer.slicer.trial_scoring import TrialScoring
 from rastrainer.study import DeletedTrialError, Study
 from rastrainer.trial_analysis import TrialAnalysis
 from rastrainer.trial_intake import Intake, take_in
 from rastrainer.trial_record import TrialRecord
-from rastrainer.trial_results import RevealedTruth
-from rastrainer.trial_review import review, with_progress
+from rastrainer.trial_review import review
 
 MOST_WAITING = 32
 """Trials that wait to be scored; a simulator that has more offers them again."""
-SCORED_TIMEOUT_S = 60.0
-"""Nobody waits for this answer, and one that is given up would be asked for again only over the
-next connection: a busy simulator gets the time it needs."""
-
-
-@dataclass(frozen=True)
-class ScoredTrial:
-    """A trial with its numbers and what the simulator has revealed about it."""
-
-    analysis: TrialAnalysis
-    truth: RevealedTruth
 
 
 class TrialDesk:
@@ -54,7 +41,7 @@ class TrialDesk:
 
     Attributes:
         trialKept: emits each `TrialRecord` that comes in, once it is in the study.
-        trialScored: emits each `ScoredTrial`, once its truth is in the study.
+        trialScored: emits each `TrialAnalysis` with truth and score, once they are in the study.
         problemFound: emits a sentence about a trial that could not be kept or scored.
         received: UUIDs of the trials that came in and are safe, in their order.
     """
@@ -92,6 +79,7 @@ class TrialDesk:
         self._cohort = cohort
         self._records = records
         self._deliveries: deque[Mapping[str, Any]] = deque()
+        self._scoring = TrialScoring(link, work, openStudy, self._analyze)
         self._isTaking = False
         self._told: set[str] = set()
         self._revealed: set[str] = set()
@@ -169,7 +157,7 @@ class TrialDesk:
             self.received.append(record.trial_id)
             self.trialKept.emit(record)
         if intake.analysis is not None and record.trial_id not in self._told:
-            self._tellScore(intake.analysis, self._complain)
+            self._score(intake.analysis, self._complain)
             self._work.later(lambda: self._show(intake.analysis))
 
     def _refuse(self, value: Mapping[str, Any], error: Exception) -> None:
@@ -182,9 +170,11 @@ class TrialDesk:
     def _acknowledge(self, trialId: str) -> None:
         self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": trialId})
 
-    def _analyze(self, record: TrialRecord, study: Study) -> TrialAnalysis:
+    def _analyze(
+        self, record: TrialRecord, study: Study, truth: RevealedTruth | None = None
+    ) -> TrialAnalysis:
         scenario = self._findScenario(record.scenario)
-        return review(record, scenario, study, self._records, self._cohort)
+        return review(record, scenario, study, self._records, self._cohort, truth)
 
     def _resume(self) -> None:
         """Go on with trials whose score was told to nobody before the connection was cut."""
@@ -212,14 +202,14 @@ class TrialDesk:
                 self._work.do(
                     lambda record=record: self._analyzeAgain(record),
                     # A trial of another simulator is none of this one's business.
-                    lambda analysis: self._tellScore(analysis, logging.info, self._resumeNext),
+                    lambda analysis: self._score(analysis, logging.info, self._resumeNext),
                     lambda error, record=record: self._resumeAfter(record, error),
                 )
                 return
 
     def _analyzeAgain(self, record: TrialRecord) -> TrialAnalysis:
         with self._openStudy() as study:
-            return with_progress(self._analyze(record, study), study)
+            return self._analyze(record, study)
 
     def _resumeAfter(self, record: TrialRecord, error: Exception) -> None:
         self._told.discard(record.trial_id)
@@ -233,7 +223,7 @@ class TrialDesk:
             return
         showTrial(self._scene, self._findScenario(analysis.record.scenario), analysis)
 
-    def _tellScore(
+    def _score(
         self,
         analysis: TrialAnalysis,
         complain: Callable[[str], None],
@@ -245,56 +235,20 @@ class TrialDesk:
         def end(error: Exception | None = None) -> None:
             self._told.discard(trialId)
             if error is not None:
-                complain(_("The score was not taken: {error}").format(error=error))
+                complain(_("The trial was not scored: {error}").format(error=error))
             goOn()
 
-        def takeAnswer(reply: Reply) -> None:
-            try:
-                if not reply.ok:
-                    raise InputError(reply.error)
-                truth = RevealedTruth.from_json(reply.data)
-            except InputError as error:
-                end(error)
-                return
-            self._work.do(lambda: self._keepTruth(trialId, truth), lambda _none: tell(truth), end)
-
-        def tell(truth: RevealedTruth) -> None:
+        def take(scored: TrialAnalysis) -> None:
             self._revealed.add(trialId)
             try:
-                self.trialScored.emit(ScoredTrial(analysis, truth))
+                self.trialScored.emit(scored)
             finally:
                 end()
 
-        arguments = _scoreArguments(analysis)
-        self._link.send(CommandName.TRIAL_SCORED, arguments, takeAnswer, SCORED_TIMEOUT_S)
-
-    def _keepTruth(self, trialId: str, truth: RevealedTruth) -> None:
-        with self._openStudy() as study:
-            study.set_truth(trialId, truth.true_tre_mm, truth.head_to_world)
+        self._scoring.begin(analysis, take, end)
 
     def _complain(self, sentence: str) -> None:
         """Tell a problem once, though the trial is offered every two seconds."""
         if sentence != self._lastProblem:
             self._lastProblem = sentence
             self.problemFound.emit(sentence)
-
-
-def _scoreArguments(analysis: TrialAnalysis) -> dict[str, Any]:
-    published, progress = analysis.published_score, analysis.feedback.progress
-    return {
-        "trialId": analysis.record.trial_id,
-        "matrix": [float(value) for value in analysis.rigid.matrix.ravel()],
-        "freMm": analysis.rigid.fre_mm,
-        "expectedTreMm": analysis.expected_tre.expected_mm,
-        "score": analysis.score.score,
-        "details": {
-            "residualsMm": analysis.rigid.residuals_mm.tolist(),
-            "treIntervalMm": list(analysis.expected_tre.interval_mm),
-            "timeDesirability": analysis.score.time_desirability,
-            "accuracyDesirability": analysis.score.accuracy_desirability,
-            "ctps": None if published is None else published.published,
-            "warnings": [warning.message for warning in analysis.rigid.warnings],
-            "passMark": None if progress is None else progress.pass_mark,
-            "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
-        },
-    }

@@ -148,8 +148,8 @@ class ResultPage(FinishedPage):
         score = self.say("result.of 100", score=result.score)
         facts = [
             Fact(self.say("result.score"), score, _tone_of_score(result)),
-            self._error("result.fre", result.fre_mm),
-            self._error("result.expected tre", result.expected_tre_mm),
+            self._error("result.fre", result.registration.fre_mm),
+            self._error("result.expected tre", result.registration.expected_tre_mm),
             self._error("result.true tre", result.true_tre_mm),
         ]
         ctps = result.details.get("ctps")

@@ -1,0 +1,130 @@
+"""The region of a head that a registration has to be right in, and its true error there.
+
+Neither fiducials nor one target tell how far a guided instrument would miss: a registration may be
+right at a lucky point and wrong beside it. So the true error is taken over the scenario's targets
+and over a grid of the brain's volume, half and half.
+
+The brain is not segmented. The grid stands for it: the points of a 10 mm grid that lie at least
+15 mm under the skin (scalp, skull and cerebrospinal fluid) and at most 120 mm below the vertex.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.head_mesh import HeadMesh, read_head_mesh
+from rastrainer.scenario import Scenario
+from rastrainer.surface_queries import nearest_vertices
+
+SPACING_MM = 10.0
+UNDER_SKIN_MM = 15.0
+BELOW_VERTEX_MM = 120.0
+
+
+MOST_SCENARIOS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Where a registration has to be right.
+
+    Attributes:
+        targets: (m, 3) float, RAS mm, at least one.
+        grid: (n, 3) float, RAS mm, of the brain's volume.
+    """
+
+    targets: np.ndarray
+    grid: np.ndarray
+
+    def mean(self, of_targets: np.ndarray, of_grid: np.ndarray) -> float:
+        """Return the mean of a value at the targets and at the grid, each half of it."""
+        return float((np.mean(of_targets) + np.mean(of_grid)) / 2)
+
+    def tre_mm(self, world_to_head: np.ndarray, head_to_world: np.ndarray) -> float:
+        """Return the RMS true TRE of a registration.
+
+        Args:
+            world_to_head: (4, 4) float, mm, the registration.
+            head_to_world: (4, 4) float, mm, where the head really is.
+        """
+        there_and_back = world_to_head @ head_to_world
+        squares = [
+            np.sum((transforms.apply(there_and_back, points) - points) ** 2, axis=1)
+            for points in (self.targets, self.grid)
+        ]
+        return float(np.sqrt(self.mean(*squares)))
+
+    def tre_per_fle(self, fiducials: np.ndarray) -> float:
+        """Return the RMS TRE to expect of a rigid registration for an FLE of 1 mm.
+
+        By Fitzpatrick, West and Maurer 1998, equation 46: E[TRE²] = E[FLE²]/N · (1 + ⅓ Σₖ dₖ²/fₖ²),
+        dₖ the distance of a point from the principal axis k, fₖ the RMS distance of the fiducials
+        from it.
+
+        Args:
+            fiducials: (n, 3) float, RAS mm, not on one line.
+        """
+        center = fiducials.mean(axis=0)
+        axes = np.linalg.svd(fiducials - center)[2]
+        about = _squares_from_axes(fiducials - center, axes).mean(axis=0)
+        squares = [
+            1 + (_squares_from_axes(points - center, axes) / about).sum(axis=1) / 3
+            for points in (self.targets, self.grid)
+        ]
+        return float(np.sqrt(self.mean(*squares) / len(fiducials)))
+
+
+def region_of(scenario: Scenario) -> Region:
+    """Return the region of a scenario: the head's target, the planned ones, and the grid.
+
+    Raises:
+        InputError: the head's mesh cannot be used.
+    """
+    mesh = scenario.head_mesh
+    changed = mesh.stat().st_mtime_ns if mesh.is_file() else 0
+    targets = [scenario.target_position, *(target.position for target in scenario.targets)]
+    return Region(np.array(targets, dtype=float), _grid_of(mesh, changed))
+
+
+def brain_grid(head: HeadMesh) -> np.ndarray:
+    """Return the grid's points, (n, 3) float, RAS mm.
+
+    Raises:
+        InputError: the head is too small or too flat to have any.
+    """
+    top = head.vertices[:, 2].max()
+    low, high = head.vertices.min(axis=0), head.vertices.max(axis=0)
+    low[2] = max(low[2], top - BELOW_VERTEX_MM)
+    axes = [
+        SPACING_MM * np.arange(np.ceil(a / SPACING_MM), np.floor(b / SPACING_MM) + 1)
+        for a, b in zip(low, high, strict=True)
+    ]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    distances, nearest = nearest_vertices(head, grid)
+    inward = head.vertices[nearest] - grid
+    is_inside = np.einsum("ij,ij->i", inward, head.vertex_normals[nearest]) > 0
+    inside = grid[is_inside & (distances >= UNDER_SKIN_MM)]
+    if not len(inside):
+        raise InputError(
+            f"No part of the head lies {UNDER_SKIN_MM:g} mm under its skin: there is no brain in "
+            "which the true error could be told."
+        )
+    return inside
+
+
+@lru_cache(maxsize=MOST_SCENARIOS)
+def _grid_of(mesh: Path, _changed: int) -> np.ndarray:
+    grid = brain_grid(read_head_mesh(mesh))
+    grid.setflags(write=False)
+    return grid
+
+
+def _squares_from_axes(points: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Return the squared distance of points (n, 3) from each axis through the origin, (n, 3)."""
+    return np.sum(points**2, axis=1, keepdims=True) - (points @ axes.T) ** 2
