@@ -456,7 +456,7 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     groups = {row[2] for row in cells(panels, "standingsTable")}
     assert groups == {"own", "reference"}
     panels.choose("trialComboBox", "1: task-1")
-    assert cells(panels, "motionTable") == [["Smoothness, SPARC", "-1.90"]]
+    assert cells(panels, "motionTable") == [["Smoothness, SPARC", "−1.90"]]
     panels.press("showTablesButton")
     assert findNode(panels.scene, "vtkMRMLTableNode", Role.SCORE) is not None
     panels.answer("Export all trials", str(tmp_path / "all.csv"))

@@ -163,6 +163,8 @@ def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, 
     assert np.nanmax(outside) == 6.0
     series = [chart.GetNthPlotSeriesNode(i) for i in range(chart.GetNumberOfPlotSeriesNodes())]
     assert {one.GetXColumnName() for one in series} == {"expected TRE (mm)"}
+    for one in series:
+        assert one.GetTableNode().GetColumnIndex(one.GetYColumnName()) >= 0
     assert sum(one.GetMarkerStyle() == one.MarkerStyleNone for one in series) == 3
     (_, right), (_, top) = chart.GetXAxisRange(), chart.GetYAxisRange()
     assert (right > expected.max(), top > 6.0) == (True, True)

@@ -11,6 +11,7 @@ from rastrainer.slicer.translation import _
 from rastrainer.tre_calibration import TreCalibration, share_text
 
 EXPECTED = "expected TRE (mm)"
+TRUE = "true TRE (mm)"
 INSIDE = "true TRE, inside (mm)"
 OUTSIDE = "true TRE, outside (mm)"
 LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
@@ -21,7 +22,7 @@ _DOTS = {
     OUTSIDE: (_("Outside"), (0.8, 0.15, 0.1)),
 }
 _LINES = {
-    EXPECTED: (_("True = expected"), (0.1, 0.1, 0.1)),
+    TRUE: (_("True = expected"), (0.1, 0.1, 0.1)),
     LOW: (_("95 %, from"), (0.55, 0.6, 0.65)),
     HIGH: (_("95 %, to"), (0.55, 0.6, 0.65)),
 }
@@ -33,13 +34,15 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
     Raises:
         InputError: scipy is missing.
     """
-    table = _showTable(scene, found)
+    end = 1.1 * max((point.expected_mm for point in found.points), default=1.0)
+    table, identity = _showTable(scene, found), _showIdentity(scene, end)
     chart = findOrAddNode(
         scene, "vtkMRMLPlotChartNode", Role.CALIBRATION, "True against expected TRE"
     )
     chart.RemoveAllPlotSeriesNodeIDs()
     for column, (title, color) in {**_LINES, **_DOTS}.items():
-        series = plotSeries(scene, table, Role.CALIBRATION, EXPECTED, column, title, color)
+        source = identity if column == TRUE else table
+        series = plotSeries(scene, source, Role.CALIBRATION, EXPECTED, column, title, color)
         isLine = column in _LINES
         series.SetLineStyle(series.LineStyleDash if isLine else series.LineStyleNone)
         series.SetMarkerStyle(series.MarkerStyleNone if isLine else series.MarkerStyleCircle)
@@ -47,10 +50,9 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
     chart.SetTitle(_title(found))
     chart.SetXAxisTitle(_("Expected TRE (mm)"))
     chart.SetYAxisTitle(_("True TRE (mm)"))
-    largest = max((point.expected_mm for point in found.points), default=1.0)
     highest = [max(point.true_mm, point.interval_mm[1]) for point in found.points]
     chart.SetXAxisRangeAuto(False)
-    chart.SetXAxisRange(0.0, 1.1 * largest)
+    chart.SetXAxisRange(0.0, end)
     chart.SetYAxisRangeAuto(False)
     chart.SetYAxisRange(0.0, ROOM * max(highest, default=1.0))
     return chart
@@ -73,6 +75,12 @@ def _showTable(scene: Any, found: TreCalibration) -> Any:
             Column(OUTSIDE, [None if point.is_inside else point.true_mm for point in points]),
         ],
     )
+
+
+def _showIdentity(scene: Any, end: float) -> Any:
+    """Show the ends of the line on which the true error is the expected one."""
+    columns = [Column(name, [0.0, end]) for name in (EXPECTED, TRUE)]
+    return showTable(scene, f"{Role.CALIBRATION} line", "True equals expected TRE", columns)
 
 
 def _title(found: TreCalibration) -> str:
