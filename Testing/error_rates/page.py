@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from Testing.error_rates import (
+    aborted_trials,
     effect_sizes,
     groups,
     learning,
@@ -30,6 +31,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], list[Measured] | list[Rec
     "effect sizes": (effect_sizes.HEADER, effect_sizes.coverage),
     "recovery": (recovery.HEADER, recovery.parameters),
     "throughput": (throughput.HEADER, throughput.offsets),
+    "aborted trials": (aborted_trials.HEADER, aborted_trials.competence),
     "target errors": (target_errors.HEADER, target_errors.intervals),
 }
 

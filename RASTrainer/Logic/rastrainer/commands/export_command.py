@@ -10,7 +10,14 @@ from rastrainer.commands.incomplete import add_incomplete, read_known_study
 from rastrainer.errors import InputError
 from rastrainer.export.motion_bids import write_motion_bids
 from rastrainer.export.slicer_files import write_slicer_files
-from rastrainer.export.tidy_csv import answers_csv, scores_csv, touches_csv, trials_csv
+from rastrainer.export.tidy_csv import (
+    aborted_csv,
+    aborted_touches_csv,
+    answers_csv,
+    scores_csv,
+    touches_csv,
+    trials_csv,
+)
 from rastrainer.export.xapi import HOME_PAGE, statements_text
 from rastrainer.files import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
@@ -79,6 +86,8 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     if name == "csv":
         write_text(folder / "trials.csv", trials_csv(data.trials))
         write_text(folder / "touches.csv", touches_csv(_stored(data, arguments.study)))
+        write_text(folder / "aborted.csv", aborted_csv(data.aborted))
+        write_text(folder / "aborted_touches.csv", aborted_touches_csv(data.aborted))
         write_text(folder / "scores.csv", scores_csv(data))
         write_text(folder / "answers.csv", answers_csv(data))
     elif name == "xapi":
@@ -86,7 +95,8 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     else:
         for trial, stored in _stored(data, arguments.study):
             write_slicer_files(stored, folder / trial.trial_id)
-    return f"{len(data.trials)} trials"
+        return f"{len(data.trials)} trials"
+    return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
 
 
 def _stored(data: StudyData, path: Path) -> Iterator[tuple[TrialRow, StoredTrial]]:

@@ -14,6 +14,7 @@ from rastrainer.files import write_text
 from rastrainer.learning.contrasting_groups import PassMark, pass_mark
 from rastrainer.number_text import percent
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials
 
 LAST_TRIALS = 3
 
@@ -60,8 +61,18 @@ def run(arguments: argparse.Namespace) -> int:
             [_score(study, pseudonym) for pseudonym in dict.fromkeys(group)]
             for group in (arguments.novices, arguments.experts)
         )
+        aborted = sum(
+            attempt.is_aborted
+            for pseudonym in {*arguments.novices, *arguments.experts}
+            for attempt in AbortedTrials(study).attempts(pseudonym)
+        )
     mark = pass_mark(novices, experts)
     print(_sentence(mark, novices, experts))
+    if aborted:
+        print(
+            f"They aborted {aborted} trials after a touch; these have no score, so that who aborts "
+            "bad trials seems better here."
+        )
     if arguments.write is not None:
         # A mark that people are told in whole points is one in whole points.
         protocol = replace(read_study_protocol(arguments.write), pass_mark=float(round(mark.score)))

@@ -47,5 +47,6 @@ def run(arguments: argparse.Namespace) -> int:
     data = read_known_study(arguments)
     means = mean_times(arguments.mean_ct, list(data.modes))
     written = write_report(data.with_mean_times(means), arguments.output)
-    print(f"{written.page}: {len(data.trainees)} trainees, {len(data.trials)} trials")
+    aborted = f", {len(data.aborted)} aborted ones" if data.has_order else ""
+    print(f"{written.page}: {len(data.trainees)} trainees, {len(data.trials)} trials{aborted}")
     return 0

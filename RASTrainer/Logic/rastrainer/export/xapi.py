@@ -6,6 +6,7 @@ import json
 import uuid
 from typing import Any
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.experiment.study_progress import QuestionnaireAnswers
 from rastrainer.experiment.study_protocol import pass_mark_of
 from rastrainer.report.outcomes import mode_title, task_title
@@ -17,6 +18,7 @@ VERSION = "1.0.0"
 HOME_PAGE = "https://rastrainer.invalid"
 VERBS = {
     "completed": "http://adlnet.gov/expapi/verbs/completed",
+    "terminated": "http://adlnet.gov/expapi/verbs/terminated",
     "answered": "http://adlnet.gov/expapi/verbs/answered",
 }
 SIMULATION = "http://adlnet.gov/expapi/activities/simulation"
@@ -26,7 +28,7 @@ NAMESPACE = uuid.UUID("6f0f2f3e-6f53-5d8f-9a1a-7f7a52415354")
 
 
 def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, Any]]:
-    """Return a statement for each trial and each answered questionnaire.
+    """Return a statement for each trial, aborted ones too, and each answered questionnaire.
 
     Args:
         data: The study; a trial's statement has the trial's UUID, so that twice is once.
@@ -34,6 +36,7 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
     """
     mark = pass_mark_of(data.protocol)
     trials = [_trial(trial, mark, home_page) for trial in data.trials if trial.trial_id]
+    trials += [_aborted(stored.record, home_page) for stored in data.aborted]
     return trials + [_answers(answered, home_page) for answered in data.answers]
 
 
@@ -75,6 +78,41 @@ def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
             "extensions": context,
         },
         "timestamp": trial.completed_utc,
+    }
+
+
+def _aborted(record: AbortedTrial, home_page: str) -> dict[str, Any]:
+    """Return the statement that a trial was begun and not finished."""
+    result: dict[str, Any] = {
+        "completion": False,
+        "duration": f"PT{record.elapsed_s:.2f}S",
+        "extensions": {
+            f"{home_page}/xapi/values/touches": len(record.points),
+            f"{home_page}/xapi/values/refused_touches": record.rejected_touches,
+            f"{home_page}/xapi/values/undone_touches": record.undone_touches,
+        },
+    }
+    if record.counts_as_failed:
+        result["success"] = False
+    return {
+        "id": record.trial_id,
+        "version": VERSION,
+        "actor": _actor(record.trainee, home_page),
+        "verb": _verb("terminated"),
+        "object": _activity(
+            f"{home_page}/tasks/{record.task}", task_title(record.task), SIMULATION
+        ),
+        "result": result,
+        "context": {
+            "platform": f"RASTrainer, {mode_title(record.mode)}",
+            "extensions": {
+                f"{home_page}/xapi/mode": record.mode,
+                f"{home_page}/xapi/started": record.started_utc,
+                f"{home_page}/xapi/aborted-in": record.phase,
+                f"{home_page}/xapi/aborted-because": record.reason,
+            },
+        },
+        "timestamp": record.aborted_utc,
     }
 
 

@@ -18,6 +18,7 @@ from rastrainer.report.markup import bullets, paragraph, section
 from rastrainer.report.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.report.page import page
 from rastrainer.report.published_scores import with_ctps
+from rastrainer.report.sections.begun import begun
 from rastrainer.report.sections.calibration import calibration
 from rastrainer.report.sections.groups import groups
 from rastrainer.report.sections.learning import learning
@@ -94,6 +95,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     )
     sections = [
         _summary(everything, data.gap),
+        begun(data),
         published_tables(data),
         mode_comparison(data),
         *(paired_statistics(comparisons) for comparisons in main),

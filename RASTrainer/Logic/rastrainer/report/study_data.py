@@ -16,6 +16,7 @@ from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration import RIGID
 from rastrainer.report.study_notes import StudyNotes, read_notes
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials, StoredAborted
 from rastrainer.study_values import StoredTrial
 from rastrainer.trial_files import read_trials
 
@@ -70,6 +71,7 @@ class StudyData:
         has_order: Whether the order of the trials is known.
         gap: What is missing of a virtual cohort that was not played to its end, as a sentence; ""
             of a whole one and of any other study.
+        aborted: Trials that were aborted, trial runs too, by trainee as they were started.
     """
 
     title: str
@@ -84,6 +86,7 @@ class StudyData:
     versions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     has_order: bool = False
     gap: str = ""
+    aborted: tuple[StoredAborted, ...] = ()
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -198,6 +201,9 @@ def _from_database(path: Path) -> StudyData:
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
             gap="" if cohort is None else cohort.gap,
+            aborted=tuple(
+                stored for name in sorted(consenting) for stored in AbortedTrials(study).of(name)
+            ),
         )
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from datetime import datetime
 
 import numpy as np
 
+from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.experiment.study_protocol import pass_mark_of, sets_pass_mark
 from rastrainer.feedback.progress_words import (
     ADEQUATE_FAILURES,
@@ -27,8 +29,12 @@ from rastrainer.report.markup import figure, paragraph, section, table
 from rastrainer.report.outcomes import mode_title
 from rastrainer.report.study_data import StudyData
 from rastrainer.scoring import passes
+from rastrainer.study_clock import moment
 
-HEADER = ["mode", "trials", "passed", "trainees competent", "shown at trial (median)"]
+HEADER = [
+    *("mode", "trials", "passed", "trainees competent", "shown at trial (median)"),
+    "aborted trials among them",
+]
 
 
 def passing(data: StudyData) -> str:
@@ -44,7 +50,7 @@ def passing(data: StudyData) -> str:
         return ""
     return section(
         "Pass mark",
-        table([HEADER], [_row(mode, found[mode], competence[mode]) for mode in found]),
+        table([HEADER], [_row(data, mode, found[mode], competence[mode]) for mode in found]),
         figure(
             [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
@@ -54,16 +60,36 @@ def passing(data: StudyData) -> str:
 
 
 def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
-    """Return of each trainee whether each scored trial failed, in their order."""
+    """Return of each trainee whether each scored trial failed, in their order.
+
+    An aborted one that counts as not passed stands in its place in time.
+    """
+    aborted: dict[str, list[datetime]] = defaultdict(list)
+    for record in _aborted(data, mode):
+        aborted[record.trainee].append(moment(record.started_utc))
     failures: dict[str, list[bool]] = defaultdict(list)
     for trial in sorted(data.of_mode(mode), key=lambda trial: trial.number):
         if "score" in trial.values:
+            own = aborted[trial.trainee]
+            while own and own[0] <= moment(trial.started_utc):
+                own.pop(0)
+                failures[trial.trainee].append(True)
             passed = passes(trial.values["score"], trial.acceptable, mark)
             failures[trial.trainee].append(not passed)
+    for trainee, own in aborted.items():
+        if own:
+            failures[trainee] += [True] * len(own)
     return failures
 
 
-def _row(mode: str, failures: dict[str, list[bool]], charts: dict[str, LcCusum]) -> list[str]:
+def _aborted(data: StudyData, mode: str) -> list[AbortedTrial]:
+    records = [stored.record for stored in data.aborted]
+    return [record for record in records if record.mode == mode and record.counts_as_failed]
+
+
+def _row(
+    data: StudyData, mode: str, failures: dict[str, list[bool]], charts: dict[str, LcCusum]
+) -> list[str]:
     trials = [failed for own in failures.values() for failed in own]
     shown_at = [chart.competent_at for chart in charts.values()]
     competent = [number for number in shown_at if number is not None]
@@ -74,6 +100,7 @@ def _row(mode: str, failures: dict[str, list[bool]], charts: dict[str, LcCusum])
         f"{passed} ({percent(passed / len(trials))})",
         f"{len(competent)} of {len(failures)}",
         f"{np.median(competent):g}" if competent else "–",
+        str(len(_aborted(data, mode))),
     ]
 
 
@@ -108,7 +135,8 @@ def _words(data: StudyData, mark: float) -> str:
     )
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and an expected target error "
-        "within the limit of its task. LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
+        "within the limit of its task; one that was aborted after a touch is not passed. "
+        "LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
         "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
         f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "
         f"{fewest} trials in a mode cannot show it, even if all are passed: the score of "
