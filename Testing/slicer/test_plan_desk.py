@@ -9,6 +9,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.revealed_truth import RevealedTruth
 from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.control_points import setPoints, worldPoints
 from rastrainer.slicer.headless_kit import headlessKit
@@ -21,7 +22,6 @@ from rastrainer.slicer.scenario import showScenario, showTask
 from rastrainer.slicer.scene import Role, findNode
 from rastrainer.slicer.slice_views import jumpTo
 from rastrainer.tasks import LABELS
-from rastrainer.trial_results import RevealedTruth
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 TUMOR = np.array([20.0, -30.0, 40.0])
