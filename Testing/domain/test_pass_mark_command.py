@@ -8,7 +8,9 @@ import pytest
 
 from rastrainer.experiment.study_protocol import read_study_protocol
 from rastrainer.study import Study
+from rastrainer.study_aborted import AbortedTrials
 from rastrainer_simulator.cli import main
+from Testing.domain.aborted_records import make_aborted
 from Testing.domain.made_up_scores import gentle_score
 from Testing.domain.trial_records import make_record
 
@@ -91,3 +93,13 @@ def test_groups_that_give_no_mark_are_refused_and_nothing_is_written(
     assert main(words(study, "--write", str(protocol), **more)) == 2
     assert sentence in capsys.readouterr().err
     assert protocol.read_bytes() == SHIPPED.read_bytes()
+
+
+def test_aborted_trials_of_the_groups_are_told_since_they_have_no_score(study, capsys):
+    before = means(study, NOVICES)
+    with Study.open(study) as opened:
+        for number, name in enumerate((NOVICES[0], NOVICES[0], EXPERTS[1])):
+            AbortedTrials(opened).add(make_aborted(900 + number, trainee=name))
+    assert main(words(study)) == 0
+    assert "They aborted 3 trials after a touch" in capsys.readouterr().out
+    assert means(study, NOVICES) == before

@@ -139,3 +139,9 @@ def test_the_port_is_the_preferred_one_unless_somebody_listens_there():
         taken = listening.port
         assert freePort(taken) == ANY
     assert freePort(taken) == taken
+
+
+def test_an_aborted_step_of_a_study_asks_for_its_reason_before_it_is_started():
+    step = step_of(PRACTICED, studyStep=StepKind.TRIAL, needsRepeatReason=True)
+    assert step.action is Action.EXPLAIN_REPEAT
+    assert step.section is Section.STUDY
