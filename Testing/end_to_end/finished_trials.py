@@ -10,6 +10,7 @@ import numpy as np
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
 from rastrainer.scenario import load_scenario
+from rastrainer.scoring import SAFETY_METRICS
 from rastrainer.trial_record import TouchedPoint, TrialRecord
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.record.journal import Journal
@@ -53,6 +54,7 @@ def _write(folder: Path, number: int, scenario) -> str:
         rejected_touches=0,
         undone_touches=0,
         versions={"rastrainer": "0"},
+        motion=dict.fromkeys(SAFETY_METRICS, 0.0),
     )
     times = stamp(0, 0.0)
     header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, **times}

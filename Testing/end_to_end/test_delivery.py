@@ -71,7 +71,7 @@ class SlicerSide:
         self.desk = TrialDesk(
             scene, self.link, lambda _name: scenario, lambda: Study.open(path), self.work
         )
-        self.desk.trialScored.connect(lambda trial: scored.append(trial.analysis.record.trial_id))
+        self.desk.trialScored.connect(lambda trial: scored.append(trial.record.trial_id))
         self.link.connectTo(port=port)
 
     def run_for(self, steps):

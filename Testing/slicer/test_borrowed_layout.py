@@ -9,9 +9,8 @@ import slicer
 from rastrainer import transforms
 from rastrainer.scenario import load_scenario
 from rastrainer.study import Study
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from Testing.slicer.scored_trials import scored_analysis
 
 OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 
@@ -27,7 +26,7 @@ def looking(host, make_record):
     touched = transforms.apply(colin.perturbed_head_to_world(2), fiducials + noise)
     for point, position in zip(record["points"], touched.tolist(), strict=True):
         point["positionMm"] = position
-    analysis = analyze_trial(TrialRecord.from_json(record), colin)
+    analysis = scored_analysis(record, colin)
     with Study.open(host.find("studyPathLineEdit").currentPath) as study:
         study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
     host.press("createTraineeButton")

@@ -25,11 +25,10 @@ from rastrainer.slicer.scene import Role, findNode
 from rastrainer.study import Study
 from rastrainer.target_error import INTERVAL_NOTE
 from rastrainer.tasks import LABELS
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import main
 from Testing.slicer.recorded_trial import write_recorded_trial
+from Testing.slicer.scored_trials import scored_analysis
 
 PROTOCOL = asset_path("studies", "published-protocol.json")
 PAIRED = """
@@ -92,7 +91,7 @@ def add_trial(study_path, make_record, colin):
         )
         for point, position in zip(record["points"], touched.tolist(), strict=True):
             point["positionMm"] = position
-        analysis = analyze_trial(TrialRecord.from_json(record), colin)
+        analysis = scored_analysis(record, colin)
         with Study.open(study_path) as study:
             study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
 

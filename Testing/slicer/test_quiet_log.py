@@ -13,10 +13,9 @@ from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.trial_replay import findReplay
 from rastrainer.study import Study
 from rastrainer.tasks import LABELS
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import write_recorded_trial
+from Testing.slicer.scored_trials import scored_analysis
 
 SECTIONS = ("trainees", "scenario", "registration", "plan", "score")
 
@@ -35,7 +34,7 @@ def at_work(host, make_record):
     touched = transforms.apply(colin.perturbed_head_to_world(5), fiducials + noise)
     for point, position in zip(record["points"], touched.tolist(), strict=True):
         point["positionMm"] = position
-    analysis = analyze_trial(TrialRecord.from_json(record), colin)
+    analysis = scored_analysis(record, colin)
     with Study.open(host.find("studyPathLineEdit").currentPath) as study:
         study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 16.0)

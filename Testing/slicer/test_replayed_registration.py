@@ -13,10 +13,9 @@ from rastrainer.protocol import Device
 from rastrainer.scenario import load_scenario
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.study import Study
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import write_recorded_trial
+from Testing.slicer.scored_trials import scored_analysis
 from Testing.slicer.simulator_double import SimulatorDouble
 
 TASKS = ("task-1", "task-2")
@@ -41,7 +40,7 @@ def trials(host, make_record):
         touched = transforms.apply(head, colin.task(task).fiducials + noise)
         for point, position in zip(record["points"], touched.tolist(), strict=True):
             point["positionMm"] = position
-        analysis = analyze_trial(TrialRecord.from_json(record), colin)
+        analysis = scored_analysis(record, colin)
         fre[task] = analysis.rigid.fre_mm
         with Study.open(host.find("studyPathLineEdit").currentPath) as study:
             study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)

@@ -25,8 +25,7 @@ from rastrainer.slicer.score_board import (
 )
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.study import Study
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_record import TrialRecord
+from Testing.slicer.scored_trials import scored_analysis
 
 COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
 
@@ -49,7 +48,7 @@ def add_trial(desk, make_record, scenario):
             startedUtc=f"2026-03-02T09:{number:02d}:00Z",
             **changes,
         )
-        analysis = analyze_trial(TrialRecord.from_json(record), scenario)
+        analysis = scored_analysis(record, scenario)
         fits, errors = analysis.fits.values(), analysis.target_errors
         desk.study.add_trial(record, fits, errors, analysis.score)
         desk.study.set_truth(record["trialId"], 0.2 * number, [0.0] * 16)
@@ -193,7 +192,10 @@ def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(add_trial):
     assert rows["… its part for time"].value == 100 * trial.score.time_desirability
     assert rows["CTPS as published"].note == CTPS_WARNING
     assert rows["CTPS by equation 3"].value == rows["CTPS as published"].value / 2
-    assert rows["True TRE"].text == "0.20 mm"
+    assert rows["True TRE at the target"].text == "0.20 mm"
+    assert rows["True TRE in the brain"].value == trial.score.measures.tre_mm
+    assert rows["… its part for safety"].text == "100 %"
+    assert rows["Unintended contact"].note == "at most 8 s"
     assert ctpsRows(trial, []) == []
 
 
@@ -224,5 +226,5 @@ def test_score_comparison_and_motion_become_tables_of_the_scene(scene, desk, add
     showScore(scene, [*scoreRows(trial), *ctpsRows(trial, COHORT)])
     showStandings(scene, standings(desk.study, trial, COHORT))
     showMotion(scene, motionRows(trial))
-    for role, rows in ((Role.SCORE, 9), (Role.COMPARISON, 2), (Role.MOTION, 1)):
+    for role, rows in ((Role.SCORE, 14), (Role.COMPARISON, 2), (Role.MOTION, 1)):
         assert findNode(scene, "vtkMRMLTableNode", role).GetNumberOfRows() == rows

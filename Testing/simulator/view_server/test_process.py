@@ -2,6 +2,7 @@
 
 import secrets
 import socket
+import time
 
 import pytest
 
@@ -64,10 +65,12 @@ def _opened(tmp_path, *arguments):
 
 
 def _usual_port_taken():
-    try:
-        return socket.create_server((HOST, 18945))
-    except OSError:
-        return socket.create_server((HOST, 0))  # Somebody else has it already.
+    """Return a socket at the usual port, once whoever else may have it is gone."""
+    while True:
+        try:
+            return socket.create_server((HOST, 18945))
+        except OSError:
+            time.sleep(0.05)
 
 
 def test_without_views_there_are_none(tmp_path):
