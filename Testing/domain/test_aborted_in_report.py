@@ -53,6 +53,7 @@ def test_the_report_says_how_many_trials_were_begun_and_why_steps_were_repeated(
     assert f"all trials of the study {finished + 2} {finished} 1 1" in words
     assert "1 trial run was ended without being registered" in words
     assert "aborted with 15 points touched (trainee): " + REASON in words
+    assert "For 1 aborted trial no reason of a repeat is stored" in words
 
 
 def test_who_did_not_agree_to_research_is_left_out_with_the_aborted_trials(path):

@@ -45,6 +45,15 @@ def begun(data: StudyData) -> str:
         )
     if repeats := _repeats(scored):
         parts += [heading("Steps of the protocol that were played again"), bullets(repeats)]
+    silent = sum(not stored.repeat_reason for stored in scored)
+    if data.protocol is not None and silent:
+        parts.append(
+            paragraph(
+                f"For {counted(silent, 'aborted trial')} no reason of a repeat is stored: the step "
+                "was not played again, was left out, or its repeat had arrived before.",
+                "small",
+            )
+        )
     return section("Trials that were begun", *parts)
 
 
