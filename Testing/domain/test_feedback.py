@@ -155,6 +155,20 @@ def test_progress_tells_best_mark_and_competence():
     )
 
 
+def test_a_trial_is_not_compared_with_scores_of_another_version():
+    first = [replace(past(i, 99.0), score_version="1") for i in range(20)]
+    history = [*first, *(replace(past(20 + i, 50.0 + i), score_version="2") for i in range(2))]
+    once = progress_of(history, history[-2].trial_id, pass_mark=60.0)
+    assert once.scores == (50.0,)
+    assert once.sentences[0].startswith("Your earlier trials of this task have scores of an")
+    assert once.competence.competent_at is None
+    assert "trials so far: 1" in once.sentences[2]
+    assert once.curve is not None
+    twice = progress_of(history, history[-1].trial_id, pass_mark=60.0)
+    assert twice.is_best
+    assert twice.sentences[0].startswith("1 points more than in your last trial")
+
+
 def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
     history = [past(i, 80.0) for i in range(20)]
     progress = progress_of(history, history[-1].trial_id, pass_mark=60.0)
@@ -174,7 +188,7 @@ def test_a_trial_with_an_unacceptable_error_never_passes():
     bad = past(1, 99.0, acceptable=False)
     progress = progress_of([bad], bad.trial_id, pass_mark=10.0)
     assert not progress.passes
-    assert progress.sentences[1].startswith("Not passed: the true target error")
+    assert progress.sentences[1].startswith("Not passed: the true error in the brain")
     with pytest.raises(InputError, match="scored trial of the trainee's own"):
         progress_of([], bad.trial_id, 10.0)
 

@@ -11,14 +11,14 @@ from rastrainer.study import Study
 from rastrainer.study_aborted import AbortedTrials
 from rastrainer_simulator.cli import main
 from Testing.domain.aborted_records import make_aborted
-from Testing.domain.made_up_scores import gentle_score
+from Testing.domain.made_up_scores import first_score, gentle_score
 from Testing.domain.trial_records import make_record
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 NOVICES, EXPERTS = [f"N{n}" for n in range(5)], [f"E{n}" for n in range(5)]
 
 
-def add(study, trainee, number, time_s, task="task-1"):
+def add(study, trainee, number, time_s, task="task-1", score=gentle_score):
     """Store a trial whose score follows from its time."""
     record = make_record(
         trialId=str(uuid.uuid5(uuid.NAMESPACE_OID, f"{trainee} {number} {task}")),
@@ -26,7 +26,7 @@ def add(study, trainee, number, time_s, task="task-1"):
         task=task,
         startedUtc=f"2024-05-{number + 1:02d}T09:30:00Z",
     )
-    study.add_trial(record, score=gentle_score(time_s, 0.4))
+    study.add_trial(record, score=score(time_s, 0.4))
 
 
 @pytest.fixture
@@ -60,6 +60,28 @@ def test_the_mark_lies_between_the_groups_last_trials_without_trial_runs(study, 
     assert "here it is 0 % and 0 %" in told
     with Study.open(study) as opened:
         assert [trial.task for trial in opened.past_trials("N0")] == ["task-1"] * 4
+
+
+def test_scores_of_two_versions_give_no_mark(study, capsys):
+    with Study.open(study) as opened:
+        add(opened, "N3", 20, 270.0, score=first_score)
+    assert main(words(study)) == 2
+    assert "scores of the versions 1 and 2, which do not compare" in capsys.readouterr().err
+
+
+def test_a_mark_of_earlier_scores_says_so_and_is_written_into_no_protocol(study, tmp_path, capsys):
+    with Study.open(study) as opened:
+        for number in range(20, 23):
+            for names, time_s in ((NOVICES, 260.0), (EXPERTS, 110.0)):
+                for place, name in enumerate(names):
+                    add(opened, name, number, time_s + 5.0 * place, score=first_score)
+    assert main(words(study)) == 0
+    assert "of 100 (score version 1)" in capsys.readouterr().out
+    protocol = tmp_path / "next.json"
+    shutil.copy(SHIPPED, protocol)
+    assert main(words(study, "--write", str(protocol))) == 2
+    assert "score version 1, and trials get scores of version 2 now" in capsys.readouterr().err
+    assert protocol.read_bytes() == SHIPPED.read_bytes()
 
 
 def test_the_mark_is_written_into_the_protocol_of_the_next_study(study, tmp_path, capsys):

@@ -376,6 +376,67 @@ def test_who_reached_the_pass_mark_and_whom_lc_cusum_calls_competent_is_counted(
     assert f"90 30 (33 %) 1 of 3 {shown_at} " in words
 
 
+def scored(trainee, number, score, version, acceptable=True):
+    values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": score}
+    return TrialRow(
+        trainee,
+        "hmd",
+        "task-1",
+        number,
+        values,
+        score_version=version,
+        acceptable=acceptable,
+    )
+
+
+def test_scores_of_two_versions_are_told_and_never_compared(tmp_path):
+    old = [scored("A", number, 99.5, "1") for number in range(1, 16)]
+    new = [scored("A", number, 55.5, "2") for number in range(16, 20)]
+    data = StudyData("Mixed", (*old, *new), has_order=True)
+    written = write_report(data, tmp_path / "report")
+    words = words_of(written.page.read_text(encoding="utf-8"))
+    assert "scores of several versions, which measure different things and do not compare" in words
+    assert "4 trials of version 2, 15 trials of version 1" in words
+    assert "99.5" not in words
+    assert "Headset (HMD) 4 0 (0 %) 0 of 1 –" in words
+    with written.numbers.open(encoding="utf-8") as numbers:
+        rows = list(csv.DictReader(numbers))
+    assert [(row["score_version"], row["score"]) for row in rows[14:16]] == [
+        ("1", "99.5"),
+        ("2", "55.5"),
+    ]
+
+
+def test_a_report_says_what_the_scores_of_its_version_are_made_of():
+    def words(version):
+        return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, version),))))
+
+    first, second = words("1"), words("2")
+    assert "several versions" not in first + second
+    assert "accuracy is the expected target error at the scenario's target" in first
+    assert "and an expected target error within the limit of its task" in first
+    assert "Accuracy is the true target error of the rigid registration" in second
+    assert "expected target error within the limit" not in second
+    assert (
+        "and within the limits of the score: a true target error in the brain within that of its "
+        "task, unintended contact of at most 8 s and 160 mm, and a pressing depth of at most "
+        "1.5 mm; one that was aborted after a touch is not passed." in second
+    )
+    for each in (first, second):
+        assert "Harrington 1965, The desirability function" in each
+
+
+def test_a_mark_for_scores_of_another_version_is_called_so():
+    published = read_study_protocol(STUDIES / "published-protocol.json")
+    protocol = replace(published, pass_mark=65.0, score_version="1")
+    rows = (scored("A", 1, 80.0, "2"),)
+    words = words_of(report_html(StudyData("One", rows, protocol=protocol)))
+    assert (
+        "(set by the protocol for score version 1, so that it need not fit these scores of "
+        "version 2)" in words
+    )
+
+
 @pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])
 def test_a_mark_that_no_protocol_sets_is_called_the_default(has_protocol):
     published = read_study_protocol(STUDIES / "published-protocol.json")

@@ -291,6 +291,7 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     assert (first.trainee, first.score, first.true_tre_mm) == ("T-001", better.score, 0.5)
     assert (second.trainee, second.completion_time_s) == ("b", 90.0)
     assert (second.score, second.true_tre_mm) == (None, None)
+    assert (first.score_version, second.score_version) == (better.version, None)
 
 
 def test_past_trials_are_the_scored_ones_of_a_trainee_as_they_were_started(study, results):
@@ -305,6 +306,7 @@ def test_past_trials_are_the_scored_ones_of_a_trainee_as_they_were_started(study
     first, second = study.past_trials("T-001")
     assert (first.trial_id[-1], second.trial_id[-1]) == ("2", "1")
     assert (first.score, first.acceptable) == (score.score, score.acceptable)
+    assert first.score_version == score.version
     stored = study.trial(first.trial_id).record
     assert (first.task, first.mode) == (stored.task, stored.mode)
     assert first.completion_time_s == stored.completion_time_s

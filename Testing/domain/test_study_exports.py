@@ -8,13 +8,16 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.export.tidy_csv import answers_csv, scores_csv
+from rastrainer.export.tidy_csv import answers_csv, scores_csv, trials_csv
 from rastrainer.export.xapi import HOME_PAGE, statements
 from rastrainer.questionnaires.ssq import SSQ
 from rastrainer.report.report import report_html
 from rastrainer.report.study_data import read_study_data
+from rastrainer.study import Study
 from rastrainer_simulator.cli import main
+from Testing.domain.made_up_scores import first_score
 from Testing.domain.played_study import study_with_trials
+from Testing.domain.trial_records import make_record
 
 OLD = "0 of a pilot"
 
@@ -61,6 +64,31 @@ def test_the_version_told_of_a_score_is_the_one_that_it_was_computed_with(data):
     told = [s["context"]["extensions"].get(name) for s in statements(mixed)]
     assert told[: len(mixed.trials)] == [OLD, None, *(t.score_version for t in others[1:])]
     assert f"{OLD}, {others[1].score_version}" in report_html(mixed)
+
+
+def test_what_a_score_is_made_of_leaves_a_study_with_it(data):
+    with_score = [trial for trial in data.trials if trial.score_version]
+    rows = [row for row in rows_of(trials_csv(data.trials)) if row["score_version"]]
+    assert len(rows) == len(with_score) > 0
+    for trial, row in zip(with_score, rows, strict=True):
+        assert float(row["score_tre_mm"]) == trial.values["score_tre_mm"]
+        assert {row["score_is_accurate"], row["score_is_safe"]} <= {"0.0", "1.0"}
+        for part in ("time", "accuracy", "safety"):
+            assert 0 <= float(row[f"score_{part}_desirability"]) <= 1
+        assert float(row["score_reference_time_s"]) > 0
+    told = statements(data)[data.trials.index(with_score[0])]["result"]["extensions"]
+    key = f"{HOME_PAGE}/xapi/values/score_tre_mm"
+    assert told[key] == with_score[0].values["score_tre_mm"]
+
+
+def test_a_score_of_the_first_version_leaves_without_measures_that_it_has_not(tmp_path):
+    with Study.open(tmp_path / "old.db") as study:
+        study.add_trial(make_record(trainee="A"), score=first_score(100.0, 0.4))
+        study.set_consent("A", True)
+    (trial,) = read_study_data(tmp_path / "old.db").trials
+    assert trial.score_version == "1"
+    assert {"score", "score_is_accurate", "score_limit_mm"} <= set(trial.values)
+    assert not {"score_tre_mm", "score_is_safe", "score_safety_desirability"} & set(trial.values)
 
 
 def test_a_trials_statement_tells_whether_it_passed_and_when_it_was_completed(data):

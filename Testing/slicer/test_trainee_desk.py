@@ -25,6 +25,7 @@ from rastrainer.slicer.score_board import (
 )
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.study import Study
+from Testing.domain.made_up_scores import first_score
 from Testing.slicer.scored_trials import scored_analysis
 
 COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
@@ -211,6 +212,15 @@ def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(des
     assert (others.count, others.median, others.betterThan) == (1, 60.0, 0.0)
     reference = found["reference", "Completion time"]
     assert (reference.count, reference.median, reference.betterThan) == (4, 95.0, 0.5)
+
+
+def test_a_score_stands_beside_those_of_its_own_version_only(desk, add_trial):
+    other = add_trial(1, trainee="b")
+    desk.study.add_results(other.record.trial_id, score=first_score(60.0, 0.1))
+    trial = add_trial(2, trainee="a")
+    groups = {(s.group, s.title) for s in standings(desk.study, trial)}
+    assert ("others", "Score") not in groups
+    assert ("others", "Completion time") in groups
 
 
 def test_motion_metrics_come_with_their_definitions(add_trial):

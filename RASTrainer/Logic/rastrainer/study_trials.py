@@ -253,7 +253,15 @@ def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTri
 
 def _past_trial(trial_id: str, task: str, mode: str, seconds: float, latest: str) -> PastTrial:
     score = decoded(latest, TrialScore.from_json)
-    return PastTrial(trial_id, task, mode, seconds, score.score, score.acceptable)
+    return PastTrial(
+        trial_id,
+        task,
+        mode,
+        seconds,
+        score.score,
+        score.acceptable,
+        score_version=score.version,
+    )
 
 
 def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:
@@ -289,7 +297,7 @@ def outcomes(connection: sqlite3.Connection, task: str, mode: str) -> tuple[Tria
     rows = connection.execute(
         f"""
         SELECT trials.trial_id, pseudonym, completion_time_s,
-            ({_LATEST_SCORE.format("score")}), true_tre_mm
+            ({_LATEST_SCORE.format("score")}), ({_LATEST_SCORE.format("version")}), true_tre_mm
         FROM trials
         JOIN trainees ON trainees.id = trainee_id
         LEFT JOIN truths ON truths.trial_id = trials.trial_id

@@ -100,6 +100,7 @@ class TrialOutcome:
         trainee: Pseudonym.
         completion_time_s: As recorded.
         score: The latest; None until the trial is scored.
+        score_version: Of that score; None without one.
         true_tre_mm: None until the simulator reveals it.
     """
 
@@ -107,6 +108,7 @@ class TrialOutcome:
     trainee: str
     completion_time_s: float
     score: float | None
+    score_version: str | None
     true_tre_mm: float | None
 
 
@@ -119,8 +121,9 @@ class PastTrial:
         task, mode: As recorded.
         completion_time_s: As recorded.
         score: The latest, above 0 up to 100.
-        acceptable: Whether the expected target error was within the limit.
+        acceptable: Whether it was within all limits of its score.
         is_aborted: Whether it was aborted after a touch: not passed, without time or score.
+        score_version: Of the score; scores of different versions are not compared.
     """
 
     trial_id: str
@@ -130,6 +133,7 @@ class PastTrial:
     score: float
     acceptable: bool
     is_aborted: bool = False
+    score_version: str = ""
 
 
 @dataclass(frozen=True)

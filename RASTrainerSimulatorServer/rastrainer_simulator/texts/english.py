@@ -199,6 +199,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "result.interval note": "The expected error counts on touches that err independently, "
         "without bias and alike. It cannot see an offset that all of them share.",
         "result.true tre": "True error at the target (TRE)",
+        "result.region tre": "True error in the brain (TRE)",
+        "result.unacceptable score": "{score:.0f} / 100, not acceptable",
+        "result.not accurate": "Not acceptable: an instrument guided by this registration would "
+        "miss its target. The true error in the brain is beyond the limit.",
+        "result.not safe": "Not acceptable: the tool lay on the head too long or was pressed in "
+        "too deep.",
         "result.ctps": "CTPS",
         "result.of 100": "{score:.0f} / 100",
         "result.mm": "{error:.2f} mm",

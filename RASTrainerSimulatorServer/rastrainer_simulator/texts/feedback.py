@@ -42,6 +42,8 @@ GERMAN_FEEDBACK: Mapping[str, str] = {
     "feedback.pace": "Du hast {time:.0f} s gebraucht, üblich sind {usual:.0f} s: fahr zwischen den "
     "Punkten schneller und erst nah an der Haut langsam.",
     "feedback.first trial": "Das ist dein erster Versuch dieser Aufgabe in diesem Modus.",
+    "feedback.first of this score": "Deine früheren Versuche dieser Aufgabe haben Punktzahlen "
+    "einer früheren Version, die sich mit dieser nicht vergleichen lassen.",
     "feedback.more points": "{points:.0f} Punkte mehr als im Mittel deiner letzten {trials} "
     "Versuche dieser Aufgabe.{best}",
     "feedback.less points": "{points:.0f} Punkte weniger als im Mittel deiner letzten {trials} "
@@ -51,7 +53,7 @@ GERMAN_FEEDBACK: Mapping[str, str] = {
     "feedback.less points than last": "{points:.0f} Punkte weniger als in deinem letzten Versuch "
     "dieser Aufgabe.{best}",
     "feedback.best": " Es ist dein bisher bester.",
-    "feedback.unacceptable": "Nicht bestanden: der wahre Fehler am Ziel oder der Kontakt mit dem "
+    "feedback.unacceptable": "Nicht bestanden: der wahre Fehler im Gehirn oder der Kontakt mit dem "
     "Kopf ist größer als zulässig.",
     "feedback.passed": "Bestanden: die Marke ist {mark:.0f}.",
     "feedback.not passed": "Noch nicht bestanden: {points:.0f} Punkte bis zur Marke von "

@@ -208,6 +208,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "unabhängig voneinander, ohne systematische Abweichung und gleich stark streuen. Eine "
         "Verschiebung, die alle gemeinsam haben, sieht er nicht.",
         "result.true tre": "Wahrer Fehler am Ziel (TRE)",
+        "result.region tre": "Wahrer Fehler im Gehirn (TRE)",
+        "result.unacceptable score": "{score:.0f} / 100, nicht zulässig",
+        "result.not accurate": "Nicht zulässig: ein Instrument, das dieser Registrierung folgt, "
+        "würde sein Ziel verfehlen. Der wahre Fehler im Gehirn ist größer als zulässig.",
+        "result.not safe": "Nicht zulässig: das Werkzeug lag zu lange am Kopf an oder wurde zu "
+        "tief eingedrückt.",
         "result.ctps": "CTPS",
         "result.of 100": "{score:.0f} / 100",
         "result.mm": "{error:.2f} mm",

@@ -26,7 +26,8 @@ class Standing:
     """A trainee's way so far, this trial included.
 
     Attributes:
-        scores: Of the trials of this task in this mode, in their order.
+        scores: Of the trials of this task in this mode, in their order; like the competence without
+            trials whose score is of another version.
         pass_mark: Score that passes.
         is_best: Whether this trial is the best of them (and not the first).
         passes: Whether this trial reached the pass mark.
@@ -62,17 +63,21 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> S
         raise InputError("Progress is told of a scored trial of the trainee's own history.")
     until = past[: ids.index(trial_id) + 1]
     trial = until[-1]
-    in_mode = [other for other in until if other.mode == trial.mode]
-    same = [other for other in in_mode if other.task == trial.task and not other.is_aborted]
-    scores = tuple(other.score for other in same)
+    in_mode = [other for other in until if other.mode == trial.mode and _compares(other, trial)]
+    played = [
+        other
+        for other in until
+        if (other.mode, other.task) == (trial.mode, trial.task) and not other.is_aborted
+    ]
+    scores = tuple(other.score for other in played if _compares(other, trial))
     failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
     competence = competence_of(failures)
-    times = [other.completion_time_s for other in same]
+    times = [other.completion_time_s for other in played]
     curve = fit_learning_curve(times) if len(times) >= FEWEST_TRIALS else None
     is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
     has_passed = passes(trial.score, trial.acceptable, pass_mark)
     sentences = (
-        _about_scores(scores, is_best),
+        _about_scores(scores, is_best, len(scores) < len(played)),
         _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )
@@ -85,9 +90,14 @@ def competence_of(failures: Sequence[bool]) -> LcCusum:
     return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
 
 
-def _about_scores(scores: Sequence[float], is_best: bool) -> Sentence:
+def _compares(other: PastTrial, trial: PastTrial) -> bool:
+    """Return whether a score says the same as another one; an aborted trial has none."""
+    return other.is_aborted or other.score_version == trial.score_version
+
+
+def _about_scores(scores: Sequence[float], is_best: bool, has_others: bool) -> Sentence:
     if len(scores) == 1:
-        return say("first trial")
+        return say("first of this score" if has_others else "first trial")
     earlier = scores[:-1][-3:]
     change = scores[-1] - float(np.mean(earlier))
     key = "more points" if change >= 0 else "less points"

@@ -124,7 +124,7 @@ def trial_feedback(
 
 def _accuracy_sentence(score: TrialScore) -> str:
     is_first = score.version == FIRST_SCORE_VERSION
-    what = "expected at the target" if is_first else "true target error"
+    what = "expected at the target" if is_first else "true error in the brain"
     limit = f"; more than {score.reference.limit_mm:g} mm is not acceptable."
     beyond = "." if score.is_accurate else limit
     return (

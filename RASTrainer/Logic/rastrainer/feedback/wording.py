@@ -38,6 +38,8 @@ ENGLISH: Mapping[str, str] = {
     "pace": "You took {time:.0f} s where {usual:.0f} s are usual: travel faster between the points "
     "and slow down only near the skin.",
     "first trial": "This is your first trial of this task in this mode.",
+    "first of this score": "Your earlier trials of this task have scores of an earlier version, "
+    "which do not compare with this one.",
     "more points": "{points:.0f} points more than the mean of your last {trials} trials of this "
     "task.{best}",
     "less points": "{points:.0f} points less than the mean of your last {trials} trials of this "
@@ -45,8 +47,8 @@ ENGLISH: Mapping[str, str] = {
     "more points than last": "{points:.0f} points more than in your last trial of this task.{best}",
     "less points than last": "{points:.0f} points less than in your last trial of this task.{best}",
     "best": " It is your best so far.",
-    "unacceptable": "Not passed: the true target error, or the contact with the head, is beyond "
-    "what is acceptable.",
+    "unacceptable": "Not passed: the true error in the brain, or the contact with the head, is "
+    "beyond what is acceptable.",
     "passed": "Passed: the mark is {mark:.0f}.",
     "not passed": "Not passed yet: {points:.0f} points to the mark of {mark:.0f}.",
     "competent": "Your trials show competence since number {number}: of those who still fail in "

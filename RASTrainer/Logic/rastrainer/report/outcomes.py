@@ -45,6 +45,7 @@ MAIN_OUTCOMES = (
     Outcome("ctps", "CTPS as published", "", 0, 1),
     Outcome("expected_tre_mm", "Expected target error", "mm", -1, 2),
     Outcome("true_tre_mm", "True target error", "mm", -1, 2),
+    Outcome("score_tre_mm", "True error in the brain", "mm", -1, 2),
     Outcome("score", "RASTrainer score", "", 1, 1),
 )
 MOTION_OUTCOMES = tuple(

@@ -18,6 +18,7 @@ from rastrainer.report.markup import bullets, paragraph, section
 from rastrainer.report.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.report.page import page
 from rastrainer.report.published_scores import with_ctps
+from rastrainer.report.score_versions import versions_note, with_one_score_version
 from rastrainer.report.sections.begun import begun
 from rastrainer.report.sections.calibration import calibration
 from rastrainer.report.sections.groups import groups
@@ -81,7 +82,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     """
     # Before anything that catches the sentences of what cannot be computed.
     scipy_module("stats")
-    data = with_ctps(data)
+    data = with_one_score_version(with_ctps(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
     described = [compare_modes(data, MOTION_OUTCOMES, *pair) for pair in pairs]
@@ -94,7 +95,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         f"{modes} · made {made}"
     )
     sections = [
-        _summary(everything, data.gap),
+        _summary(everything, data.gap, versions_note(data)),
         begun(data),
         published_tables(data),
         mode_comparison(data),
@@ -118,7 +119,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     return page(data.title, subtitle, sections, footer)
 
 
-def _summary(comparisons: list[ModeComparison], gap: str) -> str:
+def _summary(comparisons: list[ModeComparison], gap: str, versions: str) -> str:
     sentences = findings(comparisons)
     n = max((len(comparison.trainees) for comparison in comparisons), default=0)
     parts = [bullets(sentences)] if sentences else []
@@ -132,6 +133,8 @@ def _summary(comparisons: list[ModeComparison], gap: str) -> str:
         parts.append(paragraph(caveat, "warning"))
     if not parts:
         parts = [paragraph("No trainee did two modes; the study is described, nothing is tested.")]
+    if versions:
+        parts.append(paragraph(versions, "warning"))
     if gap:
         parts.insert(0, paragraph(f"{gap} What follows is about these trials alone.", "warning"))
     return section("In short", *parts)

@@ -15,6 +15,7 @@ from rastrainer.experiment.study_protocol import StudyProtocol
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration import RIGID
 from rastrainer.report.study_notes import StudyNotes, read_notes
+from rastrainer.scoring import FIRST_SCORE_VERSION, TrialScore
 from rastrainer.study import Study
 from rastrainer.study_aborted import AbortedTrials, StoredAborted
 from rastrainer.study_values import StoredTrial
@@ -35,8 +36,7 @@ class TrialRow:
         started_utc: ISO 8601; "" where unknown.
         scenario: In which it was played; "" where unknown.
         score_version: Of our score; "" without one.
-        acceptable: Whether the expected target error was within the score's limit; False without
-            a score.
+        acceptable: Whether it was within all limits of its score; False without a score.
         completed_utc: When the last kept touch was made, ISO 8601; "" where unknown.
     """
 
@@ -235,6 +235,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
             values["tre_low_mm"], values["tre_high_mm"] = rigid.tre_interval_mm
     if score is not None:
         values["score"] = score.score
+        values |= _score_parts(score)
     if stored.true_tre_mm is not None:
         values["true_tre_mm"] = stored.true_tre_mm
     return TrialRow(
@@ -250,6 +251,23 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         acceptable=score is not None and score.acceptable,
         completed_utc=record.completed_utc,
     )
+
+
+def _score_parts(score: TrialScore) -> dict[str, float]:
+    """Return what the score is made of; the safety metrics are among the motion metrics."""
+    parts = {
+        # That of the first version is the expected TRE, which stands among the values already.
+        "score_tre_mm": None if score.version == FIRST_SCORE_VERSION else score.measures.tre_mm,
+        "score_time_desirability": score.time_desirability,
+        "score_accuracy_desirability": score.accuracy_desirability,
+        "score_safety_desirability": score.safety_desirability,
+        "score_is_accurate": score.is_accurate,
+        "score_is_safe": score.is_safe,
+        "score_reference_time_s": score.reference.time_s,
+        "score_reference_tre_mm": score.reference.tre_mm,
+        "score_limit_mm": score.reference.limit_mm,
+    }
+    return {name: float(value) for name, value in parts.items() if value is not None}
 
 
 def _by_number(task: str) -> tuple[str, int]:

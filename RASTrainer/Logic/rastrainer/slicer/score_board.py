@@ -176,7 +176,7 @@ def motionRows(trial: StoredTrial) -> list[Row]:
 def standings(study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()) -> list[Standing]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
-    Compared are trials of the same task and mode.
+    Compared are trials of the same task and mode, scores with those of their own version.
 
     Args:
         study: of the trial.
@@ -195,7 +195,10 @@ def standings(study: Study, trial: StoredTrial, cohort: Sequence[Trial] = ()) ->
     for group, members in ((_("own"), own), (_("others"), others)):
         for title, unit, better, name in _COMPARED:
             value = getattr(this, name)
-            values = [v for v in (getattr(o, name) for o in members) if v is not None]
+            peers = members
+            if name == "score":
+                peers = [o for o in members if o.score_version == this.score_version]
+            values = [v for v in (getattr(o, name) for o in peers) if v is not None]
             if value is not None and values:
                 found.append(_standing(title, unit, value, group, values, better))
     return found + _besideCohort(trial, cohort)

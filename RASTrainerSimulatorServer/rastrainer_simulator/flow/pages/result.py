@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+from dataclasses import replace
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -101,8 +102,9 @@ class ResultPage(FinishedPage):
             self.name,
             self.say("result.title", trainee=training.trainee, task=task),
             (
+                *(self.say(key) for key in _beyond_limits(result)),
                 *_sentences(self.session.texts, result, "warnings", 3),
-                *_sentences(self.session.texts, result, "feedback", MOST_SHORT),
+                *_feedback(self.session.texts, result),
                 self.say("result.interval note"),
                 *self._what_comes_next(),
             ),
@@ -145,13 +147,22 @@ class ResultPage(FinishedPage):
         return () if step is None else (self.session.step_sentence(step),)
 
     def _facts_of_result(self, result: TrialResult) -> list[Fact]:
-        score = self.say("result.of 100", score=result.score)
+        is_unacceptable = bool(_beyond_limits(result))
+        key = "result.unacceptable score" if is_unacceptable else "result.of 100"
+        tone = _tone_of_score(result)
         facts = [
-            Fact(self.say("result.score"), score, _tone_of_score(result)),
+            Fact(self.say("result.score"), self.say(key, score=result.score), tone),
             self._error("result.fre", result.registration.fre_mm),
             self._error("result.expected tre", result.registration.expected_tre_mm),
             self._error("result.true tre", result.true_tre_mm),
         ]
+        region = result.details.get("regionTreMm")
+        if _is_number(region):
+            fact = self._error("result.region tre", float(region))
+            is_beyond = result.details.get("isAccurate") is False
+            facts.append(replace(fact, tone=Tone.WARNING) if is_beyond else fact)
+        if is_unacceptable:
+            facts = [_not_good(fact) for fact in facts]
         ctps = result.details.get("ctps")
         if _is_number(ctps):
             facts.append(
@@ -165,7 +176,20 @@ class ResultPage(FinishedPage):
         return Fact(self.say(key), self.say("result.mm", error=error_mm), tone)
 
 
+def _beyond_limits(result: TrialResult) -> list[str]:
+    """Return the keys of the sentences that say why a trial is not acceptable."""
+    told = (("isAccurate", "result.not accurate"), ("isSafe", "result.not safe"))
+    return [key for name, key in told if result.details.get(name) is False]
+
+
+def _not_good(fact: Fact) -> Fact:
+    """Nothing about a trial looks good that would have missed the target or hurt somebody."""
+    return replace(fact, tone=Tone.PLAIN) if fact.tone is Tone.GOOD else fact
+
+
 def _tone_of_score(result: TrialResult) -> Tone:
+    if _beyond_limits(result):
+        return Tone.WARNING
     mark = result.details.get("passMark")
     if result.score >= (mark if _is_number(mark) else PASS_MARK):
         return Tone.GOOD
@@ -180,6 +204,15 @@ def _facts_of_trial(session: Session) -> tuple[Fact, ...]:
         Fact(say("result.refused"), str(training.rejected)),
         Fact(say("result.undone"), str(training.undone)),
     )
+
+
+def _feedback(texts: Texts, result: TrialResult) -> list[str]:
+    """Return the feedback; that a trial is not acceptable is said before it, with the reason."""
+    told = result.details.get("feedback")
+    if _beyond_limits(result) and isinstance(told, list):
+        others = [e for e in told if not (isinstance(e, dict) and e.get("key") == "unacceptable")]
+        result = replace(result, details={**result.details, "feedback": others})
+    return _sentences(texts, result, "feedback", MOST_SHORT)
 
 
 def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[str]:

@@ -13,6 +13,7 @@ from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
 from rastrainer.report.markup import Cell, bullets, figure, paragraph, section, table
 from rastrainer.report.outcomes import MAIN_OUTCOMES, Outcome, mode_title
+from rastrainer.report.score_versions import versions_note
 from rastrainer.report.sections.paired_statistics import interval_text
 from rastrainer.report.study_data import StudyData
 from rastrainer.report.trends import CohortTrend, cohort_trend
@@ -62,6 +63,7 @@ def learning(data: StudyData) -> str:
         ),
         *([table([HEADER], rows, "wide"), paragraph(_words(), "small")] if rows else []),
         bullets(sentences) if sentences else "",
+        paragraph(versions_note(data)) if versions_note(data) else "",
         paragraph(_limits(data)),
     )
 

@@ -7,12 +7,26 @@ import platform
 import numpy as np
 
 import rastrainer
+from rastrainer.brain_region import BELOW_VERTEX_MM, SPACING_MM, UNDER_SKIN_MM
 from rastrainer.experiment.study_protocol import BALANCED
 from rastrainer.motion.definitions import FILTER
 from rastrainer.number_text import counted
 from rastrainer.report.markup import bullets, heading, paragraph, section, table
+from rastrainer.report.score_versions import compared_version
 from rastrainer.report.study_data import StudyData
 from rastrainer.scipy_modules import scipy_module
+from rastrainer.score_reference import REFERENCE_FLE_MM
+from rastrainer.scoring import (
+    CONTACT_LIMIT_S,
+    CONTACT_PATH_LIMIT_MM,
+    DEPTH_LIMIT_MM,
+    FIRST_SCORE_VERSION,
+    HALF_CONTACT_PATH_MM,
+    HALF_CONTACT_S,
+    HALF_DEPTH_MM,
+    LIMIT_MM,
+    SCORE_VERSION,
+)
 
 REFERENCES = (
     "Student 1908, The probable error of a mean. Biometrika 6",
@@ -30,6 +44,7 @@ REFERENCES = (
     "Searle, Casella and McCulloch 1992, Variance components",
     "Fitzpatrick, West and Maurer 1998, Predicting error in rigid-body point-based registration. "
     "IEEE Trans Med Imaging 17",
+    "Harrington 1965, The desirability function. Industrial Quality Control 21",
     "Derringer and Suich 1980, Simultaneous optimization of several response variables. "
     "J Qual Technol 12",
     "Balasubramanian et al. 2015, On the analysis of movement smoothness. J Neuroeng Rehabil 12",
@@ -104,17 +119,44 @@ def _measures(data: StudyData) -> str:
     )
     found = {name for trial in data.trials for name in trial.values}
     if "score" in found:
-        words += (
-            " The RASTrainer score (0 to 100) is the geometric mean of a time and an accuracy "
-            "desirability with references fixed in advance for each task and equal in both modes; "
-            "accuracy is the expected target error at the scenario's target. The score is "
-            "RASTrainer's own; of others are the formula of the expected target error "
-            "(Fitzpatrick, West and Maurer 1998) and the geometric mean of desirabilities "
-            "(Derringer and Suich 1980)."
-        )
+        words += _first_score() if compared_version(data) == FIRST_SCORE_VERSION else _score()
     if "sparc" in found:
         words += f" Motion metrics are of filtered trajectories ({FILTER})."
     return words
+
+
+def _first_score() -> str:
+    return (
+        " The RASTrainer score (version 1, 0 to 100) is the geometric mean of a time and an "
+        "accuracy desirability with references fixed in advance for each task and equal in both "
+        "modes; accuracy is the expected target error at the scenario's target. The score is "
+        "RASTrainer's own; of others are the formula of the expected target error (Fitzpatrick, "
+        "West and Maurer 1998), the desirability (Harrington 1965) and its geometric mean "
+        "(Derringer and Suich 1980)."
+    )
+
+
+def _score() -> str:
+    return (
+        f" The RASTrainer score (version {SCORE_VERSION}, 0 to 100) is made of three "
+        "desirabilities (Harrington 1965), each of the form 1/(1 + (value/half)²): the geometric "
+        "mean (Derringer and Suich 1980) of time and accuracy, times the square root of safety. "
+        "Accuracy is the true target error of the rigid registration, which the simulator tells "
+        "once the registration is final: the root mean square over the scenario's targets and "
+        f"over a {SPACING_MM:g} mm grid of the brain, half and half (points at least "
+        f"{UNDER_SKIN_MM:g} mm under the skin and at most {BELOW_VERTEX_MM:g} mm below the "
+        "vertex). Safety is the product of three: the time of unintended contact (one half at "
+        f"{HALF_CONTACT_S:g} s), its path ({HALF_CONTACT_PATH_MM:g} mm) and the depth to which the "
+        f"tool was pressed in ({HALF_DEPTH_MM:g} mm, root mean square over the fiducials). A trial "
+        f"with more than {LIMIT_MM:g} mm (where the protocol sets no other limit), "
+        f"{CONTACT_LIMIT_S:g} s, {CONTACT_PATH_LIMIT_MM:g} mm or {DEPTH_LIMIT_MM:g} mm deep scores "
+        "below every trial of its task within the limits, and does not pass. The references of "
+        "time and error are the same in all modes and, where the protocol sets none, come from the "
+        "scenario: time from the way through the fiducials, the error from the target error that "
+        "Fitzpatrick, West and Maurer (1998) expect for a localization error of "
+        f"{REFERENCE_FLE_MM:.1f} mm. "
+        "Halves and limits are RASTrainer's own conventions."
+    )
 
 
 def _analysis() -> str:

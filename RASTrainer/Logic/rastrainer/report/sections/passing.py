@@ -27,8 +27,15 @@ from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
 from rastrainer.report.markup import figure, paragraph, section, table
 from rastrainer.report.outcomes import mode_title
+from rastrainer.report.score_versions import compared_version, versions_note
 from rastrainer.report.study_data import StudyData
-from rastrainer.scoring import passes
+from rastrainer.scoring import (
+    CONTACT_LIMIT_S,
+    CONTACT_PATH_LIMIT_MM,
+    DEPTH_LIMIT_MM,
+    FIRST_SCORE_VERSION,
+    passes,
+)
 from rastrainer.study_clock import moment
 
 HEADER = [
@@ -55,6 +62,7 @@ def passing(data: StudyData) -> str:
             [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
         ),
+        paragraph(versions_note(data), "warning") if versions_note(data) else "",
         paragraph(_words(data, mark), "small"),
     )
 
@@ -123,10 +131,21 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
 
 
 def _words(data: StudyData, mark: float) -> str:
-    source = (
-        "set by the protocol"
-        if sets_pass_mark(data.protocol)
-        else "the default, since the study sets no mark; no data support it"
+    version = compared_version(data)
+    source = "the default, since the study sets no mark; no data support it"
+    if sets_pass_mark(data.protocol):
+        source = "set by the protocol"
+        if version and data.protocol.score_version != version:
+            source += (
+                f" for score version {data.protocol.score_version}, so that it need not fit these "
+                f"scores of version {version}"
+            )
+    acceptable = (
+        "an expected target error within the limit of its task"
+        if version == FIRST_SCORE_VERSION
+        else "within the limits of the score: a true target error in the brain within that of its "
+        f"task, unintended contact of at most {CONTACT_LIMIT_S:g} s and "
+        f"{CONTACT_PATH_LIMIT_MM:g} mm, and a pressing depth of at most {DEPTH_LIMIT_MM:g} mm"
     )
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     fewest = fewest_trials(ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
@@ -134,8 +153,8 @@ def _words(data: StudyData, mark: float) -> str:
         fewest - 1, TRAINING_TRIALS, ADEQUATE_FAILURES, INADEQUATE_FAILURES
     )
     return (
-        f"A trial passes with {mark:g} of 100 points ({source}) and an expected target error "
-        "within the limit of its task; one that was aborted after a touch is not passed. "
+        f"A trial passes with {mark:g} of 100 points ({source}) and "
+        f"{acceptable}; one that was aborted after a touch is not passed. "
         "LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
         "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
         f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "

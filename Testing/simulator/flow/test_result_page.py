@@ -1,0 +1,104 @@
+"""The page of the result: what is told of a score, and how a trial beyond a limit looks."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.flow.screen import Tone
+from rastrainer_simulator.texts.german import GERMAN
+from rastrainer_simulator.texts.texts import Texts
+
+REGISTRATION = {
+    "matrix": (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+    "freMm": 1.2,
+    "expectedTreMm": 0.8,
+}
+GENERAL = {
+    "key": "unacceptable",
+    "values": {},
+    "text": "Not passed: the true error in the brain, or the contact with the head, is beyond what "
+    "is acceptable.",
+}
+
+
+@pytest.fixture
+def result_of(trainee):
+    """Play a trial, have it scored with these details, and return the menu of the result."""
+
+    def show(score=95.0, **details):
+        trainee.start("task-1")
+        trainee.play("task-1")
+        trainee.tap("touch")
+        trainee.until_menu("complete")
+        trainee.choose("register")
+        trainee.until_menu("waiting")
+        trial = trainee.state.training.trial_id
+        assert trainee.submit("SubmitRegistration", trialId=trial, **REGISTRATION).ok
+        assert trainee.submit("TrialScored", trialId=trial, score=score, details=details).ok
+        trainee.until_menu("result")
+        return trainee.menu
+
+    return show
+
+
+def facts_of(menu):
+    return {fact.label: fact for fact in menu.facts}
+
+
+def test_the_true_error_in_the_brain_stands_beside_the_others(result_of):
+    menu = result_of(regionTreMm=0.73, isAccurate=True, isSafe=True, passMark=70.0)
+    assert [fact.label for fact in menu.facts][:5] == [
+        "Score",
+        "Registration error (FRE)",
+        "Expected error at the target (TRE)",
+        "True error at the target (TRE)",
+        "True error in the brain (TRE)",
+    ]
+    region = facts_of(menu)["True error in the brain (TRE)"]
+    assert (region.value, region.tone) == ("0.73 mm", Tone.GOOD)
+    score = facts_of(menu)["Score"]
+    assert (score.value, score.tone) == ("95 / 100", Tone.GOOD)
+    assert not any("acceptable" in sentence for sentence in menu.paragraphs)
+
+
+def test_a_score_without_the_error_in_the_brain_has_no_line_for_it(result_of):
+    assert "True error in the brain (TRE)" not in facts_of(result_of())
+
+
+@pytest.mark.parametrize(
+    ("details", "sentence"),
+    [
+        pytest.param(
+            {"isAccurate": False, "isSafe": True},
+            "Not acceptable: an instrument guided by this registration would miss its target.",
+            id="inaccurate",
+        ),
+        pytest.param(
+            {"isAccurate": True, "isSafe": False},
+            "Not acceptable: the tool lay on the head too long or was pressed in too deep.",
+            id="unsafe",
+        ),
+    ],
+)
+def test_a_trial_beyond_a_limit_is_called_so_and_nothing_of_it_looks_good(
+    result_of, details, sentence
+):
+    menu = result_of(regionTreMm=1.6, passMark=10.0, feedback=[GENERAL], **details)
+    score = facts_of(menu)["Score"]
+    assert (score.value, score.tone) == ("95 / 100, not acceptable", Tone.WARNING)
+    assert not any(fact.tone is Tone.GOOD for fact in menu.facts)
+    assert menu.paragraphs[0].startswith(sentence)
+    # The reason takes the place of the sentence that has none.
+    assert GENERAL["text"] not in menu.paragraphs
+
+
+def test_an_error_in_the_brain_beyond_the_limit_is_a_warning_however_small_it_looks(result_of):
+    menu = result_of(regionTreMm=1.6, isAccurate=False, isSafe=True)
+    assert facts_of(menu)["True error in the brain (TRE)"].tone is Tone.WARNING
+
+
+def test_the_page_says_it_in_german_too():
+    texts = Texts(GERMAN)
+    for key in ("region tre", "unacceptable score", "not accurate", "not safe"):
+        assert f"result.{key}" in GERMAN
+    assert texts.say("result.unacceptable score", score=12.4) == "12 / 100, nicht zulässig"
