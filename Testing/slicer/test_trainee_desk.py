@@ -180,6 +180,20 @@ def test_a_study_without_a_told_truth_has_an_empty_plot_and_a_sentence(scene, de
     ]
 
 
+def test_a_learning_curve_over_two_versions_of_the_score_says_so(scene, desk, add_trial):
+    first, second = add_trial(1), add_trial(2)
+    assert (
+        showLearningCurve(scene, "T-001", [first, second]).GetTitle() == "Learning curve of T-001"
+    )
+    desk.study.add_results(first.record.trial_id, score=first_score(60.0, 0.1))
+    trials = desk.study.history(first.record.trainee)
+    chart = showLearningCurve(scene, "T-001", trials)
+    assert chart.GetTitle().endswith("(scores of versions 1 and 2 do not compare)")
+    table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
+    column = table.GetColumnIndex("score version")
+    assert [table.GetCellText(row, column) for row in range(2)] == ["1", "2"]
+
+
 def test_a_trial_without_results_has_empty_cells(scene, desk, make_record):
     desk.study.add_trial(make_record(str(uuid.UUID(int=1))))
     table = showHistory(scene, "T-001", desk.study.history("T-001"))
@@ -195,7 +209,7 @@ def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(add_trial):
     assert rows["CTPS by equation 3"].value == rows["CTPS as published"].value / 2
     assert rows["True TRE at the target"].text == "0.20 mm"
     assert rows["True TRE in the brain"].value == trial.score.measures.tre_mm
-    assert rows["… its part for safety"].text == "100 %"
+    assert rows["… its part for safety"].value == 100 * trial.score.safety_desirability
     assert rows["Unintended contact"].note == "at most 8 s"
     assert ctpsRows(trial, []) == []
 

@@ -40,6 +40,11 @@ def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> An
             Column("expected TRE (mm)", [fit and fit.expected_tre_mm for fit in rigid]),
             Column("true TRE (mm)", [trial.true_tre_mm for trial in trials]),
             Column(SCORE_COLUMN, [trial.score and trial.score.score for trial in trials]),
+            Column(
+                "score version",
+                [trial.score.version if trial.score else "" for trial in trials],
+                isText=True,
+            ),
         ],
     )
 
@@ -55,7 +60,7 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
     for column, (title, color) in _SERIES.items():
         series = plotSeries(scene, table, Role.LEARNING_CURVE, TRIAL_COLUMN, column, title, color)
         chart.AddAndObservePlotSeriesNodeID(series.GetID())
-    chart.SetTitle(f"Learning curve of {pseudonym}")
+    chart.SetTitle(_titleOf(pseudonym, trials))
     chart.SetXAxisTitle("Trial")
     chart.SetYAxisTitle("Score, and completion time in s")
     chart.SetXAxisRangeAuto(False)
@@ -64,6 +69,14 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
     times = (trial.record.completion_time_s for trial in trials)
     chart.SetYAxisRange(0.0, 1.05 * max((BEST_SCORE, *times)))
     return chart
+
+
+def _titleOf(pseudonym: str, trials: Sequence[StoredTrial]) -> str:
+    versions = sorted({trial.score.version for trial in trials if trial.score})
+    title = f"Learning curve of {pseudonym}"
+    if len(versions) < 2:
+        return title
+    return f"{title} (scores of versions {' and '.join(versions)} do not compare)"
 
 
 def plotSeries(
