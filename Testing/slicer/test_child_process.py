@@ -47,6 +47,14 @@ class CanceledError(Exception):
     """Nobody wants the work any more."""
 
 
+def ends(path):
+    """Wait until the process whose number a file holds is gone.
+
+    Its end of the output is closed a moment before that.
+    """
+    wait_until(lambda: not runs(number(path)), lambda: None, LONG_S)
+
+
 @pytest.fixture
 def python(tmp_path):
     return write_python_slicer(tmp_path / "Slicer")
@@ -84,14 +92,14 @@ def test_the_launcher_alone_would_leave_the_real_python_alive(python, tmp_path):
     wait_until(lambda: child.exitStatus is not None, lambda: None, LONG_S)
     assert runs(number(tmp_path / "pid"))
     wait_until(child.poll, lambda: None, LONG_S)
-    assert not runs(number(tmp_path / "pid"))
+    ends(tmp_path / "pid")
 
 
 def test_what_is_asked_to_end_ends_with_the_real_python_and_writes_no_more(python, tmp_path):
     child = begun(python, tmp_path)
     child.end()
     wait_until(child.poll, lambda: None, LONG_S)
-    assert not runs(number(tmp_path / "pid"))
+    ends(tmp_path / "pid")
     written = (tmp_path / "written").stat().st_mtime_ns
     time.sleep(0.1)
     assert (tmp_path / "written").stat().st_mtime_ns == written
@@ -131,8 +139,8 @@ def test_stop_asks_the_simulator_and_its_window_to_end_and_tells_it(program, tmp
         "The simulator is ending.",
     )
     wait_until(lambda: program.state is ProgramState.STOPPED, program.process, LONG_S)
-    assert not runs(number(tmp_path / "pid"))
-    assert not runs(number(tmp_path / "window"))
+    ends(tmp_path / "pid")
+    ends(tmp_path / "window")
 
 
 def test_stop_does_not_wait_for_a_simulator_that_does_not_end_and_kills_it_later(
@@ -146,7 +154,7 @@ def test_stop_does_not_wait_for_a_simulator_that_does_not_end_and_kills_it_later
     assert program.state is ProgramState.STOPPING
     assert runs(number(tmp_path / "pid"))
     wait_until(lambda: program.state is ProgramState.STOPPED, program.process, LONG_S)
-    assert not runs(number(tmp_path / "pid"))
+    ends(tmp_path / "pid")
 
 
 def test_a_killed_simulator_is_noticed_though_its_window_is_open_and_takes_it_along(
@@ -155,7 +163,7 @@ def test_a_killed_simulator_is_noticed_though_its_window_is_open_and_takes_it_al
     kill(number(tmp_path / "pid"))
     wait_until(lambda: program.state is ProgramState.FAILED, program.process, LONG_S)
     assert program.sentence.startswith("The simulator ended by itself (status 1)")
-    assert not runs(number(tmp_path / "window"))
+    ends(tmp_path / "window")
 
 
 def test_a_simulator_is_started_again_once_the_former_has_ended(program, python, tmp_path):
