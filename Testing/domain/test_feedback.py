@@ -208,6 +208,7 @@ def test_the_feedback_reads_in_order():
     assert feedback.worst.label == "4"
     assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
     sentences = feedback.sentences
+    assert sentences[0].endswith(" of 100: not acceptable.")
     assert "more than 1.5 mm is not acceptable" in sentences[2]
     assert sentences[3].startswith("Safety: 0.0 s")
     assert sentences[4].startswith("Point 4 was")

@@ -25,7 +25,7 @@ from rastrainer.slicer.score_board import (
 )
 from rastrainer.slicer.trainee_desk import TraineeDesk
 from rastrainer.study import Study
-from Testing.domain.made_up_scores import first_score
+from Testing.domain.made_up_scores import first_score, gentle_score
 from Testing.slicer.scored_trials import scored_analysis
 
 COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
@@ -226,6 +226,16 @@ def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(des
     assert (others.count, others.median, others.betterThan) == (1, 60.0, 0.0)
     reference = found["reference", "Completion time"]
     assert (reference.count, reference.median, reference.betterThan) == (4, 95.0, 0.5)
+
+
+def test_the_score_of_a_trial_beyond_a_limit_is_called_not_acceptable(desk, add_trial):
+    trial = add_trial(1)
+    assert {row.title: row.note for row in scoreRows(trial)}["Score"] == "Version 2"
+    desk.study.add_results(trial.record.trial_id, score=gentle_score(60.0, 9.0))
+    beyond = desk.study.trial(trial.record.trial_id)
+    notes = {row.title: row.note for row in scoreRows(beyond)}
+    assert notes["Score"] == "not acceptable; version 2"
+    assert notes["… its part for accuracy"] == "beyond the limit of 1.5 mm"
 
 
 def test_a_score_stands_beside_those_of_its_own_version_only(desk, add_trial):

@@ -52,9 +52,10 @@ class TrialFeedback:
         """The score and what it is made of; what is not known is left out."""
         score, told = self.score, []
         if score is not None:
+            beyond = "." if score.acceptable else ": not acceptable."
             seconds = fixed(score.measures.completion_time_s, 0)
             told = [
-                f"Score {fixed(score.score, 0)} of 100.",
+                f"Score {fixed(score.score, 0)} of 100{beyond}",
                 f"Time: {seconds} s, worth {fixed(100 * score.time_desirability, 0)} of 100.",
                 _accuracy_sentence(score),
             ]

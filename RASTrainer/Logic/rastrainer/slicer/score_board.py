@@ -109,8 +109,9 @@ def _parts(score: TrialScore) -> list[Row]:
     accuracy = _("within the limit of {limit:g} mm")
     if not score.is_accurate:
         accuracy = _("beyond the limit of {limit:g} mm")
+    version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
     rows = [
-        Row(_("Score"), score.score, "/ 100", _("Version {v}").format(v=score.version)),
+        Row(_("Score"), score.score, "/ 100", version.format(v=score.version)),
         Row(_("… its part for time"), 100 * score.time_desirability, "%"),
         Row(
             _("… its part for accuracy"),
@@ -130,7 +131,7 @@ def _parts(score: TrialScore) -> list[Row]:
             _("True TRE in the brain"),
             measures.tre_mm,
             "mm",
-            _("root mean square over the targets and a grid of the brain"),
+            _("RMS over targets and brain"),
         ),
         Row(_("Unintended contact"), measures.contact_time_s, "s", _limit(CONTACT_LIMIT_S, "s")),
         Row(
