@@ -210,7 +210,7 @@ def test_the_feedback_reads_in_order():
     sentences = feedback.sentences
     assert sentences[0].endswith(" of 100: not acceptable.")
     assert "more than 1.5 mm is not acceptable" in sentences[2]
-    assert sentences[3].startswith("Safety: 0.0 s")
+    assert sentences[3].startswith("Safety: pressed 0.0 mm deep")
     assert sentences[4].startswith("Point 4 was")
     assert sentences[5].startswith("1. ")
     short = feedback.short_sentences

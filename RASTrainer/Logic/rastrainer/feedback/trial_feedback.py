@@ -142,8 +142,13 @@ def _safety_sentence(score: TrialScore) -> str:
         else f"; more than {CONTACT_LIMIT_S:g} s, {CONTACT_PATH_LIMIT_MM:g} mm or "
         f"{DEPTH_LIMIT_MM:g} mm deep is not acceptable."
     )
+    contact = ""
+    if measures.contact_time_s > 0:
+        contact = (
+            f"{fixed(measures.contact_time_s, 1)} s and {fixed(measures.contact_path_mm, 0)} mm of "
+            "unintended contact, "
+        )
     return (
-        f"Safety: {fixed(measures.contact_time_s, 1)} s and {fixed(measures.contact_path_mm, 0)} "
-        f"mm of unintended contact, pressed {fixed(measures.pressing_depth_mm, 1)} mm deep, worth "
+        f"Safety: {contact}pressed {fixed(measures.pressing_depth_mm, 1)} mm deep, worth "
         f"{fixed(100 * score.safety_desirability, 0)} of 100{beyond}"
     )

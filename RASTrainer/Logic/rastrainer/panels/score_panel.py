@@ -207,7 +207,10 @@ class ScorePanel:
             sentences = [str(error)]
         else:
             if feedback is not None:
-                sentences, self._worst = feedback.sentences, feedback.worst.label
+                # The score is one paragraph: the whole panel fits a laptop's screen.
+                parts = len(feedback.score_sentences)
+                score, others = feedback.sentences[:parts], feedback.sentences[parts:]
+                sentences, self._worst = [" ".join(score), *others], feedback.worst.label
             elif trial is not None:
                 sentences = [_("What there is to say about the trial is being worked out.")]
         setSentence(self._ui.feedbackText, "\n".join(sentences))
