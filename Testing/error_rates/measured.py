@@ -63,6 +63,12 @@ def share_text(share: float, digits: int = 1) -> str:
 class Row(Protocol):
     """What a table is made of."""
 
+    at_most: float | None
+    at_least: float | None
+
+    def holds(self, standard_errors: float = 0.0) -> bool:
+        """Return whether the figure is as asked, give or take so many standard errors."""
+
     def cells(self) -> list[str]:
         """Return case, figure, what is asked of it, and further figures."""
 

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from Testing.error_rates import (
     aborted_trials,
+    cheats,
     effect_sizes,
+    equal_hands,
     groups,
     learning,
     modes,
@@ -16,12 +18,11 @@ from Testing.error_rates import (
     target_errors,
     throughput,
 )
-from Testing.error_rates.measured import Measured, markdown
-from Testing.error_rates.recovery import Recovered
+from Testing.error_rates.measured import Row, markdown
 
 PAGE = Path(__file__).parents[2] / "docs" / "error-rates.md"
 SETS = 2000
-TABLES: dict[str, tuple[Sequence[str], Callable[[int], list[Measured] | list[Recovered]]]] = {
+TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "learning": (learning.HEADER, learning.series),
     "cohorts": (learning.COHORT_HEADER, learning.cohorts),
     "groups": (groups.HEADER, groups.one_population),
@@ -33,6 +34,9 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], list[Measured] | list[Rec
     "throughput": (throughput.HEADER, throughput.offsets),
     "aborted trials": (aborted_trials.HEADER, aborted_trials.competence),
     "target errors": (target_errors.HEADER, target_errors.intervals),
+    "cheats": (cheats.HEADER, cheats.played),
+    "equal hands": (equal_hands.HEADER, equal_hands.usual),
+    "slow hands": (equal_hands.HEADER, equal_hands.slow),
 }
 
 

@@ -33,6 +33,7 @@ MM = 1000.0
 FLE_MM = 1.0
 """Of the honest trainee: RMS length of the error of one fiducial, along the skin."""
 HONEST = Skill(aim_sd_mm=FLE_MM / np.sqrt(2.0), slip_at=None)
+BIAS_MM = 2.0
 BRISK_MM_S, SLOW_MM_S = 300.0, 60.0
 LIFT_MM = 35.0
 DRAG_MM_S, DRAG_PUSH_MM_S = 60.0, 20.0
@@ -71,10 +72,27 @@ def aim_beside(
     setup: SimulationSetup,
     task: str,
     seed: int,
-    bias_mm: tuple[float, float, float] = (2.0, 0.0, 0.0),
+    bias_mm: tuple[float, float, float] | None = None,
 ) -> PlayedTrial:
-    """Play honestly, but aim beside every fiducial by the same vector of World, mm."""
-    return play_honestly(setup, task, seed, replace(HONEST, aim_bias_mm=bias_mm))
+    """Play honestly, but aim beside every fiducial by the same vector of World, mm.
+
+    By default these are 2 mm in the direction that lies along the skin at as many fiducials as can
+    be: what of it leads into the skin or off it moves no touch.
+    """
+    bias = along_skin(setup, task, seed, BIAS_MM) if bias_mm is None else bias_mm
+    return play_honestly(setup, task, seed, replace(HONEST, aim_bias_mm=bias))
+
+
+def along_skin(
+    setup: SimulationSetup, task: str, seed: int, length_mm: float
+) -> tuple[float, float, float]:
+    """Return the vector of World with the greatest part along the skin of a task's fiducials."""
+    turn = setup.scenario.perturbed_head_to_world(seed)[:3, :3]
+    normals = fiducial_normals(setup.scenario, task) @ turn.T
+    direction = np.linalg.eigh(normals.T @ normals)[1][:, 0]
+    # An eigenvector has no sign of its own.
+    direction *= np.sign(direction[np.abs(direction).argmax()])
+    return tuple((length_mm * direction).tolist())
 
 
 def hover(setup: SimulationSetup, task: str, seed: int, by_mm: float = 9.0) -> PlayedTrial:

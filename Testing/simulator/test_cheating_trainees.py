@@ -1,19 +1,22 @@
-"""What the motion metrics say of honest play and of each way to cheat, on several tasks."""
+"""What the motion metrics and the score say of honest play and of each way to cheat."""
 
 from __future__ import annotations
+
+import functools
 
 import numpy as np
 import pytest
 
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import TouchRule
+from rastrainer.scoring import PASS_MARK, passes
+from Testing.error_rates.played import score_of
 from Testing.simulator.cheating_trainees import (
+    BIAS_MM,
+    CHEATS,
     Pilot,
-    aim_beside,
-    drag,
-    hover,
+    along_skin,
     play_honestly,
-    press,
 )
 
 TASKS = ("task-1", "task-5")
@@ -28,6 +31,12 @@ def task(request):
 @pytest.fixture(scope="module")
 def honest(setup, task):
     return play_honestly(setup, task, SEED)
+
+
+@pytest.fixture(scope="module")
+def cheat(setup, task):
+    """A function that plays the task in one of the ways to cheat, each only once."""
+    return functools.cache(lambda way: CHEATS[way](setup, task, SEED))
 
 
 def touch_errors(played):
@@ -49,23 +58,23 @@ def test_the_record_has_the_metrics_of_the_trajectory(honest):
     assert honest.record.motion == trial_motion(honest.trajectory)
 
 
-def test_dragging_from_fiducial_to_fiducial_is_unintended_nearly_all_of_the_way(setup, task):
-    motion = drag(setup, task, SEED).record.motion
+def test_dragging_from_fiducial_to_fiducial_is_unintended_nearly_all_of_the_way(cheat):
+    motion = cheat("drag").record.motion
     # Five millimeters about each touch belong to it: ten on each of fourteen ways.
     expected_mm = motion["path_between_touches_mm"] - 14 * 10.0
     assert motion["unintended_contact_path_mm"] > 0.8 * expected_mm
     assert motion["unintended_contact_time_s"] > 0.4 * motion["completion_time_s"]
 
 
-def test_pressing_two_millimeters_in_at_each_touch_is_two_millimeters_deep(setup, task):
-    played = press(setup, task, SEED, depth_mm=2.0)
+def test_pressing_two_millimeters_in_at_each_touch_is_two_millimeters_deep(cheat):
+    played = cheat("press")
     assert played.record.motion["pressing_depth_mm"] == pytest.approx(2.0, abs=0.05)
     assert played.record.motion["unintended_contact_time_s"] == 0.0
     assert np.linalg.norm(touch_errors(played), axis=1).max() < 0.5
 
 
-def test_hovering_has_no_contact_and_one_error_for_all_touches(setup, task):
-    played = hover(setup, task, SEED, by_mm=9.0)
+def test_hovering_has_no_contact_and_one_error_for_all_touches(cheat):
+    played = cheat("hover")
     motion, errors = played.record.motion, touch_errors(played)
     assert played.record.touch_rule == TouchRule.WITHIN_RADIUS.value
     assert motion["contacts"] == motion["pressing_depth_mm"] == 0.0
@@ -81,9 +90,24 @@ def test_hovering_is_refused_where_a_touch_has_to_be_on_the_skin(setup, task):
         pilot.touch()
 
 
-def test_a_common_bias_of_the_aim_moves_all_touches_alike_along_the_skin(setup, task, honest):
-    bias = np.array([2.0, 0.0, 0.0])
-    played = aim_beside(setup, task, SEED, tuple(bias))
+def test_a_common_bias_of_the_aim_moves_all_touches_alike_along_the_skin(
+    setup, task, honest, cheat
+):
+    bias = np.array(along_skin(setup, task, SEED, BIAS_MM))
+    played = cheat("aim-beside")
     mean = (touch_errors(played) - touch_errors(honest)).mean(axis=0)
-    assert 0.5 < mean[0] <= 2.1
+    assert 0.6 * BIAS_MM < mean @ bias / BIAS_MM < 1.05 * BIAS_MM
     assert played.record.motion["pressing_depth_mm"] < 0.6
+
+
+@pytest.mark.parametrize("way", CHEATS)
+def test_no_cheat_has_more_than_40_points_or_passes(setup, cheat, way):
+    score = score_of(setup, cheat(way))
+    assert score.score <= 40.0
+    assert not passes(score.score, score.acceptable, PASS_MARK)
+
+
+def test_honest_play_is_acceptable_and_worth_far_more(setup, honest):
+    score = score_of(setup, honest)
+    assert score.acceptable
+    assert score.score > 60.0

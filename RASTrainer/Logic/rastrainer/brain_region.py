@@ -19,6 +19,8 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head_mesh import HeadMesh, read_head_mesh
+from rastrainer.localization_error import motions
+from rastrainer.registration import RIGID
 from rastrainer.scenario import Scenario
 from rastrainer.surface_queries import nearest_vertices
 
@@ -60,24 +62,27 @@ class Region:
         ]
         return float(np.sqrt(self.mean(*squares)))
 
-    def tre_per_fle(self, fiducials: np.ndarray) -> float:
-        """Return the RMS TRE to expect of a rigid registration for an FLE of 1 mm.
+    def tre_per_fle(self, fiducials: np.ndarray, normals: np.ndarray) -> float:
+        """Return the RMS TRE to expect of a rigid registration of touches on the skin.
 
-        By Fitzpatrick, West and Maurer 1998, equation 46: E[TRE²] = E[FLE²]/N · (1 + ⅓ Σₖ dₖ²/fₖ²),
-        dₖ the distance of a point from the principal axis k, fₖ the RMS distance of the fiducials
-        from it.
+        Their errors are independent, of an FLE of 1 mm each, and lie along the skin, in which all
+        directions are alike: Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). To first order they move the fit by
+        Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point r by J(r) times that, with J the motions of a point.
 
         Args:
             fiducials: (n, 3) float, RAS mm, not on one line.
+            normals: (n, 3) float, unit normals of the skin there, RAS.
         """
         center = fiducials.mean(axis=0)
-        axes = np.linalg.svd(fiducials - center)[2]
-        about = _squares_from_axes(fiducials - center, axes).mean(axis=0)
-        squares = [
-            1 + (_squares_from_axes(points - center, axes) / about).sum(axis=1) / 3
-            for points in (self.targets, self.grid)
-        ]
-        return float(np.sqrt(self.mean(*squares) / len(fiducials)))
+        moved = motions(RIGID, fiducials - center)
+        fit = np.linalg.pinv(moved.reshape(-1, moved.shape[2])).reshape(-1, *fiducials.shape)
+        along = (np.eye(3) - normals[:, :, None] * normals[:, None, :]) / 2
+        covariance = np.einsum("anj,njk,bnk->ab", fit, along, fit)
+        squares = []
+        for points in (self.targets, self.grid):
+            moves = motions(RIGID, points - center)
+            squares.append(np.einsum("nia,ab,nib->n", moves, covariance, moves))
+        return float(np.sqrt(self.mean(*squares)))
 
 
 def region_of(scenario: Scenario) -> Region:
@@ -123,8 +128,3 @@ def _grid_of(mesh: Path, _changed: int) -> np.ndarray:
     grid = brain_grid(read_head_mesh(mesh))
     grid.setflags(write=False)
     return grid
-
-
-def _squares_from_axes(points: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Return the squared distance of points (n, 3) from each axis through the origin, (n, 3)."""
-    return np.sum(points**2, axis=1, keepdims=True) - (points @ axes.T) ** 2

@@ -1,8 +1,11 @@
 """What the score of a task is measured against, from the scenario itself.
 
 The same hands are to get the same score on every task of every head: the time that a task may take
-comes from the way of the tip through its fiducials, and the error that it may leave from how the
-fiducials surround the region (Fitzpatrick, West and Maurer 1998).
+comes from the way of the tip through its fiducials, and the error that it may leave from how errors
+along the skin at the fiducials reach the region. A touch is on the skin, so its errors are along
+it; errors alike in all directions (Fitzpatrick, West and Maurer 1998) would allow tasks on a small
+patch up to twice of what the same hands leave there. docs/error-rates.md tells how equal the scores
+are on three heads.
 """
 
 from __future__ import annotations
@@ -45,9 +48,10 @@ def score_reference(
     if of_protocol and task_name in of_protocol:
         return of_protocol[task_name]
     fiducials = np.asarray(scenario.task(task_name).fiducials, dtype=float)
+    normals = fiducial_normals(scenario, task_name)
     return ScoreReference(
-        time_s=_time_s(fiducials, fiducial_normals(scenario, task_name)),
-        tre_mm=float(REFERENCE_FLE_MM * region_of(scenario).tre_per_fle(fiducials)),
+        time_s=_time_s(fiducials, normals),
+        tre_mm=float(REFERENCE_FLE_MM * region_of(scenario).tre_per_fle(fiducials, normals)),
     )
 
 

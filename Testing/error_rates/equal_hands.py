@@ -1,0 +1,166 @@
+"""Whether the same hands get the same score on every task of three heads."""
+
+from __future__ import annotations
+
+import functools
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.brain_region import Region, region_of
+from rastrainer.fiducial_normals import fiducial_normals
+from rastrainer.number_text import fixed
+from rastrainer.scenario import Scenario
+from rastrainer.score_reference import score_reference
+from rastrainer.scoring import ScoreMeasures, ScoreReference, score_trial
+from rastrainer_simulator.setup import SimulationSetup
+from Testing.error_rates.played import HEADS, SLOW, TASKS, USUAL, stored
+from Testing.simulator.scenarios.planned_heads import setup_of
+
+MOST_OFF = 2.0
+"""Points by which a task's mean score may be off that of all tasks."""
+MOST_OFF_SLOW = 3.0
+"""The same of hands that the references were not made for, played once a task."""
+FLE_MM = {USUAL: 1.0, SLOW: 1.7}
+HEADER = (
+    "task",
+    "off by points",
+    "score",
+    "played time, s",
+    "reference, s",
+    "true TRE, RMS, mm",
+    "reference, mm",
+    "root of safety",
+)
+
+
+@dataclass(frozen=True)
+class EqualScore:
+    """The mean score of the same hands on one task, and by how much it is off that on all tasks."""
+
+    case: str
+    off: float
+    score: float
+    time_s: float
+    tre_mm: float
+    safety: float
+    reference: ScoreReference
+    at_most: float | None
+    at_least: None = None
+
+    def holds(self, standard_errors: float = 0.0) -> bool:
+        """Return whether it is off by what is asked at most, or a point more with few sets."""
+        return self.at_most is None or abs(self.off) <= self.at_most + (standard_errors > 0)
+
+    def cells(self) -> list[str]:
+        """Return the row of a table."""
+        reference = self.reference
+        return [
+            self.case,
+            fixed(abs(self.off), 1),
+            "–" if self.at_most is None else f"≤ {self.at_most:g}",
+            fixed(self.score, 1),
+            fixed(self.time_s, 1),
+            fixed(reference.time_s, 1),
+            fixed(self.tre_mm, 2),
+            fixed(reference.tre_mm, 2),
+            fixed(self.safety, 3),
+        ]
+
+
+def usual(sets: int) -> list[EqualScore]:
+    """Return the usual hands' scores, on each task with so many registrations."""
+    return scores(USUAL, sets, MOST_OFF)
+
+
+def slow(sets: int) -> list[EqualScore]:
+    """Return the scores of slower hands that are less exact."""
+    return scores(SLOW, sets, MOST_OFF_SLOW)
+
+
+def scores(way: str, sets: int, at_most: float | None, seed: int = 22) -> list[EqualScore]:
+    """Return the mean scores of the same hands on every task of every head."""
+    random = np.random.default_rng(seed)
+    found = []
+    for head, task in ((head, task) for head in HEADS for task in TASKS):
+        scenario = scenario_of(head)
+        trials = [
+            one.measures for one in stored() if (one.head, one.way, one.task) == (head, way, task)
+        ]
+        if not trials:
+            continue
+        reference = score_reference(scenario, task)
+        tre_mm = true_errors(scenario, task, FLE_MM[way], sets, random)
+        times_s = [one.completion_time_s for one in trials]
+        # Half of the score is time and half accuracy: each mean is taken over all that there is.
+        gentle = [
+            score_trial(
+                ScoreMeasures(times_s[number % len(times_s)], value, 0.0, 0.0, 0.0), reference
+            ).score
+            for number, value in enumerate(tre_mm)
+        ]
+        safety = [np.sqrt(score_trial(one, reference).safety_desirability) for one in trials]
+        rms = float(np.sqrt(np.mean(tre_mm**2)))
+        found.append(
+            (
+                f"{head}, {task}",
+                float(np.mean(gentle)),
+                float(np.mean(times_s)),
+                rms,
+                float(np.mean(safety)),
+                reference,
+            )
+        )
+    whole = float(np.mean([score for _, score, *_ in found]))
+    return [
+        EqualScore(case, score - whole, score, *others, at_most) for case, score, *others in found
+    ]
+
+
+def true_errors(
+    scenario: Scenario, task: str, fle_mm: float, sets: int, random: np.random.Generator
+) -> np.ndarray:
+    """Return the true errors over the region, (sets,) mm, of registered touches on the skin.
+
+    The errors of the touches are along the skin, of RMS length `fle_mm`.
+    """
+    fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
+    normals = fiducial_normals(scenario, task)
+    errors = random.normal(0.0, fle_mm / np.sqrt(2.0), (sets, *fiducials.shape))
+    errors -= normals * np.einsum("sij,ij->si", errors, normals)[..., None]
+    return registered_errors(region_of(scenario), fiducials, fiducials + errors)
+
+
+def registered_errors(region: Region, fixed_mm: np.ndarray, moving_mm: np.ndarray) -> np.ndarray:
+    """Return the true errors of many rigid fits at once (Arun 1987), (sets,) mm.
+
+    The head is where its MRI is; `fixed_mm` is (n, 3) float, `moving_mm` (sets, n, 3).
+    """
+    centers, center = moving_mm.mean(axis=1), fixed_mm.mean(axis=0)
+    u, _, vt = np.linalg.svd(
+        np.einsum("sni,nj->sij", moving_mm - centers[:, None], fixed_mm - center)
+    )
+    vt[:, 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
+    turns = np.swapaxes(u @ vt, 1, 2)
+    matrices = np.tile(np.eye(4), (len(moving_mm), 1, 1))
+    matrices[:, :3, :3] = turns
+    matrices[:, :3, 3] = center - np.einsum("sij,sj->si", turns, centers)
+    return np.array([region.tre_mm(matrix, np.eye(4)) for matrix in matrices])
+
+
+def scenario_of(head: str) -> Scenario:
+    """Return the scenario of one of the three heads."""
+    return setup(head).scenario
+
+
+@functools.cache
+def setup(head: str) -> SimulationSetup:
+    """Return the setup of one of the three heads, whose files stay until the program ends."""
+    return setup_of(head, Path(_folder().name))
+
+
+@functools.cache
+def _folder() -> tempfile.TemporaryDirectory:
+    return tempfile.TemporaryDirectory()
