@@ -29,7 +29,7 @@ def showLegend(node: Any, title: str, rank: int) -> Any | None:
         legend.SetVisibility2D(False)
         legend.SetSize(*SIZE)
         legend.SetPosition(*PLACE)
-        legend.SetLabelFormat("%.1f")
+        legend.SetLabelFormat("%.2f")
     legend.SetTitleText(title)
     legend.SetAttribute(RANK_ATTRIBUTE, str(rank))
     _showHighest(node.GetScene())
