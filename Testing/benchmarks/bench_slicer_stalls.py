@@ -14,6 +14,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.scenario import load_scenario
+from rastrainer.scoring import SAFETY_METRICS
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.study import Study
@@ -192,4 +193,5 @@ class _Steps:
             "rejectedTouches": 1,
             "undoneTouches": 1,
             "versions": {"simulator": "0.1.0"},
+            "motion": dict.fromkeys(SAFETY_METRICS, 0.0),
         }

@@ -1,7 +1,9 @@
 """Work in the background: in order, handed over on the main thread, and never in its way."""
 
 import gc
+import sys
 import threading
+import time
 
 import pytest
 
@@ -158,3 +160,38 @@ def test_work_whose_user_has_canceled_is_broken_off():
     with pytest.raises(KeyboardInterrupt):
         inBackground(work, cancel)
     assert ended.wait(30.0)
+
+
+def test_a_worker_gives_the_lock_back_soon_and_afterwards_all_is_as_before():
+    before = sys.getswitchinterval()
+    may_end = threading.Event()
+    job = Job(may_end.wait)
+    assert sys.getswitchinterval() < before / 10
+    may_end.set()
+    while not job.isDone:
+        job.giveTime()
+    assert sys.getswitchinterval() == before
+
+
+def test_work_begins_only_after_what_was_put_off():
+    seen = []
+    work = BackgroundWork()
+    work.later(lambda: seen.append("later"))
+    work.do(lambda: seen.append("work"), lambda _none: seen.append("taken"))
+    time.sleep(0.05)
+    assert seen == []
+    while work.isBusy:
+        work.process()
+        work.giveTime()
+    assert seen == ["later", "work", "taken"]
+
+
+def test_what_waits_behind_work_that_is_handed_over_is_still_busy():
+    busy = []
+    work = BackgroundWork()
+    work.do(lambda: None, lambda _none: busy.append(work.isBusy))
+    work.do(lambda: None, lambda _none: busy.append(work.isBusy))
+    while work.isBusy:
+        work.giveTime()
+        work.process()
+    assert busy == [True, False]

@@ -12,6 +12,7 @@ give way in between: filters of VTK keep the lock to their end, and belong into 
 from __future__ import annotations
 
 import gc
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -28,57 +29,80 @@ TIME_S = 0.02
 """So long the main thread waits for a worker at a time."""
 PERIOD_MS = 40
 """So often a timer does it: about half of the time is the worker's."""
+SWITCH_INTERVAL_S = 0.0002
+"""So soon a worker gives Python's lock back to the main thread that wants it."""
 FAREWELL_S = 1.0
 """So long closing waits for what is under way."""
 
 
-class _Uncollected:
-    """Keeps Python from looking for cycles of garbage while any worker runs.
+class _Workers:
+    """Has Python treat the main thread well while any worker runs.
 
-    It would happen in a worker's thread, where wrappers of VTK's and Qt's objects must not die, and
-    among all that Slicer holds it takes a tenth of a second, which nothing interrupts.
+    It looks for no cycles of garbage: that would happen in a worker's thread, where wrappers of
+    VTK's and Qt's objects must not die, and among all that Slicer holds it takes tenths of a
+    second, which nothing interrupts. So it is the main thread that lets Python look again: what is
+    overdue is done by whoever allows it.
+
+    And a worker gives Python's lock back soon: numpy gives it away in each call of LAPACK, so that
+    the main thread would wait Python's usual 5 ms hundreds of times in one registration.
     """
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()
         self._count = 0
         self._wasEnabled = False
+        self._interval_s = sys.getswitchinterval()
 
-    def __enter__(self) -> None:
-        with self._lock:
-            if self._count == 0:
-                self._wasEnabled = gc.isenabled()
-                gc.disable()
-            self._count += 1
+    def begin(self) -> None:
+        """A worker begins; only the main thread calls this, as the next."""
+        if self._count == 0:
+            self._wasEnabled = gc.isenabled()
+            gc.disable()
+            self._interval_s = sys.getswitchinterval()
+            sys.setswitchinterval(SWITCH_INTERVAL_S)
+        self._count += 1
 
-    def __exit__(self, *_exception: object) -> None:
-        with self._lock:
-            self._count -= 1
-            if self._count == 0 and self._wasEnabled:
-                gc.enable()
+    def end(self) -> None:
+        """A worker has ended, or nobody waits for it any more."""
+        self._count -= 1
+        if self._count:
+            return
+        sys.setswitchinterval(self._interval_s)
+        if self._wasEnabled:
+            gc.enable()
 
 
-_UNCOLLECTED = _Uncollected()
+_WORKERS = _Workers()
 
 
 class Job:
-    """One piece of work in a thread of its own, begun at once."""
+    """One piece of work in a thread of its own, begun at once; the main thread looks after it."""
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._work = work
         self._result: T | None = None
         self._error: BaseException | None = None
+        self._isLookedAfter = True
         self._thread = threading.Thread(target=self._run, daemon=True)
+        _WORKERS.begin()
         self._thread.start()
 
     @property
     def isDone(self) -> bool:
         """Whether the thread has ended."""
-        return not self._thread.is_alive()
+        isDone = not self._thread.is_alive()
+        if isDone:
+            self.leave()
+        return isDone
 
     def giveTime(self, seconds: float = TIME_S) -> None:
         """Let the thread run, and return as soon as it has ended."""
         self._thread.join(seconds)
+
+    def leave(self) -> None:
+        """Look after the thread no more: it has ended, or nobody waits for it."""
+        if self._isLookedAfter:
+            self._isLookedAfter = False
+            _WORKERS.end()
 
     def result(self) -> T:
         """Return what the work has returned, or raise what it has raised, once it is done."""
@@ -87,11 +111,10 @@ class Job:
         return self._result
 
     def _run(self) -> None:
-        with _UNCOLLECTED:
-            try:
-                self._result = self._work()
-            except BaseException as error:
-                self._error = error
+        try:
+            self._result = self._work()
+        except BaseException as error:
+            self._error = error
 
 
 @dataclass(frozen=True)
@@ -139,8 +162,7 @@ class BackgroundWork:
             return
         wasBusy = self.isBusy
         self._waiting.append(_Waiting(work, take, refuse))
-        if self._job is None:
-            self._beginNext()
+        self._beginNext()
         if not wasBusy:
             self.began.emit()
 
@@ -161,7 +183,10 @@ class BackgroundWork:
     def process(self) -> None:
         """Call what was put off till later, one function at a time; hand over what is done."""
         if self._slices:
-            self._slices.popleft()()
+            try:
+                self._slices.popleft()()
+            finally:
+                self._beginNext()
             return
         if self._job is None or not self._job.isDone:
             return
@@ -170,8 +195,7 @@ class BackgroundWork:
         try:
             self._handOver(job, ended)
         finally:
-            if self._job is None:
-                self._beginNext()
+            self._beginNext()
 
     def close(self) -> None:
         """Wait a moment for what is under way, hand it over, and do nothing more."""
@@ -180,11 +204,15 @@ class BackgroundWork:
         self._slices.clear()
         if self._job is not None:
             self._job.giveTime(FAREWELL_S)
+        job = self._job
         self.process()
+        if job is not None:
+            job.leave()
         self._job = self._underWay = None
 
     def _beginNext(self) -> None:
-        if self._waiting:
+        """Begin what waits, after what is put off: both at once would share Python's lock."""
+        if self._waiting and self._job is None and not self._slices:
             self._underWay = self._waiting.popleft()
             self._job = Job(self._underWay.work)
 
@@ -221,6 +249,7 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
             job.giveTime()
     except BaseException:
         isCanceled.set()
+        job.leave()
         raise
     return job.result()
 

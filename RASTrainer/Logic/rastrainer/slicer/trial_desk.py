@@ -174,7 +174,9 @@ class TrialDesk:
         self, record: TrialRecord, study: Study, truth: RevealedTruth | None = None
     ) -> TrialAnalysis:
         scenario = self._findScenario(record.scenario)
-        return review(record, scenario, study, self._records, self._cohort, truth)
+        # To register it nothing is needed of its journal, which takes long to read.
+        records = None if truth is None else self._records
+        return review(record, scenario, study, records, self._cohort, truth)
 
     def _resume(self) -> None:
         """Go on with trials whose score was told to nobody before the connection was cut."""
