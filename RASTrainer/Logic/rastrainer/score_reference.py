@@ -55,18 +55,6 @@ def score_reference(
     )
 
 
-def prepare_scoring(scenario: Scenario) -> None:
-    """Compute what the scores of all tasks of a scenario need, so that it is known from now on.
-
-    It takes about a second.
-
-    Raises:
-        InputError: the head's mesh cannot be used.
-    """
-    for task in scenario.tasks:
-        score_reference(scenario, task.name)
-
-
 def _time_s(fiducials: np.ndarray, normals: np.ndarray) -> float:
     """Return the time of fiducials (n, 3) with the skin's outward unit normals (n, 3).
 

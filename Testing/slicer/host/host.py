@@ -35,6 +35,8 @@ from Testing.slicer.host.vtk_messages import VtkMessages
 MODULE_FILE = Path(__file__).parents[3] / "RASTrainer" / "RASTrainer.py"
 CONNECTOR_PERIOD_MS = 5
 DOCK_WIDTH = 470
+PATIENCE_S = 2.0
+"""So long a user looks for what is not there."""
 
 
 class Host:
@@ -444,9 +446,11 @@ class Host:
     def _usable(self, name: str) -> Any:
         """Return a widget, in a section that is open: a user opens the one that is needed."""
         self.unfold(name)
-        if not self.find(name)._qt.isVisible():
-            # One that has just been made anew is shown by an event.
+        deadline = time.monotonic() + PATIENCE_S
+        # One that has just been made anew or unfolded is shown by an event.
+        while not self.find(name)._qt.isVisible() and time.monotonic() < deadline:
             self._settle()
+            self.unfold(name)
         widget = self.find(name)._qt
         if not widget.isEnabled():
             raise AssertionError(f"{name} is disabled: {widget.toolTip()}")

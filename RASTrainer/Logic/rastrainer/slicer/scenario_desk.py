@@ -16,21 +16,15 @@ from rastrainer.slicer.scenario import SKIN_COLOR, showScenario, showTask
 from rastrainer.slicer.scenario_shelf import ScenarioShelf
 from rastrainer.slicer.scenario_volume import showImages
 from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role, findNode
-from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.touches import showOnlyTouchesOf
 from rastrainer.slicer.world_placement import followPlacement, isPlanned, showPlannedPlace
 
 
 class ScenarioDesk:
-    """What the Scenario panel does.
-
-    Attributes:
-        shown: emits each `Scenario` that is shown.
-    """
+    """What the Scenario panel does."""
 
     def __init__(self, scene: Any, shelf: ScenarioShelf, robotFolder: Path, python: Path) -> None:
         """`python` runs the process that looks for heads."""
-        self.shown = Signal()
         self._scene = scene
         self._shelf = shelf
         self._robotFolder = robotFolder
@@ -58,7 +52,6 @@ class ScenarioDesk:
         placed = findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
         if placed is None or isPlanned(placed):
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
-        self.shown.emit(scenario)
 
     def useHead(
         self, node: Any, progress: Progress = lambda _step, _share: None

@@ -9,8 +9,6 @@ from typing import Any
 
 from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.protocol import Phase
-from rastrainer.scenario import Scenario
-from rastrainer.score_reference import prepare_scoring
 from rastrainer.slicer.aborted_desk import AbortedDesk
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.borrowed_layout import BorrowedLayout
@@ -171,8 +169,6 @@ class Session:
         self.aborted.kept.connect(self._takeAborted)
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
-        for shown in (self.scenario.shown, self.training.scenarioShown):
-            shown.connect(self._prepareScoring)
 
     def openStudy(self) -> Study:
         """Open the present study, or begin it; this thread draws the window and waits for no lock.
@@ -250,10 +246,6 @@ class Session:
         self.link.disconnect()
         self.trainees.close()
         self.simulator.close()
-
-    def _prepareScoring(self, scenario: Scenario) -> None:
-        """Have ready what scores need of a scenario, while nobody waits for one."""
-        self.work.do(lambda: prepare_scoring(scenario), lambda _none: None)
 
     def _isTrialOpen(self) -> bool:
         return self.link.isOpen and self.training.progress.isOpen

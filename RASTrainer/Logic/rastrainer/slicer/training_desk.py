@@ -65,7 +65,6 @@ class TrainingDesk:
     Attributes:
         changed: emits nothing, whenever `progress` has changed.
         answered: emits the sentence of a command that was refused, empty where it was accepted.
-        scenarioShown: emits the `Scenario` of a trial that runs, once it is shown.
     """
 
     def __init__(
@@ -77,7 +76,6 @@ class TrainingDesk:
     ) -> None:
         self.changed = Signal()
         self.answered = Signal()
-        self.scenarioShown = Signal()
         self._scene = scene
         self._link = link
         self._findScenario = findScenario
@@ -171,7 +169,6 @@ class TrainingDesk:
         noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")))
         showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
         self.changed.emit()
-        self.scenarioShown.emit(scenario)
 
     def forgetScene(self) -> None:
         """Show the running trial's scene again: the scene was cleared."""
