@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from rastrainer import transforms
 from rastrainer.revealed_truth import RevealedTruth
-from rastrainer.scenario import Scenario
+from rastrainer.scenario import Scenario, load_scenario
 from rastrainer.scoring import SAFETY_METRICS
+from rastrainer.study import Study
 from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
 from rastrainer.trial_record import TrialRecord
+from rastrainer_simulator.assets import asset_path
+from Testing.slicer.host.host import Host
 
 
 def scored_analysis(
@@ -23,3 +29,26 @@ def scored_analysis(
     pose = scenario.perturbed_head_to_world(seed)
     truth = RevealedTruth(tuple(pose.ravel().tolist()), true_tre_mm)
     return analyze_trial(TrialRecord.from_json({**record, "motion": motion}), scenario, truth=truth)
+
+
+def store_trial_on_colin(host: Host, record: dict[str, Any], seed: int) -> np.ndarray:
+    """Store a scored trial of Task 1 on Colin27 in the module's study.
+
+    Args:
+        host: with the module open.
+        record: of such a trial; its points become touches near the fiducials.
+        seed: of the head's pose and of the touches.
+
+    Returns:
+        The touches, (15, 3) float, World, mm.
+    """
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    noise = np.random.default_rng(seed).normal(0.0, 0.6, (15, 3))
+    fiducials = colin.task("task-1").fiducials
+    touched = transforms.apply(colin.perturbed_head_to_world(seed), fiducials + noise)
+    for point, position in zip(record["points"], touched.tolist(), strict=True):
+        point["positionMm"] = position
+    analysis = scored_analysis(record, colin)
+    with Study.open(host.find("studyPathLineEdit").currentPath) as study:
+        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    return touched

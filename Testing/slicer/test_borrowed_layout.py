@@ -2,15 +2,10 @@
 
 import uuid
 
-import numpy as np
 import pytest
 import slicer
 
-from rastrainer import transforms
-from rastrainer.scenario import load_scenario
-from rastrainer.study import Study
-from rastrainer_simulator.assets import asset_path
-from Testing.slicer.scored_trials import scored_analysis
+from Testing.slicer.scored_trials import store_trial_on_colin
 
 OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 
@@ -19,16 +14,8 @@ OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 def looking(host, make_record):
     """The module with a trainee who has a trial, in a layout of the user's own."""
     host.open()
-    colin = load_scenario(asset_path("scenarios", "colin27"))
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
-    fiducials = colin.task("task-1").fiducials
-    noise = np.random.default_rng(2).normal(0.0, 0.6, (15, 3))
-    touched = transforms.apply(colin.perturbed_head_to_world(2), fiducials + noise)
-    for point, position in zip(record["points"], touched.tolist(), strict=True):
-        point["positionMm"] = position
-    analysis = scored_analysis(record, colin)
-    with Study.open(host.find("studyPathLineEdit").currentPath) as study:
-        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    store_trial_on_colin(host, record, 2)
     host.press("createTraineeButton")
     host.choose("traineeComboBox", "T001")
     slicer.app.layoutManager().setLayout(OWN)

@@ -3,19 +3,14 @@
 import uuid
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from rastrainer import transforms
-from rastrainer.scenario import load_scenario
 from rastrainer.slicer.control_points import setPoints
 from rastrainer.slicer.link_nodes import capturedPointsNode
 from rastrainer.slicer.trial_replay import findReplay
-from rastrainer.study import Study
 from rastrainer.tasks import LABELS
-from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import write_recorded_trial
-from Testing.slicer.scored_trials import scored_analysis
+from Testing.slicer.scored_trials import store_trial_on_colin
 
 SECTIONS = ("trainees", "scenario", "registration", "plan", "score")
 
@@ -27,16 +22,8 @@ def at_work(host, make_record):
     for section in SECTIONS:
         host.find(f"{section}CollapsibleButton").collapsed = False
     host.process_events()
-    colin = load_scenario(asset_path("scenarios", "colin27"))
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
-    fiducials = colin.task("task-1").fiducials
-    noise = np.random.default_rng(5).normal(0.0, 0.6, (15, 3))
-    touched = transforms.apply(colin.perturbed_head_to_world(5), fiducials + noise)
-    for point, position in zip(record["points"], touched.tolist(), strict=True):
-        point["positionMm"] = position
-    analysis = scored_analysis(record, colin)
-    with Study.open(host.find("studyPathLineEdit").currentPath) as study:
-        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+    touched = store_trial_on_colin(host, record, 5)
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 16.0)
     host.press("createTraineeButton")
     host.choose("traineeComboBox", "T001")

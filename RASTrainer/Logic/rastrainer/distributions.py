@@ -64,16 +64,7 @@ def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float
     """
     scale = float(np.sum(weights))
     probability_up_to = _ratio_distribution(np.asarray(weights) / scale, dof)
-    low, high = 0.0, 1.0
-    while probability_up_to(high) < probability:
-        low, high = high, 4.0 * high
-    while high - low > 1e-8 * high:
-        middle = (low + high) / 2
-        if probability_up_to(middle) < probability:
-            low = middle
-        else:
-            high = middle
-    return scale * (low + high) / 2
+    return scale * _quantile(probability_up_to, probability, 1.0, 1e-8)
 
 
 def widened_quantile(probability: float, weights: np.ndarray, dof: float, added: float) -> float:
@@ -99,10 +90,23 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
     def probability_up_to(value: float) -> float:
         return float(np.sum(of_nodes * _chi_square_3(value / variances)))
 
-    low, high = 0.0, float(np.sum(weights)) + 3.0 * added
+    return _quantile(probability_up_to, probability, float(np.sum(weights)) + 3.0 * added, 1e-7)
+
+
+def _quantile(
+    probability_up_to: Callable[[float], float],
+    probability: float,
+    guess: float,
+    tolerance: float,
+) -> float:
+    """Return, by bisection, the value above 0 up to which a distribution has a probability.
+
+    `guess` is above 0, and `tolerance` is a share of the value.
+    """
+    low, high = 0.0, guess
     while probability_up_to(high) < probability:
         low, high = high, 4.0 * high
-    while high - low > 1e-7 * high:
+    while high - low > tolerance * high:
         middle = (low + high) / 2
         if probability_up_to(middle) < probability:
             low = middle

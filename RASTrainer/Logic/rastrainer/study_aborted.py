@@ -136,8 +136,7 @@ def _add(connection: sqlite3.Connection, record: AbortedTrial, text: str) -> boo
         )
     if row is not None:
         return False
-    if not study_trainees.exists(connection, record.trainee):
-        study_trainees.create(connection, record.trainee, consent=False)
+    study_trainees.create_where_missing(connection, record.trainee, consent=False)
     connection.execute(
         f"INSERT INTO aborted_trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?)",
         (

@@ -40,6 +40,16 @@ def check_pseudonym(pseudonym: str) -> None:
         raise InputError(f"A pseudonym must be {error}.") from None
 
 
+def create_where_missing(connection: sqlite3.Connection, pseudonym: str, consent: bool) -> None:
+    """Add the trainee of a record that arrives, unless the study has that one already.
+
+    Raises:
+        InputError: it cannot be a pseudonym.
+    """
+    if not exists(connection, pseudonym):
+        create(connection, pseudonym, consent)
+
+
 def exists(connection: sqlite3.Connection, pseudonym: str) -> bool:
     """Return whether the study has a trainee of this pseudonym."""
     return connection.execute(TRAINEE_ID, (pseudonym,)).fetchone() is not None

@@ -61,8 +61,7 @@ def add(
         raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
     if not check(connection, record):
         return False
-    if not study_trainees.exists(connection, record.trainee):
-        study_trainees.create(connection, record.trainee, consent=False)
+    study_trainees.create_where_missing(connection, record.trainee, consent=False)
     connection.execute(
         f"INSERT INTO trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?, ?)",
         (

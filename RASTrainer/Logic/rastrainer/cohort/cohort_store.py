@@ -112,8 +112,7 @@ class CohortStore:
         """
         record, truth = analysis.record, analysis.truth
         with self._database.writing() as connection:
-            if not study_trainees.exists(connection, record.trainee):
-                study_trainees.create(connection, record.trainee, consent=True)
+            study_trainees.create_where_missing(connection, record.trainee, consent=True)
             # Not new where a second process plays the same cohort; its trial is the same.
             if study_trials.add(connection, record, record.to_json()):
                 study_trials.add_results(
