@@ -12,9 +12,6 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from rastrainer import transforms
 from rastrainer.cohort.jobs import TrialJob
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.protocol import Mode
@@ -30,6 +27,7 @@ from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.setup import load_setup
 from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.virtual_trial import UnfinishedTrialError, play_virtual_trial
 
 STEP_S = 0.05
@@ -95,10 +93,9 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
         _write_journal(settings.records, entries, job.started)
     scenario = simulation.setup.scenario
     rigid = analyze_trial(record, scenario).rigid
-    target = scenario.target_position
-    there_and_back = transforms.apply(rigid.matrix @ trial.head_to_world, target)
+    where = Truth(trial.head_to_world, scenario.target_position, {})
     truth = RevealedTruth(
-        tuple(trial.head_to_world.ravel().tolist()), float(np.linalg.norm(there_and_back - target))
+        tuple(trial.head_to_world.ravel().tolist()), where.target_error_mm(rigid.matrix)
     )
     return PlayedTrial(
         job, analyze_trial(record, scenario, references=settings.references, truth=truth)
