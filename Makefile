@@ -2,10 +2,11 @@
 # whole suite on the kinematics that Windows uses.
 PYTHON ?= python3
 KINEMATICS ?=
-BIN := .venv/bin
+BIN := .venv/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
+VENV_PYTHON := $(BIN)/python$(if $(filter Windows_NT,$(OS)),.exe)
 UNAME := $(shell uname 2>/dev/null)
 
-.PHONY: demo test soak bench simulator extension lint format lock audit page clean
+.PHONY: demo test soak bench simulator extension lint format docs lock audit page clean
 
 demo: .venv/installed
 	$(BIN)/python tools/system_packages.py demo
@@ -17,12 +18,13 @@ simulator: .venv/installed page
 	$(BIN)/rastrainer simulator $(if $(or $(DISPLAY),$(filter Windows_NT,$(OS)),$(filter Darwin,$(UNAME))),--desktop)
 
 # A test that hangs says where and ends the run, and so does a worker that crashes: xdist would wait
-# for the rest of its file for ever.
+# for the rest of its file for ever. Python keeps what it has compiled, whatever the environment says:
+# hundreds of processes start.
 ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exit_on_timeout=true
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ENDING) -q
+	PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ENDING) -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page
@@ -45,10 +47,17 @@ lint: .venv/test-installed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/python tools/build_page.py --check
+	$(BIN)/python -m mypy --no-error-summary
+	$(BIN)/reuse lint --lines
 
 format: .venv/test-installed
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+# The documentation as a website, in build/docs; warnings are errors.
+docs: .venv/docs-installed
+	$(BIN)/python -m mkdocs build --strict --quiet
+	@echo "The documentation is in build/docs: open build/docs/index.html."
 
 # Hashes, but no addresses: the locks hold at whatever index a site uses.
 lock: .venv/installed
@@ -58,6 +67,7 @@ lock: .venv/installed
 	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock
 	$(COMPILE) --extra soak --constraints requirements-test.lock -o requirements-soak.lock
 	$(COMPILE) --extra supply --constraints requirements.lock -o requirements-supply.lock
+	$(COMPILE) --extra docs --constraints requirements-test.lock -o requirements-docs.lock
 	$(COMPILE) --constraints requirements.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
 	$(BIN)/python tools/measure_simulator.py
 
@@ -71,10 +81,10 @@ SIMULATOR := RASTrainer/Resources/RASTrainerSimulator
 COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.10 \
 	--generate-hashes --no-emit-index-url --no-annotate --no-header --upgrade
 
-.venv/bin/python:
+$(VENV_PYTHON):
 	$(PYTHON) -m venv .venv || (echo "RASTrainer needs Python 3.10 or newer with the venv module (Debian: python3-venv)." >&2; exit 1)
 
-.venv/installed: .venv/bin/python requirements.lock pyproject.toml
+.venv/installed: $(VENV_PYTHON) requirements.lock pyproject.toml
 	$(BIN)/python -m pip install -q --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --no-deps --no-build-isolation -e .
 	touch $@
@@ -93,6 +103,10 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-ver
 
 .venv/supply-installed: .venv/installed requirements-supply.lock
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-supply.lock
+	touch $@
+
+.venv/docs-installed: .venv/installed requirements-docs.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements-docs.lock
 	touch $@
 
 clean:

@@ -65,9 +65,10 @@ class RASTrainer(ScriptedLoadableModule):
 
 def registerSampleData():
     """Add the MRI that comes with this module to the module Sample Data."""
-    from rastrainer.panels import places, sample_data
+    from rastrainer.panels.application import assetsFolder
+    from rastrainer.panels.sample_data import registerSampleData as register
 
-    sample_data.registerSampleData(places.assetsFolder(Path(__file__)))
+    register(assetsFolder(Path(__file__)))
 
 
 #
@@ -83,7 +84,7 @@ class RASTrainerParameterNode:
 
     movingPoints - points in the robot's World that are registered; the touches where none
     fixedPoints - the same points on the MRI; the task's fiducials where none
-    target - its first point is where the target error is told; the scenario's where none
+    target - its first point is where the target error is reported; the scenario's where none
     plan - a planned target or trajectory
     """
 
@@ -114,7 +115,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     def setup(self) -> None:
         from rastrainer.panels.panel_stack import PanelStack
-        from rastrainer.panels.seen import isSomethingSeen
+        from rastrainer.panels.application import isSomethingSeen
         from rastrainer.slicer.background_work import PERIOD_MS
 
         ScriptedLoadableModuleWidget.setup(self)
@@ -204,16 +205,16 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
     """What the module can do without its widgets; the parts stand in `rastrainer.slicer`."""
 
     def __init__(self) -> None:
-        from rastrainer.panels.call_soon import callSoon
-        from rastrainer.panels.places import findPlaces
-        from rastrainer.slicer.connector_kit import desktopKit
-        from rastrainer.slicer.session import Session
+        from rastrainer.panels.application import callSoon
+        from rastrainer.panels.application import findPlaces
+        from rastrainer.slicer.link.connection import desktopKit
+        from rastrainer.slicer.logic.module_session import ModuleSession
         from rastrainer.slicer.settings import Settings
 
         ScriptedLoadableModuleLogic.__init__(self)
         settings = Settings(slicer.app.settings())
         places = findPlaces(Path(__file__), settings)
-        self.session = Session(slicer.mrmlScene, places, desktopKit, settings, callSoon)
+        self.session = ModuleSession(slicer.mrmlScene, places, desktopKit, settings, callSoon)
 
     def getParameterNode(self):
         return RASTrainerParameterNode(super().getParameterNode())
@@ -252,8 +253,8 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
 
     def test_theFitOfPointsInTheSceneIsExact(self):
         import numpy as np
-        from rastrainer.slicer.control_points import setPoints, worldPoints
-        from rastrainer.slicer.registration_nodes import registerNodes, showRegistration
+        from rastrainer.slicer.scene.control_points import setPoints, worldPoints
+        from rastrainer.slicer.scene.registration_nodes import registerNodes, showRegistration
 
         fixedPoints = np.array([[0.0, 0, 0], [90, 0, 0], [0, 70, 0], [0, 0, 50], [30, 30, 30]])
         movingPoints = fixedPoints[:, [1, 2, 0]] + [500.0, 20.0, 300.0]
@@ -267,7 +268,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         self.assertLess(np.abs(worldPoints(moving) - fixedPoints).max(), 1e-6)
 
     def test_anAbsentSimulatorIsToldAndTheSceneMayBeCleared(self):
-        from rastrainer.slicer.heartbeat import LinkState
+        from rastrainer.slicer.link.heartbeat import LinkState
 
         logic = RASTrainerLogic()
         link = logic.session.link
@@ -280,66 +281,66 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         self.assertEqual(link.status.state, LinkState.OFF)
 
     def test_theBuiltInScenarioIsShown(self):
-        with self.bench() as bench:
-            bench.ui.showScenarioButton.click()
+        with self.fixture() as fixture:
+            fixture.ui.showScenarioButton.click()
         fixed = slicer.util.getNode("* fiducials")
         self.assertEqual(fixed.GetNumberOfControlPoints(), 15)
 
     def test_aTraineeIsCreatedArchivedAndBroughtBack(self):
-        with self.bench() as bench:
-            ui = bench.ui
+        with self.fixture() as fixture:
+            ui = fixture.ui
             ui.pseudonymLineEdit.text = "T-001"
             ui.createTraineeButton.click()
             self.assertIn("T-001", ui.traineeComboBox.currentText)
             ui.archiveButton.click()
-            self.assertEqual(bench.session.trainees.trainees(), ())
+            self.assertEqual(fixture.session.trainees.trainees(), ())
             ui.archiveButton.click()
-            self.assertEqual(len(bench.session.trainees.trainees()), 1)
+            self.assertEqual(len(fixture.session.trainees.trainees()), 1)
 
     def test_touchesAreRegisteredAndABadOneIsLeftOutByOneClick(self):
-        with self.bench() as bench:
-            ui = bench.ui
+        with self.fixture() as fixture:
+            ui = fixture.ui
             ui.showScenarioButton.click()
-            touches = bench.touches()
+            touches = fixture.touches()
             touches[6] += 9.0
-            bench.touch(touches)
+            fixture.touch(touches)
             self.assertEqual(ui.residualsTable.rowCount, 15)
-            self.assertIn("7", bench.child("warning0Text").text)
-            bench.child("remedy0Button").click()
+            self.assertIn("7", fixture.child("warning0Text").text)
+            fixture.child("remedy0Button").click()
             self.assertEqual(ui.residualsTable.rowCount, 14)
             ui.undoButton.click()
             self.assertEqual(ui.residualsTable.rowCount, 15)
 
     def test_aPlannedTargetIsCarriedToTheRobot(self):
-        with self.bench() as bench:
-            ui = bench.ui
+        with self.fixture() as fixture:
+            ui = fixture.ui
             ui.showScenarioButton.click()
-            bench.touch(bench.touches())
+            fixture.touch(fixture.touches())
             ui.placeTargetButton.click()
             ui.planComboBox.currentNode().AddControlPoint(10.0, 20.0, 30.0)
-            bench.process()
+            fixture.process()
             self.assertIn("mm", ui.planWorldText.text)
             self.assertFalse(ui.sendPlanButton.enabled)
             self.assertIn("Connect", ui.sendPlanButton.toolTip)
 
     def test_theSceneMayBeClearedAndEveryNodeDeleted(self):
-        with self.bench() as bench:
-            bench.ui.showScenarioButton.click()
-            bench.ui.robotCheckBox.checked = True
-            bench.touch(bench.touches())
-            bench.clearScene()
-            self.assertEqual(bench.ui.residualsTable.rowCount, 0)
-            bench.ui.showScenarioButton.click()
-            bench.touch(bench.touches())
+        with self.fixture() as fixture:
+            fixture.ui.showScenarioButton.click()
+            fixture.ui.robotCheckBox.checked = True
+            fixture.touch(fixture.touches())
+            fixture.clearScene()
+            self.assertEqual(fixture.ui.residualsTable.rowCount, 0)
+            fixture.ui.showScenarioButton.click()
+            fixture.touch(fixture.touches())
             for node in list(slicer.util.getNodesByClass("vtkMRMLDisplayableNode")):
                 if node.GetScene() is not None and not node.GetSingletonTag():
                     slicer.mrmlScene.RemoveNode(node)
-                    bench.process()
-            self.assertGreater(len(bench.ui.registrationText.text), 20)
+                    fixture.process()
+            self.assertGreater(len(fixture.ui.registrationText.text), 20)
 
-    def bench(self):
-        from rastrainer.panels.trial_bench import TrialBench
+    def fixture(self):
+        from rastrainer.panels.self_test_fixture import SelfTestFixture
 
         module = slicer.modules.rastrainer.path
         folder = Path(module).parent / "Resources"
-        return TrialBench(Path(module), lambda name: str(folder / name))
+        return SelfTestFixture(Path(module), lambda name: str(folder / name))

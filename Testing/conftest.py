@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.touched_head import touched_head  # noqa: F401
 
 HERE = Path(__file__).parent
 LONGEST = ("end_to_end", "web", "security")
@@ -28,7 +29,7 @@ def pytest_configure():
 
 
 class ContainedFailures(logging.Handler):
-    """Keeps what failed where the rest goes on; see `rastrainer.slicer.contained`."""
+    """Keeps what failed where the rest goes on; see `rastrainer.slicer.link.error_guard`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -41,7 +42,7 @@ class ContainedFailures(logging.Handler):
 @pytest.fixture(autouse=True)
 def contained_failures():
     """What has failed and was contained; a test that wants it so clears the list."""
-    handler, logger = ContainedFailures(), logging.getLogger("rastrainer.contained")
+    handler, logger = ContainedFailures(), logging.getLogger("rastrainer.error_guard")
     logger.addHandler(handler)
     yield handler.texts
     logger.removeHandler(handler)
@@ -52,7 +53,7 @@ def contained_failures():
 def _slicer_survives():
     """Fail a test in which a part of Slicer would have ended the program."""
     yield
-    crash = sys.modules.get("rastrainer.slicer.headless_crash")
+    crash = sys.modules.get("rastrainer_headless.peer_sockets")
     crashes = crash.takeCrashes() if crash else []
     assert not crashes, f"Slicer would not have survived: {crashes}"
 

@@ -1,66 +1,187 @@
-"""Who may import whom: `panels → slicer → domain` and `rastrainer_simulator → domain`."""
+"""Who may import whom: layers of rooms (folders), read from every import, also those for types."""
 
 from __future__ import annotations
 
 import ast
 import sys
+from collections import Counter
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
-DOMAIN = ROOT / "RASTrainer" / "Logic" / "rastrainer"
-SIMULATOR = ROOT / "RASTrainerSimulatorServer" / "rastrainer_simulator"
-SLICER_SIDE = {"slicer", "panels"}
+FOLDERS = {
+    "rastrainer": ROOT / "RASTrainer" / "Logic" / "rastrainer",
+    "rastrainer_simulator": ROOT / "RASTrainerSimulatorServer" / "rastrainer_simulator",
+    "rastrainer_headless": ROOT / "RASTrainerSimulatorServer" / "rastrainer_headless",
+}
+
+# A room imports rooms of lines above its own, and nothing else of ours; rooms on one line do not
+# know each other.
+LAYERS = {
+    "the domain": """
+        rastrainer, rastrainer.processes
+        rastrainer.files, rastrainer.igtl, rastrainer.statistics, rastrainer.study.questionnaires
+        rastrainer.head, rastrainer.registration
+        rastrainer.motion, rastrainer.scenario
+        rastrainer.journal, rastrainer.trial
+        rastrainer.study.database
+        rastrainer.study.protocol
+        rastrainer.study
+        rastrainer.export, rastrainer.report.html, rastrainer.report.results
+        rastrainer.report.charts
+        rastrainer.report.sections
+        rastrainer.report
+    """,
+    "Slicer's side": """
+        rastrainer.slicer
+        rastrainer.slicer.scene
+        rastrainer.slicer.link
+        rastrainer.slicer.program
+        rastrainer.slicer.head
+        rastrainer.slicer.logic
+        rastrainer.panels, rastrainer_headless
+    """,
+    "the simulator": """
+        rastrainer_simulator
+        rastrainer_simulator.input, rastrainer_simulator.ops.texts, rastrainer_simulator.robot
+        rastrainer_simulator.collision, rastrainer_simulator.teleoperation
+        rastrainer_simulator.ops, rastrainer_simulator.training
+        rastrainer_simulator.core
+        rastrainer_simulator.record, rastrainer_simulator.scene
+        rastrainer_simulator.loop, rastrainer_simulator.rendering
+        rastrainer_simulator.authoring, rastrainer_simulator.virtual
+        rastrainer_simulator.net
+        rastrainer_simulator.net.igtl, rastrainer_simulator.net.views
+        rastrainer_simulator.desktop.panels, rastrainer_simulator.replay
+        rastrainer_simulator.desktop, rastrainer_simulator.flow.session
+        rastrainer_simulator.flow.pages
+        rastrainer_simulator.flow
+        rastrainer_simulator.server
+        rastrainer_simulator.cli.doctor
+        rastrainer_simulator.cli
+    """,
+}
+# Which tables a table's rooms may look down to.
+BELOW = {"the domain": (), "Slicer's side": ("the domain",), "the simulator": ("the domain",)}
+
+# What a part may import that is not ours; None is anything that its package requires.
+OUTSIDE = {"the domain": {*sys.stdlib_module_names, "numpy", "fastcrc"}}
+FORBIDDEN = {
+    "rastrainer.slicer": {"qt", "ctk"},
+    "rastrainer_simulator": {"slicer", "qt", "ctk"},
+}
 
 
-def imported_modules(path: Path) -> set[str]:
-    modules = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+def floors(table: str) -> list[list[str]]:
+    return [line.strip(" ,").split(", ") for line in LAYERS[table].strip().splitlines()]
+
+
+TABLE_OF = {room: table for table in LAYERS for floor in floors(table) for room in floor}
+FLOOR_OF = {
+    room: number for table in LAYERS for number, floor in enumerate(floors(table)) for room in floor
+}
+
+
+def module_name(path: Path) -> str:
+    for name, folder in FOLDERS.items():
+        if path.is_relative_to(folder):
+            parts = path.relative_to(folder).with_suffix("").parts
+            return ".".join((name, *(part for part in parts if part != "__init__")))
+    raise AssertionError(path)
+
+
+FILES = {
+    module_name(path): path for folder in FOLDERS.values() for path in sorted(folder.rglob("*.py"))
+}
+
+
+def room_of(module: str) -> str:
+    is_package = FILES[module].name == "__init__.py"
+    return module if is_package else module.rpartition(".")[0]
+
+
+def imported(module: str) -> Iterator[str]:
+    for node in ast.walk(ast.parse(FILES[module].read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            modules |= {alias.name for alias in node.names}
+            yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path} imports relatively; the rule is absolute imports"
-            modules |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
-    return modules
+            assert node.level == 0, f"{module} imports relatively; the rule is absolute imports"
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                yield full if full in FILES else node.module
 
 
-def files(folder: Path, without: set[str] = frozenset()) -> list[Path]:
-    found = sorted(folder.rglob("*.py"))
-    return [path for path in found if path.relative_to(folder).parts[0] not in without]
+IMPORTS = {module: sorted(set(imported(module))) for module in FILES}
+OURS = {module: [name for name in names if name in FILES] for module, names in IMPORTS.items()}
 
 
-def forbidden(path: Path, *prefixes: str) -> list[str]:
-    return [
-        module
-        for module in imported_modules(path)
-        if any(module == prefix or module.startswith(prefix + ".") for prefix in prefixes)
+def test_every_room_has_its_floor():
+    assert {room_of(module) for module in FILES if FILES[module].name != "__init__.py"} == set(
+        TABLE_OF
+    )
+
+
+def may_import(room: str, other: str) -> bool:
+    if TABLE_OF[room] != TABLE_OF[other]:
+        return TABLE_OF[other] in BELOW[TABLE_OF[room]]
+    return room == other or FLOOR_OF[other] < FLOOR_OF[room]
+
+
+@pytest.mark.parametrize("room", TABLE_OF)
+def test_a_room_imports_only_rooms_of_floors_above_its_line(room):
+    upward = [
+        f"{module} → {other}"
+        for module, others in OURS.items()
+        if module in FILES and FILES[module].name != "__init__.py" and room_of(module) == room
+        for other in others
+        if FILES[other].name != "__init__.py" and not may_import(room, room_of(other))
     ]
+    assert not upward
 
 
-@pytest.mark.parametrize("path", files(DOMAIN, without=SLICER_SIDE), ids=lambda path: path.name)
-def test_domain_imports_only_numpy_the_standard_library_and_itself(path):
-    allowed = {*sys.stdlib_module_names, "numpy", "rastrainer", "fastcrc"}
-    assert {module.partition(".")[0] for module in imported_modules(path)} <= allowed
-    assert not forbidden(path, "rastrainer.slicer", "rastrainer.panels")
+def test_no_file_imports_itself_by_way_of_others():
+    try:
+        TopologicalSorter(OURS).prepare()
+    except CycleError as error:
+        pytest.fail(" → ".join(error.args[1]))
 
 
-@pytest.mark.parametrize("path", files(SIMULATOR), ids=lambda path: path.name)
-def test_simulator_never_imports_slicer(path):
-    side = ("slicer", "qt", "ctk", "rastrainer.slicer", "rastrainer.panels")
-    assert not forbidden(path, *side)
+def test_no_floor_has_more_than_twelve_rooms():
+    assert max(len(floor) for table in LAYERS for floor in floors(table)) <= 12
 
 
-@pytest.mark.parametrize("path", files(DOMAIN / "slicer"), ids=lambda path: path.name)
-def test_slicer_logic_imports_no_qt_and_never_the_simulator(path):
-    assert not forbidden(path, "qt", "ctk", "rastrainer.panels", "rastrainer_simulator")
+def outsiders(modules: Iterator[str]) -> set[str]:
+    names = {name.partition(".")[0] for module in modules for name in IMPORTS[module]}
+    return names - set(FOLDERS)
 
 
-@pytest.mark.parametrize("path", files(DOMAIN / "panels"), ids=lambda path: path.name)
-def test_panels_never_import_the_simulator(path):
-    assert not forbidden(path, "rastrainer_simulator")
+def test_the_domain_needs_only_numpy_and_the_standard_library():
+    domain = (module for module in FILES if TABLE_OF.get(room_of(module)) == "the domain")
+    assert outsiders(domain) <= OUTSIDE["the domain"]
+
+
+@pytest.mark.parametrize("part", FORBIDDEN)
+def test_what_belongs_to_slicer_or_qt_is_imported_only_where_it_may_be(part):
+    modules = (module for module in FILES if f"{module}.".startswith(f"{part}."))
+    assert not outsiders(modules) & FORBIDDEN[part]
 
 
 def test_only_the_checksum_may_look_for_a_package_that_slicer_lacks():
-    users = [path.name for path in files(DOMAIN) if forbidden(path, "fastcrc")]
-    assert users in ([], ["checksum.py"])
+    users = [module for module in FILES if "fastcrc" in " ".join(IMPORTS[module])]
+    assert [user for user in users if user.startswith("rastrainer.")] in (
+        [],
+        ["rastrainer.igtl.checksum"],
+    )
+
+
+def test_no_class_of_the_product_has_the_name_of_another():
+    names = [
+        node.name
+        for path in FILES.values()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+    ]
+    assert [name for name, count in Counter(names).items() if count > 1] == []

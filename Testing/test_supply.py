@@ -30,6 +30,7 @@ EXTRAS = {
     "requirements-bench.lock": ("bench",),
     "requirements-soak.lock": ("soak",),
     "requirements-supply.lock": ("supply",),
+    "requirements-docs.lock": ("docs",),
 }
 """What `make lock` makes each lock from, beside the project's own dependencies."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")

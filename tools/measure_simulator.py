@@ -37,7 +37,8 @@ PLATFORMS = {
 MEGABYTE = 10**6
 SOURCES = (ROOT / "RASTrainer" / "Logic", ROOT / "RASTrainerSimulatorServer")
 sys.path.insert(0, str(SOURCES[0]))
-from rastrainer import private_folder, trim_packages  # noqa: E402 (the checkout's own)
+from rastrainer.processes import private_folder  # noqa: E402 (the checkout's own)
+from rastrainer.slicer.program import trim_packages  # noqa: E402 (the checkout's own)
 
 
 def requirements(system: str, machine: str) -> str:
@@ -100,7 +101,7 @@ def measure_here() -> int:
         command = [sys.executable, "-m", "pip", "install", *words, "-r", str(LOCK)]
         subprocess.run([*command, "--target", str(folder)], check=True)
         (folder / "rastrainer.pth").write_text("\n".join(map(str, SOURCES)), encoding="utf-8")
-        trimmer = ("rastrainer.trim_packages", str(folder))
+        trimmer = ("rastrainer.slicer.program.trim_packages", str(folder))
         python = Path(sys.executable)
         subprocess.run(private_folder.private_words(python, folder, *trimmer), check=True)
         return round(trim_packages.size(folder) / MEGABYTE)

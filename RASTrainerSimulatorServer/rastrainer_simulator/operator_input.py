@@ -8,7 +8,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Command:
+class OperatorCommand:
     """One command whose arguments `rastrainer.protocol.check_arguments` has accepted.
 
     `arguments` keep the names and units of the wire (mm); `ticket` is returned in the answer;
@@ -33,7 +33,7 @@ class OperatorInput:
     translation: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rotation: tuple[float, float] = (0.0, 0.0)
     fine: bool = False
-    commands: tuple[Command, ...] = ()
+    commands: tuple[OperatorCommand, ...] = ()
     operator: str = ""
 
 

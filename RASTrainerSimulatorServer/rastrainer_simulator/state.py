@@ -56,7 +56,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Touch:
+class TouchState:
     """One touched fiducial: where the tip was (World, m) and when.
 
     `elapsed` is the trial's time in s, pauses excluded.
@@ -69,7 +69,7 @@ class Touch:
 
 
 @dataclass(frozen=True)
-class PlannedTarget:
+class PlanInWorld:
     """A point planned on the MRI, mapped to World (m) by the client's registration.
 
     `entry` is where the trajectory to it begins, None where only a point was planned. `reachable`
@@ -122,7 +122,7 @@ class TrainingState:
     trial_id: str = ""
     next_point: str | None = None
     instruction: str = ""
-    touches: tuple[Touch, ...] = ()
+    touches: tuple[TouchState, ...] = ()
     rejected: int = 0
     undone: int = 0
     registration: FinalRegistration | None = None
@@ -155,7 +155,7 @@ class SimulationState:
     motion: Motion
     operator: str
     camera: str
-    planned_target: PlannedTarget | None
+    planned_target: PlanInWorld | None
     depth: float = 0.0
 
 

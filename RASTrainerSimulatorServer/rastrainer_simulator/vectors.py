@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 Vector = tuple[float, float, float]
 
 ZERO: Vector = (0.0, 0.0, 0.0)
+
+
+def vector(values: Iterable[float]) -> Vector:
+    """Return three numbers as a vector of plain floats."""
+    x, y, z = map(float, values)
+    return (x, y, z)
 
 
 def add(a: Vector, b: Vector) -> Vector:
@@ -95,8 +102,9 @@ def turned_toward(direction: Vector, goal: Vector, most: float) -> Vector:
 
 def any_perpendicular(direction: Vector) -> Vector:
     """Return a unit vector perpendicular to `direction`."""
+    axes: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     smallest = min(range(3), key=lambda i: abs(direction[i]))
-    return unit(cross(direction, tuple(1.0 if i == smallest else 0.0 for i in range(3))))
+    return unit(cross(direction, axes[smallest]))
 
 
 def carried_along(across: Vector, direction: Vector, goal: Vector) -> Vector:

@@ -13,7 +13,12 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 
-from rastrainer_simulator.precise_clock import FIRST, precise_timing, set_real_time, sleep_until
+from rastrainer_simulator.loop.precise_clock import (
+    FIRST,
+    precise_timing,
+    set_real_time,
+    sleep_until,
+)
 from Testing.benchmarks.loop_health import Punctuality
 
 TICK_S = 0.004

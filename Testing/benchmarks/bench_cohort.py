@@ -6,11 +6,10 @@ import functools
 import os
 import time
 
-from rastrainer.cohort.jobs import trial_jobs
-from rastrainer.cohort.population import Population
-from rastrainer.experiment.study_protocol import StudyProtocol
-from rastrainer_simulator.cohort.engines import run_jobs
-from rastrainer_simulator.cohort.play import PlayedTrial, PlaySettings, play_job
+from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer_simulator.virtual.engines import run_jobs
+from rastrainer_simulator.virtual.play import PlayedTrial, PlaySettings, play_job
+from rastrainer_simulator.virtual.population import Population, trial_jobs
 from Testing.benchmarks.row import row
 
 TASKS = ("task-1", "task-2", "task-3", "task-4", "task-5")

@@ -12,16 +12,16 @@ import numpy as np
 import trimesh
 
 from rastrainer import transforms
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer_simulator.collision.collision import Collision
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.collision.collision import APART, Collision
 from rastrainer_simulator.collision.contact import Contact
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
 from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.collision.self_clearance import APART
-from rastrainer_simulator.planning.touch_planner import TouchPlanner
+from rastrainer_simulator.collision.touch_planner import TouchPlanner
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.setup import load_setup
 from Testing.benchmarks.row import row, row_of_figures
 
 TICK = 0.004
@@ -40,9 +40,9 @@ class Bench:
         setup = load_setup()
         self.robot, self.scenario = setup.robot, setup.scenario
         mesh = read_head_mesh(setup.scenario.head_mesh)
-        self.vertices, self.triangles = mesh.vertices / 1000.0, mesh.triangles
+        self.vertices, self.triangles = mesh.vertices / MM_PER_M, mesh.triangles
         self.to_world = setup.scenario.head_to_world.copy()
-        self.to_world[:3, 3] /= 1000.0
+        self.to_world[:3, 3] /= MM_PER_M
         self.kinematics, self.fabrik = make_kinematics(self.robot), Fabrik(self.robot)
 
     def collision(self, vertices: np.ndarray, triangles: np.ndarray) -> Collision:
@@ -72,7 +72,7 @@ def _tour(bench: Bench, collision: Collision) -> Iterator[np.ndarray]:
     """Yield joint angles tick by tick: from fiducial to fiducial, 50 mm above the skin between."""
     planner, q = TouchPlanner(bench.robot, collision), None
     for fiducial in np.concatenate([task.fiducials for task in bench.scenario.tasks]):
-        place = transforms.apply(bench.to_world, fiducial / 1000.0)
+        place = transforms.apply(bench.to_world, fiducial / MM_PER_M)
         normal = np.array(collision.nearest_to_point(tuple(place)).normal)
         touch = planner.touch(place, normal)
         over = bench.fabrik.solve(place + 0.05 * normal, touch.direction, q_start=touch.q)
@@ -187,7 +187,7 @@ def _pose_of(start: np.ndarray, end: np.ndarray) -> coal.Transform3s:
 
 
 def _depth_row(bench: Bench, collision: Collision, count: int) -> dict:
-    depths = np.array([1e3 * depth for depth in islice(_ram_depths(bench, collision), count)])
+    depths = np.array([MM_PER_M * depth for depth in islice(_ram_depths(bench, collision), count)])
     return row("contact.depth", depths, "mm", success=float(np.mean(depths <= DEEPEST_MM)))
 
 

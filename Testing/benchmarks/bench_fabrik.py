@@ -15,9 +15,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import pinocchio as pin
 
+from rastrainer_simulator.core.arm import limit_step
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.model import load_robot
-from rastrainer_simulator.robot.velocity_limit import limit_step
 from Testing.benchmarks.ik_peers import LeastSquares, Pinocchio, PinPink
 from Testing.benchmarks.row import row
 

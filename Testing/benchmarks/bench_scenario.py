@@ -13,7 +13,7 @@ from Testing.benchmarks.row import row
 from Testing.slicer.head.debian_heads import COLIN27, CT_PROJECT, write_ct
 from Testing.slicer.head.phantoms import phantom
 
-BUILD = [sys.executable, "-m", "rastrainer_simulator.cli", "scenario", "build"]
+BUILD = [sys.executable, "-m", "rastrainer_simulator.cli.main", "scenario", "build"]
 
 
 def rows(quick: bool) -> list[dict]:

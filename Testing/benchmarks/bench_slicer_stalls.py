@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.scenario import load_scenario
-from rastrainer.scoring import SAFETY_METRICS
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.study import Study
-from rastrainer.tasks import LABELS
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_record import TrialRecord
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.study.database.study import Study
+from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
 from Testing.benchmarks.row import row
 from Testing.end_to_end.module.installed_simulator import write_program

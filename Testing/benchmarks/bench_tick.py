@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer.head_mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName, check_arguments
-from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
-from rastrainer_simulator.setup import SimulationSetup, load_setup
-from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.state import Motion
 from Testing.benchmarks.loop_health import Punctuality
 from Testing.benchmarks.process_cost import resident_mb
@@ -96,7 +96,7 @@ def _tour(simulation: Simulation) -> np.ndarray:
 
     def do(command: str, **arguments: object) -> None:
         checked = check_arguments(command, arguments)
-        step(OperatorInput(commands=(Command(command, checked),)))
+        step(OperatorInput(commands=(OperatorCommand(command, checked),)))
 
     def move_to(position: np.ndarray) -> None:
         do(CommandName.MOVE_TIP_TO, positionMm=position.tolist(), speedMmS=250.0)

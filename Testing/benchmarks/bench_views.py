@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.scene.scene_glb import scene_glb
-from rastrainer_simulator.setup import load_setup
 from Testing.benchmarks.process_cost import cpu_share, resident_mb
 from Testing.benchmarks.row import row
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 from Testing.simulator.scene.glb_reader import Glb
-from Testing.simulator.view_server.served import ViewClient
 
 CROWD = 4
 

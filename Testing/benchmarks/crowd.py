@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import aiohttp
 
-from rastrainer.igtl.command import Command
-from rastrainer.igtl.content import Transform
+from rastrainer.igtl.content import Command, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName
 from Testing.benchmarks.loop_health import health_of
@@ -57,19 +56,29 @@ class Served:
         return health_of(self.after).since(health_of(self.before)).on_time
 
 
-def serve_crowd(port: int, view_port: int, key: str, seconds: float, results) -> None:
+def serve_crowd(
+    port: int,
+    view_port: int,
+    key: str,
+    seconds: float,
+    results,
+    clients: int = CLIENTS,
+    views: int = VIEWS,
+) -> None:
     """Put what a crowd gets of a simulator in so many seconds into a queue, as `Served`."""
-    results.put(asyncio.run(_serve(port, view_port, key, seconds)))
+    results.put(asyncio.run(_serve(port, view_port, key, seconds, clients, views)))
 
 
-async def _serve(port: int, view_port: int, key: str, seconds: float) -> Served:
+async def _serve(
+    port: int, view_port: int, key: str, seconds: float, count: int, view_count: int
+) -> Served:
     loop = asyncio.get_running_loop()
     clients = []
-    for number in range(CLIENTS):
+    for number in range(count):
         _transport, client = await loop.create_connection(lambda n=number: _Client(n), HOST, port)
         clients.append(client)
     async with aiohttp.ClientSession(headers={"Authorization": f"Bearer {key}"}) as session:
-        views = [_View() for _ in range(VIEWS)]
+        views = [_View() for _ in range(view_count)]
         url = f"http://{HOST}:{view_port}/stream"
         watching = [asyncio.create_task(view.watch(session, url)) for view in views]
         await asyncio.sleep(SETTLE_S)

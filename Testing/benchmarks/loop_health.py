@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import Device
-from rastrainer_simulator.loop_statistics import LoopStatistics
+from rastrainer.protocol import DeviceName
+from rastrainer_simulator.loop.loop_statistics import LoopStatistics
 
 PATIENCE_S = 30.0
 
@@ -43,8 +43,8 @@ def next_health(client: Client) -> LoopStatistics:
     Raises:
         LinkError: none came in half a minute, or the connection is lost.
     """
-    known = client.latest.get(Device.SIM_SERVER)
-    beat = client.wait_for(Device.SIM_SERVER, lambda new: new is not known, PATIENCE_S)
+    known = client.latest.get(DeviceName.SIM_SERVER)
+    beat = client.wait_for(DeviceName.SIM_SERVER, lambda new: new is not known, PATIENCE_S)
     return health_of(json.loads(beat.content.message))
 
 

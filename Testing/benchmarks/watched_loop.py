@@ -7,7 +7,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 from rastrainer.igtl.client import Client
-from rastrainer_simulator.loop_statistics import LoopStatistics
+from rastrainer_simulator.loop.loop_statistics import LoopStatistics
 from Testing.benchmarks.bare_loop import BareLoop
 from Testing.benchmarks.loop_health import Punctuality, next_health, punctuality, undisturbed
 

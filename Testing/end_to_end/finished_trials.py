@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
-from rastrainer.scenario import load_scenario
-from rastrainer.scoring import SAFETY_METRICS
-from rastrainer.trial_record import TouchedPoint, TrialRecord
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.training.true_error import Truth
 
 COLIN = asset_path("scenarios", "colin27")

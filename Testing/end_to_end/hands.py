@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.controls.control_name import ControlName
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.control_name import ControlName
 from Testing.end_to_end.virtual_display import VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 

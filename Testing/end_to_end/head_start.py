@@ -1,6 +1,6 @@
 """Builds what every simulator builds first, so that what is forked afterwards has it already."""
 
-from rastrainer_simulator.setup import load_setup
-from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.simulation import Simulation
 
 Simulation(load_setup(), 0)

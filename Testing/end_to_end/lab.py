@@ -12,15 +12,15 @@ from pathlib import Path
 from typing import IO
 
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.limits_file import FILE_NAME as LIMITS_FILE
+from rastrainer_simulator.net.limits import LIMITS_FILE
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 from Testing.end_to_end.window_process import WindowProcess
-from Testing.simulator.igtl.servers import LoopThread
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 
-SLICER = (sys.executable, "-m", "rastrainer.slicer.headless")
+SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 PATIENCE_S = 600
 PATIENT = {"views": {"lost_s": PATIENCE_S}}
 """A machine that is too busy to draw does not pause the trial."""

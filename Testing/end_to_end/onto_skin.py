@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import CommandName, Device, Proximity
+from rastrainer.protocol import CommandName, DeviceName, Proximity
 
 SINK_MM = 1.0
 """How far below the skin the tip is sent: it stops on the skin."""
@@ -26,7 +26,7 @@ def lower_onto_skin(client: Client, place: np.ndarray, center: np.ndarray) -> No
     arguments = {"positionMm": lowered(place, center), "speedMmS": 300}
     reply = client.send_command(CommandName.MOVE_TIP_TO, arguments, PATIENCE_S)
     assert reply.ok, reply.error
-    client.wait_for(Device.SIM_STATE, is_in_contact, PATIENCE_S)
+    client.wait_for(DeviceName.SIM_STATE, is_in_contact, PATIENCE_S)
 
 
 def is_in_contact(state: Message) -> bool:

@@ -11,12 +11,12 @@ import sys
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-from rastrainer.private_folder import private_words
-from rastrainer.slicer.simulator_package import LOCK, SimulatorPackage
-from rastrainer.trim_packages import SIZES
+from rastrainer.processes.private_folder import private_words
+from rastrainer.slicer.program.simulator_package import LOCK, SimulatorPackage
+from rastrainer.slicer.program.trim_packages import SIZES
 
 ROOT = Path(__file__).parents[2]
-SIMULATOR, TRIMMER = "rastrainer_simulator.cli", "rastrainer.trim_packages"
+SIMULATOR, TRIMMER = "rastrainer_simulator.cli.main", "rastrainer.slicer.program.trim_packages"
 
 
 def fill(folder: Path, wheel: Path) -> None:

@@ -36,13 +36,13 @@ for line in sys.stdin:
 """
 
 SIMULATOR = (
-    "rastrainer_simulator.cli",
-    "rastrainer_simulator.simulator_command",
-    "rastrainer_simulator.logs.log_files",
-    "rastrainer_simulator.server",
+    "rastrainer_simulator.cli.main",
+    "rastrainer_simulator.cli.simulator",
+    "rastrainer_simulator.ops.log_files",
+    "rastrainer_simulator.server.server",
     "Testing.end_to_end.head_start",
 )
-SLICER_SIDE = ("rastrainer.slicer.headless",)
+SLICER_SIDE = ("rastrainer_headless.main",)
 
 
 class Nursery:

@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli", "simulator"]
+COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli.main", "simulator"]
 READY = "RASTrainer simulator ready on 127.0.0.1:"
 
 

@@ -10,13 +10,13 @@ from typing import Protocol
 
 import numpy as np
 
-from rastrainer_simulator.desktop.flight import Viewpoint
+from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.screen_reader import screen_from_json
 from rastrainer_simulator.desktop.shown_scene import pose_matrix
-from rastrainer_simulator.flow.screen import Menu, Screen
+from rastrainer_simulator.net.views.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.axes import camera_axes
 from Testing.end_to_end.window_process import wait_until
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.views.served import ViewClient
 
 PATIENCE_S = 120.0
 LIFT_M = 0.035

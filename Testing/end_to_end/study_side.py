@@ -8,10 +8,10 @@ import time
 from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.headless_scene import HeadlessScene
-from rastrainer.slicer.session import Places, Session
-from rastrainer.slicer.simulator_package import SimulatorPackage
+from rastrainer.slicer.logic.module_session import ModulePaths, ModuleSession
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
 
 ROOT = Path(__file__).parents[2]
@@ -21,7 +21,7 @@ PERIOD_S = 0.05
 
 def run(folder: Path, port: int) -> None:
     """Lead the trainees of the study in a folder; nobody is chosen. Never returns."""
-    places = Places(
+    places = ModulePaths(
         assets=asset_path(),
         python=Path(sys.executable),
         simulator=folder / "simulator",
@@ -30,7 +30,7 @@ def run(folder: Path, port: int) -> None:
         library=folder / "scenarios",
         package=SimulatorPackage.of(ROOT / "RASTrainer"),
     )
-    session = Session(HeadlessScene().scene, places, headlessKit)
+    session = ModuleSession(HeadlessScene().scene, places, headlessKit)
     session.link.connectTo(DEFAULT_HOST, port)
     while True:
         if session.link.connector is not None:

@@ -11,10 +11,10 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.igtl.client import Client, LinkError, Reply
-from rastrainer.igtl.command import Command
+from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device
-from rastrainer.scenario import Scenario
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName
+from rastrainer.scenario.scenario import Scenario
 from Testing.end_to_end.onto_skin import lower_onto_skin
 
 TASK = "task-1"
@@ -111,7 +111,7 @@ class SurvivingPlayer:
     def _come_back(self, client: Client) -> None:
         """Check that the server has all that it acknowledged, and asks for the right point."""
         state = self._state(client)
-        points = client.wait_for(Device.CAPTURED_POINTS, timeout=PATIENCE_S).content.points
+        points = client.wait_for(DeviceName.CAPTURED_POINTS, timeout=PATIENCE_S).content.points
         in_flight, self._in_flight = self._in_flight, ""
         if not self.trial_id and state["trialId"] in self.registered:
             return
@@ -172,7 +172,7 @@ class SurvivingPlayer:
         points = [*self._scenario.task(self.task).fiducials, self._scenario.target_position]
         *places, center = transforms.apply(head_to_world, np.array(points))
         place = places[number]
-        tip = client.wait_for(Device.TOOL_TIP_TO_WORLD, timeout=PATIENCE_S)
+        tip = client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, timeout=PATIENCE_S)
         lifted = _above(np.array(tip.content.matrix)[:3, 3], center)
         for goal in (lifted, _above(place, center)):
             self._send(
@@ -182,7 +182,7 @@ class SurvivingPlayer:
             def is_there(tip: Message, goal: np.ndarray = goal) -> bool:
                 return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - goal) < 3.0
 
-            client.wait_for(Device.TOOL_TIP_TO_WORLD, is_there, PATIENCE_S)
+            client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, is_there, PATIENCE_S)
         self._in_flight = CommandName.MOVE_TIP_TO
         lower_onto_skin(client, place, center)
         self._in_flight = ""
@@ -192,7 +192,7 @@ class SurvivingPlayer:
         self._in_flight = name
         if killing is not None and killing.is_due():
             body = json.dumps(arguments)
-            client.send(Message(Device.COMMAND, Command(2**31, name, body)))
+            client.send(Message(DeviceName.COMMAND, Command(2**31, name, body)))
             killing.while_it_works()
             raise LinkError("The server was killed.")
         reply: Reply = client.send_command(name, arguments, PATIENCE_S)
@@ -201,7 +201,7 @@ class SurvivingPlayer:
         return dict(reply.data)
 
     def _state(self, client: Client) -> dict:
-        message = client.wait_for(Device.SIM_STATE, timeout=PATIENCE_S)
+        message = client.wait_for(DeviceName.SIM_STATE, timeout=PATIENCE_S)
         return json.loads(message.content.text)
 
 

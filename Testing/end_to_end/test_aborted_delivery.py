@@ -3,53 +3,35 @@
 from __future__ import annotations
 
 import random
-import time
 
 import pytest
 
-from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
-from rastrainer.slicer.aborted_desk import AbortedDesk
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.headless_scene import HeadlessScene
-from rastrainer.slicer.link import Link
-from rastrainer.study import Study
-from rastrainer.study_aborted import AbortedTrials
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
+from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
-from rastrainer_simulator.setup import load_setup
-from rastrainer_simulator.simulation import Simulation
-from Testing.domain.aborted_records import make_aborted
+from Testing.domain.trial.aborted_records import make_aborted
 from Testing.end_to_end.faulty_proxy import FaultyProxy
+from Testing.end_to_end.slicer_side import SlicerSide
 from Testing.end_to_end.test_delivery import Server
-from Testing.slicer.simulator_double import process_link
 
 TRIALS = 12
 
 
-class SlicerSide:
-    """Link, desk and study, as Slicer has them."""
-
-    def __init__(self, path, port):
-        self.link = Link(HeadlessScene().scene, headlessKit)
-        self.work = BackgroundWork()
-        self.desk = AbortedDesk(self.link, lambda: Study.open(path), self.work)
-        self.link.connectTo(port=port)
-
-    def run_for(self, steps):
-        for _ in range(steps):
-            process_link(self.link)
-            self.work.process()
-            time.sleep(0.002)
-
-    def close(self):
-        self.desk.close()
-        self.work.close()
-        self.link.disconnect()
+def slicer_side(path, port):
+    return SlicerSide(
+        path,
+        port,
+        lambda _scene, link, open_study, work: AbortedTrialsLogic(link, open_study, work),
+    )
 
 
 def write_aborted_trials(folder):
@@ -76,7 +58,7 @@ def test_they_arrive_exactly_once_through_faults_and_ends_of_both_sides(
     write_aborted_trials(records)
     server = Server(loop_thread, simulation, records)
     proxy = FaultyProxy(server.port, rng, 0.2)
-    slicer = SlicerSide(study, proxy.port)
+    slicer = slicer_side(study, proxy.port)
     ends = [0, 0]
     try:
         while server.undelivered or min(ends) < 2:
@@ -85,7 +67,7 @@ def test_they_arrive_exactly_once_through_faults_and_ends_of_both_sides(
             if rng.random() < 0.2:
                 ends[0] += 1
                 slicer.close()
-                slicer = SlicerSide(study, proxy.port)
+                slicer = slicer_side(study, proxy.port)
             if rng.random() < 0.2:
                 ends[1] += 1
                 server.close()

@@ -12,7 +12,7 @@ NAMES = ("robot.png", "residuals.png", "trial.mrb", "study.db", "records", "resu
 WITHOUT_SLICER = """
 import sys
 sys.modules["slicer"] = None
-from rastrainer_simulator.cli import main
+from rastrainer_simulator.cli.main import main
 sys.exit(main())
 """
 """Starts `rastrainer` where nothing of that name can be imported."""
@@ -65,10 +65,11 @@ def test_what_the_demo_says_to_install_brings_slicers_part(installed):
     assert {"slicer-core; extra == 'slicer'", "scipy; extra == 'slicer'"} <= set(needs)
 
 
+@pytest.mark.soak
 def test_the_demo_of_the_wheel_plays_both_trials_in_an_empty_folder(run, installed, tmp_path):
     where = run("-c", "import rastrainer, rastrainer_simulator as s; print(s.__file__)")
     assert where.stdout.startswith(str(installed))
-    done = run("-m", "rastrainer_simulator.cli", "demo")
+    done = run("-m", "rastrainer_simulator.cli.main", "demo")
     assert done.returncode == 0, done.stderr
     output = tmp_path / "empty" / "rastrainer-demo"
     assert [name for name in NAMES if not (output / name).exists()] == []

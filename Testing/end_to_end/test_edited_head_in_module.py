@@ -10,20 +10,21 @@ import slicer
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.scenario_library import user_library
-from rastrainer.slicer.control_points import setPoints
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.head.segment import SEGMENT_NAME
-from rastrainer.slicer.scene import Role, findNode
-from rastrainer.tasks import LABELS
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.scene import Role, findNode
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import add_volume, fiducials, vtk_matrix
 from Testing.slicer.host.cancels import cancels
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
-SCAN = phantom(spacing=(2.0, 2.0, 2.0))
-WEN, WEN_RADIUS = np.array([0.0, -74.0, 0.0]), 12.0
+SIZE = 0.75
+SCAN = phantom(spacing=(2.0, 2.0, 2.0), size=SIZE)
+WEN, WEN_RADIUS = np.array([0.0, -55.0, 0.0]), 12.0
 """What is painted at the back of the head, RAS mm."""
 
 
@@ -35,7 +36,7 @@ def _scan_is_chosen(host, tmp_path):
     unfold(host, "adjustHeadGroupBox")
     unfold(host, "planForScenarioGroupBox")
     placed = host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "By hand")
-    setPoints(placed, LABELS, fiducials())
+    setPoints(placed, LABELS, fiducials(SIZE))
     host.check("handPlacedCheckBox")
     host.check("skullCheckBox", False)
     host.choose("scanComboBox", add_volume(host.scene, SCAN, "Ms X"))
@@ -66,7 +67,7 @@ def test_the_scenario_has_the_edited_head_on_the_base_that_was_shown(host):
     made = read_head_mesh(user_library() / "ms-x" / "head.ply").vertices
     assert made[:, 2].min() == pytest.approx(shown[4], abs=0.51)
     assert made[:, 2].max() == pytest.approx(shown[5], abs=1.0)
-    assert shown[2] == pytest.approx(-76.0, abs=1.5)
+    assert shown[2] == pytest.approx(-76.0 * SIZE, abs=1.5)
     assert made[:, 1].min() == pytest.approx(WEN[1] - WEN_RADIUS, abs=1.5)
 
 

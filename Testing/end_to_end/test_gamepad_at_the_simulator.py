@@ -8,7 +8,7 @@ import time
 import numpy as np
 
 from rastrainer.igtl.client import Client
-from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.journal_file import read_journal
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 
 PATIENCE_S = 30.0
@@ -64,7 +64,7 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         watch.until(lambda state: state["phase"] == "running")
         state = watch.state()
         assert (state["trainee"], state["task"], state["mode"]) == ("A", "trial-run", "desktop")
-        # The desk follows the trial a moment later: its answer to a touch shows that.
+        # The presenter follows the trial a moment later: its answer to a touch shows that.
         give_up = time.monotonic() + PATIENCE_S
         while not watch.sees("Too far from point 1"):
             assert time.monotonic() < give_up, "no touch was taken"

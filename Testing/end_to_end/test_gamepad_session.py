@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rastrainer.journal.journal_reader import read_journal
-from rastrainer_simulator.desktop.flight import FLIGHT_S
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer.journal.journal_file import read_journal
+from rastrainer_simulator.desktop.camera import TRANSITION_S
+from rastrainer_simulator.ops.texts.texts import Texts
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.heard import BYTES_A_SECOND, times_heard
 from Testing.end_to_end.lab import Lab
@@ -35,7 +35,7 @@ QUALITY = ("--quality", "low", "--picture-quality", "high" if WANTS_SCREENSHOTS 
 SPEED = "1" if WANTS_SCREENSHOTS else "4"
 DRAWN_S = 600.0
 STEADY_S = 0.4
-SETTLED_S = FLIGHT_S + 0.5 if WANTS_SCREENSHOTS else 0.1
+SETTLED_S = TRANSITION_S + 0.5 if WANTS_SCREENSHOTS else 0.1
 LONGEST_SOUND_S = 1.5
 TRAINEE = "P7"
 CRASH_AFTER = 9

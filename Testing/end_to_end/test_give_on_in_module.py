@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.scenario import load_scenario
-from rastrainer.scenario_library import user_library
-from rastrainer.scenario_package import unpack
-from rastrainer.slicer.control_points import setPoints, worldPoints
-from rastrainer.slicer.scene import Role, findNode
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.package import unpack
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.scene.control_points import setPoints, worldPoints
+from rastrainer.slicer.scene.scene import Role, findNode
 from Testing.end_to_end.module.story import Story, unfold
-from Testing.simulator.scenarios.heads import egg
-from Testing.simulator.scenarios.test_export import written
+from Testing.simulator.authoring.heads import egg
+from Testing.simulator.authoring.test_export import written
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
 

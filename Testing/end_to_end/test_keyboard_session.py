@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.journal_file import read_journal
 from Testing.end_to_end.hands import KeyHands
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee

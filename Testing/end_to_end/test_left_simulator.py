@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer.slicer.child_process import ChildProcess
+from rastrainer.slicer.program.child_process import ChildProcess
 from Testing.end_to_end.module.story import Story, free_port
 from Testing.slicer.host.host import Host
 from Testing.slicer.simulator_double import wait_until

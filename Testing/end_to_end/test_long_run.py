@@ -15,9 +15,9 @@ from statistics import median
 
 import pytest
 
-from rastrainer.journal.journal_reader import Integrity, read_journal
-from rastrainer.scenario import load_scenario
-from rastrainer.study import Study
+from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.study import Study
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.benchmarks.process_cost import resident_mb
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE
@@ -25,8 +25,8 @@ from Testing.end_to_end.lab import SlicerProcess
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.surviving_player import SurvivingPlayer
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.simulator.igtl.servers import LoopThread
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 
 pytestmark = pytest.mark.skipif(
     sys.platform != "linux", reason="memory and descriptors are read where Linux tells them"
@@ -147,6 +147,7 @@ def told(run: Run) -> str:
     return f"\n{run.trials} trials: {'; '.join(parts)}"
 
 
+@pytest.mark.soak
 def test_ten_trials_in_a_row_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
     run = train(tmp_path, lambda played: played >= 10, speed=8)
     with capsys.disabled():

@@ -43,6 +43,22 @@ def upset(story, delete_nodes):
         assert len(host.text(name).split()) > 1, f"{name} says nothing"
 
 
+def test_the_scene_may_be_upset_in_mid_trial_and_after_it(story):
+    host = story.host
+    story.start_simulator()
+    story.create_trainee()
+    story.start_task()
+    story.touch_some()
+    upset(story, delete_nodes=True)
+    story.touch_the_others()
+    upset(story, delete_nodes=False)
+    story.register()
+    upset(story, delete_nodes=True)
+    story.look_at_score()
+    assert host.find("historyTable").rowCount == 1
+
+
+@pytest.mark.soak
 def test_the_scene_may_be_upset_after_every_step(story):
     for step, delete_nodes in (
         (Story.start_simulator, False),
@@ -62,6 +78,19 @@ def test_the_scene_may_be_upset_after_every_step(story):
     story.delete_trainee()
 
 
+def test_the_simulator_may_be_killed_and_started_again_in_mid_trial(story):
+    story.start_simulator()
+    story.create_trainee()
+    story.start_task()
+    story.touch_some()
+    story.kill_simulator()
+    assert "no touch is lost" in story.host.text("phaseText")
+    story.start_simulator()
+    story.go_on_with_task()
+    assert story.host.find("pointsProgressBar").value == 6
+
+
+@pytest.mark.soak
 def test_the_simulator_may_be_killed_and_started_again_at_every_step(story):
     host = story.host
     story.start_simulator()

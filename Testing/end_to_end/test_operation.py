@@ -15,13 +15,13 @@ import urllib.request
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.journal.journal_reader import Integrity, read_journal
-from rastrainer.protocol import Device
+from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.protocol import DeviceName
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.simulator.igtl.servers import LoopThread
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 
 TRAINEE = "Pseudonym-77"
 KEY = "a-key-that-nobody-else-knows-0123456789-abcdefgh"
@@ -43,7 +43,7 @@ def in_phase(client, phase):
     def is_so(message):
         return json.loads(message.content.text)["phase"] == phase
 
-    return json.loads(client.wait_for(Device.SIM_STATE, is_so, timeout=20).content.text)
+    return json.loads(client.wait_for(DeviceName.SIM_STATE, is_so, timeout=20).content.text)
 
 
 def journal(folder):
@@ -67,7 +67,7 @@ def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_goes_on_once_there_
         assert "could not be recorded and does not count" in refused.error
         assert "File too large" in refused.error
         client.wait_for(
-            Device.SIM_STATE,
+            DeviceName.SIM_STATE,
             lambda message: "make room or choose another folder" in message.content.text,
             timeout=20,
         )
@@ -142,7 +142,7 @@ def test_a_window_that_fails_is_told_of_and_its_log_beside_the_simulator_s_says_
     with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
         simulator.next_line()
         assert "computes the robot's kinematics by" in simulator.next_line()
-        assert "goes on without its window" in simulator.next_line()
+        assert "continues without its window" in simulator.next_line()
         assert simulator.stop()[0] == 0
     (line,) = log_lines(tmp_path, "window.log")
     assert line["message"].startswith("No window can be opened on this machine: ")
@@ -183,7 +183,7 @@ def test_an_interrupted_trial_is_told_on_the_terminal_and_left_alone_where_that_
         assert simulator.stop()[0] == 0
     with NoViews(records) as simulator:
         assert simulator.next_line() == (
-            f"RASTrainer simulator goes on with the interrupted trial of {TRAINEE} at task-1: "
-            "0 of 15 points are kept; go on with it or abort it"
+            f"RASTrainer simulator resumes the interrupted trial of {TRAINEE} at task-1: "
+            "0 of 15 points are kept; resume or abort it"
         )
         assert simulator.stop(signal.SIGHUP)[0] == 0

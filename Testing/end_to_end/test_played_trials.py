@@ -13,19 +13,19 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.journal.journal_reader import read_journal
-from rastrainer.localization_error import error_along_surface
-from rastrainer.registration import register
-from rastrainer.scripted_trainee import Skill
-from rastrainer.surface_queries import outward_normals
-from rastrainer.target_error import target_error
-from rastrainer_simulator.record.replay import ReplayReport, replay
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.surface_queries import outward_normals
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.registration.localization_error import error_along_surface
+from rastrainer.registration.registration import register
+from rastrainer.registration.target_error import target_error
+from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
-from rastrainer_simulator.setup import SimulationSetup, load_setup
-from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.virtual_trial import VirtualTrial, play_virtual_trial
+from rastrainer_simulator.replay.resimulation import ReplayReport, replay
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.virtual_trial import VirtualTrial, play_virtual_trial
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 STEP_S = 0.05
@@ -75,9 +75,11 @@ def compared(report: ReplayReport) -> tuple[int, int]:
     return report.compared["touch"], report.ticks
 
 
-@pytest.fixture(scope="module", params=[12, pytest.param(100, marks=pytest.mark.soak)])
+@pytest.fixture(scope="module", params=[6, pytest.param(100, marks=pytest.mark.soak)])
 def played(request) -> list[Played]:
     seeds = list(range(request.param))
+    if len(seeds) < 10:
+        return played_trials(seeds)
     with multiprocessing.get_context("spawn").Pool(2) as pool:
         first, second = pool.map(played_trials, [seeds[0::2], seeds[1::2]])
     return first + second

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.link.heartbeat import LinkState
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 

@@ -13,9 +13,9 @@ import pytest
 
 import rastrainer
 import rastrainer_simulator as simulator
-from rastrainer.private_folder import private_words
-from rastrainer.slicer.child_process import ChildProcess
-from rastrainer.slicer.simulator_setup import CHECKOUT, PROGRAM
+from rastrainer.processes.private_folder import private_words
+from rastrainer.slicer.program.child_process import ChildProcess
+from rastrainer.slicer.program.simulator_setup import CHECKOUT, PROGRAM
 from Testing.end_to_end.virtual_display import VirtualDisplay
 from Testing.running_process import runs, started_by
 from Testing.slicer.host.python_slicer import write_python_slicer

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.scenario import load_scenario
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.scenario.scenario import load_scenario
 from Testing.slicer.head.debian_heads import COLIN27, CT_PROJECT, write_ct
 
 pytestmark = pytest.mark.soak
-RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli", "scenario"]
+RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main", "scenario"]
 MISSING = "{path} is missing; install it: sudo apt-get install {package}"
 
 

@@ -5,7 +5,7 @@ import slicer
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.link.heartbeat import LinkState
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 
@@ -53,7 +53,7 @@ def connected(host, module_widget, simulator):  # noqa: F811
     host.press("connectButton")
     link = module_widget.logic.session.link
     host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it connects")
-    host.let_pass(PAUSE_S)
+    come_to_rest(host)
     return host
 
 
@@ -63,9 +63,14 @@ def renders_in_a_while(host):  # noqa: F811
     return host.renders - before
 
 
+def come_to_rest(host):  # noqa: F811
+    """Wait until what has been asked for before is drawn, however slow the machine is."""
+    host.wait_until(lambda: renders_in_a_while(host) == 0, "nothing is drawn any more")
+
+
 def show_robot(host):  # noqa: F811
     host.check("robotCheckBox")
-    host.let_pass(PAUSE_S)
+    come_to_rest(host)
 
 
 def wait_for_renders(host, arm, count=10):  # noqa: F811
@@ -89,7 +94,7 @@ def test_with_the_robot_shown_and_at_rest_nothing_is_rendered(connected):
 
 
 def test_while_the_arm_moves_and_the_robot_is_not_shown_nothing_is_rendered(connected, arm):
-    connected.let_pass(PAUSE_S)
+    come_to_rest(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
 
@@ -98,7 +103,7 @@ def test_the_robot_that_is_shown_is_rendered_as_it_moves_until_it_is_hidden(conn
     show_robot(connected)
     wait_for_renders(connected, arm)
     connected.check("robotCheckBox", False)
-    connected.let_pass(PAUSE_S)
+    come_to_rest(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
     show_robot(connected)
@@ -108,10 +113,10 @@ def test_the_robot_that_is_shown_is_rendered_as_it_moves_until_it_is_hidden(conn
 def test_whoever_leaves_the_module_sees_the_robot_move_in_a_3d_view_alone(connected, arm):
     show_robot(connected)
     connected.leave()
-    connected.let_pass(PAUSE_S)
+    come_to_rest(connected)
     wait_for_renders(connected, arm)
     set_layout("OneUpRedSliceView")
-    connected.let_pass(PAUSE_S)
+    come_to_rest(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
     set_layout("FourUpView")
@@ -121,7 +126,7 @@ def test_whoever_leaves_the_module_sees_the_robot_move_in_a_3d_view_alone(connec
 def test_in_a_minimized_window_nothing_is_rendered(connected, arm):
     show_robot(connected)
     connected.minimize()
-    connected.let_pass(PAUSE_S)
+    come_to_rest(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
     connected.minimize(False)

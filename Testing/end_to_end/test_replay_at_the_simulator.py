@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.scenario import load_scenario
-from rastrainer.scripted_trainee import Skill
-from rastrainer.scripted_trial import play_trial, say_hello
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.end_to_end.window_process import wait_until
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.views.served import ViewClient
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 SPEED = ("--speed", "4")

@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.head_mesh import HeadMesh
-from rastrainer.scenario_draft import HeadDraft
-from rastrainer.scenario_writer import new_folder, write_scenario
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.scenario.draft import HeadDraft
+from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer.head.scenario_build import build_scenario
-from rastrainer_simulator.scenarios.head_process import head_process
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario
-from Testing.domain.spheres import sphere_mesh
+from rastrainer_simulator.authoring.head_process import head_process
+from Testing.domain.head.spheres import sphere_mesh
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.slicer.head.phantoms import CT, phantom
 from Testing.slicer.head.volume_file import write_volume
 from Testing.slicer.simulator_double import wait_until
 
-RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli"]
+RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main"]
 
 
 class CancelledError(Exception):
@@ -31,7 +31,7 @@ class CancelledError(Exception):
 @pytest.fixture(scope="module")
 def ct(tmp_path_factory):
     """A CT of a head, as a file."""
-    scan = phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
+    scan = phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-46.0, size=0.75)
     return write_volume(tmp_path_factory.mktemp("ct") / "ct.nrrd", scan)
 
 
@@ -63,7 +63,7 @@ def test_a_head_is_worked_with_before_its_skull_is_made(ct):
 
 
 def test_a_ct_without_bone_ends_with_a_sentence_once_its_skull_is_asked_for(tmp_path):
-    soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
+    soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-46.0, size=0.75)
     with head_process(write_volume(tmp_path / "soft.nrrd", soft), []) as process:
         assert wait_for_head(process).head.is_closed
         with pytest.raises(InputError, match="The CT shows no bone"):

@@ -10,21 +10,21 @@ import zipfile
 
 import pytest
 
-from rastrainer.scenario_library import user_library
-from rastrainer.scenario_package import pack
-from rastrainer.scenario_writer import new_folder, write_scenario
-from rastrainer_simulator.cli import main
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.package import pack
+from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer_simulator.cli.main import main
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.read_png import read_png
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.volume_file import write_volume
 
-RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli", "scenario"]
+RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main", "scenario"]
 
 
 @pytest.fixture
 def volume(tmp_path):
-    return write_volume(tmp_path / "head.nii.gz", phantom(spacing=(3.0, 3.0, 3.0)))
+    return write_volume(tmp_path / "head.nii.gz", phantom(spacing=(3.0, 3.0, 3.0), size=0.75))
 
 
 @pytest.fixture
@@ -38,8 +38,8 @@ def ball(tmp_path):
 
 def test_a_head_is_pictured_before_anything_is_made_of_it(volume, tmp_path, capsys):
     picture = tmp_path / "head.png"
-    assert main(["scenario", "preview", str(volume), str(picture), "--cut=-15"]) == 0
-    assert "cut flat at -15.0 mm" in capsys.readouterr().out
+    assert main(["scenario", "preview", str(volume), str(picture), "--cut=-30"]) == 0
+    assert "cut flat at -30.0 mm" in capsys.readouterr().out
     pixels = read_png(picture)
     assert pixels.shape == (480, 640, 3)
     assert pixels.std() > 20.0

@@ -11,14 +11,14 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.scenario_library import user_library
-from rastrainer.scenario_writer import new_folder, write_scenario
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.writer import new_folder, write_scenario
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.volume_file import write_volume
 
-RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli", "scenario"]
+RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main", "scenario"]
 
 
 @pytest.fixture

@@ -9,10 +9,10 @@ import subprocess
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.command import Command, CommandReply
+from rastrainer.igtl.content import Command, CommandReply
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
-from rastrainer_simulator.cli import main
+from rastrainer_simulator.cli.main import main
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
 
 

@@ -10,21 +10,21 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.client import Client
-from rastrainer.scenario import load_scenario
-from rastrainer.scripted_trial import say_hello
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.control_points import localPoints
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.headless_scene import HeadlessScene
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.link import Link
-from rastrainer.slicer.scenario_shelf import ScenarioShelf
-from rastrainer.slicer.trial_desk import TrialDesk
-from rastrainer.study import Study
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.scenario_cache import ScenarioCache
+from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.scene.control_points import localPoints
+from rastrainer.study.database.study import Study
+from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.scripted_trial import say_hello
 from Testing.end_to_end.onto_skin import lower_onto_skin
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.slicer.simulator_double import run_desk_until
+from Testing.slicer.simulator_double import run_logic_until
 
 COLIN = asset_path("scenarios", "colin27")
 SEED = 11
@@ -40,22 +40,22 @@ class SlicerSide:
         self.states, self.counts, self.points, self.scored = [], [], None, []
         self.link.statusChanged.connect(lambda status: self.states.append(status.state))
         self.link.pointsChanged.connect(self.see_points)
-        self.desk = None
+        self.logic = None
         self.work = BackgroundWork()
 
     def see_points(self, node):
         self.counts.append(node.GetNumberOfControlPoints())
         self.points = localPoints(node)
 
-    def open_desk(self):
-        find = ScenarioShelf(COLIN).find
-        self.desk = TrialDesk(
+    def open_logic(self):
+        find = ScenarioCache(COLIN).find
+        self.logic = TrialLogic(
             self.scene, self.link, find, lambda: Study.open(self.study), self.work
         )
-        self.desk.trialScored.connect(self.scored.append)
+        self.logic.trialScored.connect(self.scored.append)
 
     def run_until(self, condition):
-        run_desk_until(self.link, self.work, condition)
+        run_logic_until(self.link, self.work, condition)
 
     def is_in(self, state):
         return lambda: self.link.status.state is state
@@ -111,12 +111,12 @@ def slicer_side(tmp_path_factory):
         simulator.kill()
     side.run_until(side.is_in(LinkState.ABSENT))
     side.live_counts, side.live_points = list(side.counts), side.points
-    side.open_desk()
+    side.open_logic()
     with SimulatorProcess(folder / "records", "--port", str(simulator.port)):
         side.run_until(lambda: side.scored)
         side.run_until(side.is_in(LinkState.CONNECTED))
     side.link.disconnect()
-    side.desk.close()
+    side.logic.close()
     return side
 
 

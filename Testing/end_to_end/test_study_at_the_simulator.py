@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import secrets
 
-from rastrainer.experiment.study_step import StudyStep
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.study.protocol.study_step import StudyStep
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.views.served import ViewClient
 
 
 def go_to(view, item, menu):

@@ -9,17 +9,16 @@ import time
 
 import pytest
 
-from rastrainer.experiment.study_progress import StudyProgress
-from rastrainer.experiment.study_protocol import study_protocol_from_json
-from rastrainer.questionnaires.nasa_tlx import NASA_TLX
-from rastrainer.questionnaires.sus import SUS
-from rastrainer.scenario import load_scenario
-from rastrainer.study import Study
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import study_protocol_from_json
+from rastrainer.study.questionnaires.catalog import NASA_TLX, SUS
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.study_side import RECORDS, STUDY, StudySide
 from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.views.served import ViewClient
 
 COLIN = asset_path("scenarios", "colin27")
 SHIPPED = asset_path("studies", "published-protocol.json")

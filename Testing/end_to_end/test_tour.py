@@ -20,16 +20,40 @@ def program(tmp_path):
     return write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", FAST)
 
 
+WITHOUT_A_TRIAL = (
+    "Open the module",
+    "Connect to a web page",
+    "Start and connect",
+    "Create a trainee",
+    "Show scenario and robot",
+    "Lead through a study",
+    "Delete the trainee and stop",
+)
+
+
+def test_the_steps_of_the_tour_that_need_no_trial_go_well_in_the_host(host, program, tmp_path):
+    assert [step["name"] for step in tour(host, program, tmp_path, "--only", *WITHOUT_A_TRIAL)] == [
+        *WITHOUT_A_TRIAL
+    ]
+
+
+@pytest.mark.soak
 def test_the_tour_of_a_release_goes_well_in_the_host(host, program, tmp_path):
+    assert len(tour(host, program, tmp_path)) > 20
+
+
+def tour(host, program, tmp_path, *words):
+    """Take the tour, and return its steps, which have gone well."""
     slicer.app.settings().setValue(PROGRAM.key, str(program))
     # The usual port may be another test's, which runs beside this one.
     slicer.app.settings().setValue(PORT.key, free_port())
-    status = host.run_script(TOUR, "--", "--output", str(tmp_path / "tour"))
+    status = host.run_script(TOUR, "--", "--output", str(tmp_path / "tour"), *words)
     told = json.loads((tmp_path / "tour" / "tour.json").read_text())
     assert [step["note"] for step in told["steps"] if not step["ok"]] == []
     assert told["errors"] == []
     assert status == 0
     assert len(list((tmp_path / "tour").glob("*.png"))) == len(told["steps"])
+    return told["steps"]
 
 
 def test_a_step_that_fails_and_an_error_in_the_log_end_slicer_with_an_error(host, tmp_path):

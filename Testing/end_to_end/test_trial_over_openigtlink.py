@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.surface_queries import outward_normal
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.points import Point
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.registration import register
-from rastrainer.scenario import Scenario, load_scenario
-from rastrainer.surface_queries import outward_normal
-from rastrainer.trial_record import TrialRecord
+from rastrainer.registration.registration import register
+from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.onto_skin import lower_onto_skin
 from Testing.end_to_end.simulator_process import SimulatorProcess

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.private_folder import private_words
+from rastrainer.processes.private_folder import private_words
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.scenario import load_scenario
-from rastrainer.scripted_trial import play_trial, say_hello
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
 from Testing.end_to_end.private_packages import SIMULATOR, fill, run, trim
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.end_to_end.virtual_display import VirtualDisplay

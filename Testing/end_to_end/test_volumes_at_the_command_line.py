@@ -8,20 +8,22 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.head_volume import check_place, read_head_volume
-from rastrainer.markups import write_markups
-from rastrainer.point_list import PointList
-from rastrainer.scenario import load_scenario
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.volume import check_place, read_head_volume
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.head.__main__ import main as make_head
-from rastrainer.tasks import LABELS
-from rastrainer_simulator.cli import main
+from rastrainer_simulator.cli.main import main
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE
 from Testing.slicer.head.dicom_series import write_series
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, NOSE, SAGITTAL, depth_mm, phantom
 from Testing.slicer.head.placed import fiducials
 from Testing.slicer.head.volume_file import write_volume
 
+SIZE = 0.75
+"""Of the heads: small ones are sooner found."""
 NOTHING_SCANNED_BELOW = 5.0
 """Height (S) above which no phantom here lacks a part of its head, mm."""
 
@@ -63,7 +65,7 @@ def content(name, data):
 
 
 def dicom(folder):
-    scan = phantom(CT, spacing=(2.0, 2.0, 2.5))
+    scan = phantom(CT, spacing=(2.0, 2.0, 2.5), size=SIZE)
     # Ours are rows to the left and down from the front, in LPS: turned half about S.
     values = scan.values[::-1, ::-1].astype(np.int16)
     first = (-1.0, -1.0, 1.0) * (scan.ijk_to_ras @ [*(np.array(scan.values.shape) - 1), 1.0])[:3]
@@ -130,16 +132,21 @@ def test_the_process_that_makes_the_head_ends_with_that_sentence(place, capfd, n
 
 
 ODD = {
-    "double oblique": (nrrd(phantom(spacing=(2.0, 2.0, 2.0), axes=DOUBLE_OBLIQUE)), [], "", 0.6),
-    "NIfTI, stored slice by slice from the left": (
-        lambda folder: write_volume(
-            folder / "head.nii.gz", phantom(spacing=(2.0, 2.0, 2.0), axes=SAGITTAL)
-        ),
-        ["--cut=-12"],
+    "double oblique": (
+        nrrd(phantom(spacing=(2.0, 2.0, 2.0), axes=DOUBLE_OBLIQUE, size=SIZE)),
+        [],
         "",
         0.6,
     ),
-    "1 × 1 × 5 mm": (nrrd(phantom(spacing=(1.0, 1.0, 5.0))), [], "5.0 mm apart", 1.0),
+    "NIfTI, stored slice by slice from the left": (
+        lambda folder: write_volume(
+            folder / "head.nii.gz", phantom(spacing=(2.0, 2.0, 2.0), axes=SAGITTAL, size=SIZE)
+        ),
+        ["--cut=-30"],
+        "",
+        0.6,
+    ),
+    "1 × 1 × 5 mm": (nrrd(phantom(spacing=(1.0, 1.0, 5.0), size=SIZE)), [], "5.0 mm apart", 1.0),
     "a folder of DICOM files": (dicom, [], "", 0.6),
 }
 """What writes the volume, options, a warning that is told, and the most mean error, mm."""
@@ -151,7 +158,7 @@ QUICK = {"a folder of DICOM files"}
 )
 def test_an_odd_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name):
     write, options, warning, most_mm = ODD[name]
-    write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials()))
+    write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials(SIZE)))
     words = ["scenario", "build", str(write(place)), "-o", str(place / "made"), "--no-skull"]
     status = main([*words, *options, "--tasks", str(place / "mine.mrk.json")])
     told = capfd.readouterr()
@@ -163,8 +170,8 @@ def test_an_odd_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name
     assert mesh.is_closed
     assert mesh.euler_characteristic == 2
     scanned = mesh.vertices[mesh.vertices[:, 2] > NOTHING_SCANNED_BELOW]
-    away = scanned[np.linalg.norm(scanned - NOSE, axis=1) > 20.0]
-    assert np.abs(depth_mm(away)).mean() < most_mm
+    away = scanned[np.linalg.norm(scanned - SIZE * NOSE, axis=1) > 20.0]
+    assert np.abs(depth_mm(away, SIZE)).mean() < most_mm
     images = read_head_volume(scenario.volume)
     check_place(images, mesh, scenario.volume.path)
     brain = transforms.apply(transforms.inverse(images.ijk_to_ras), [0.0, 10.0, 30.0])
@@ -173,9 +180,10 @@ def test_an_odd_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name
     assert "Images: " in scenario.provenance.method
 
 
+@pytest.mark.soak
 def test_a_scenario_is_made_without_its_images_where_that_is_wished(place):
-    volume = write_volume(place / "head.nrrd", phantom(spacing=(2.0, 2.0, 2.0)))
-    write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials()))
+    volume = write_volume(place / "head.nrrd", phantom(spacing=(2.0, 2.0, 2.0), size=SIZE))
+    write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials(SIZE)))
     words = ["scenario", "build", str(volume), "-o", str(place / "made"), "--no-skull"]
     assert main([*words, "--no-volume", "--tasks", str(place / "mine.mrk.json")]) == 0
     assert load_scenario(place / "made").volume is None

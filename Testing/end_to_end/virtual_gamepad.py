@@ -15,9 +15,9 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from rastrainer_simulator.cli import main as run
-from rastrainer_simulator.gamepad.gamepads import Gamepads
-from rastrainer_simulator.precise_clock import stand_second_in_line
+from rastrainer_simulator.cli.main import main as run
+from rastrainer_simulator.input.gamepads import Gamepads
+from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 
@@ -112,7 +112,7 @@ def main() -> int:
 
 def _obey(path: Path) -> None:
     # A real gamepad's driver does not hold the interpreter either when the control loop is due.
-    stand_second_in_line()
+    raise_thread_priority()
     with path.open("a", buffering=1) as felt:
         gamepad = VirtualGamepad(lambda *strengths: felt.write(json.dumps(strengths) + "\n"))
         plug = Plug(gamepad)

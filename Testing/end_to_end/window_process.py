@@ -12,7 +12,7 @@ from pathlib import Path
 
 from Testing.end_to_end.virtual_display import VirtualDisplay
 
-COMMAND = (sys.executable, "-m", "rastrainer_simulator.cli", "window")
+COMMAND = (sys.executable, "-m", "rastrainer_simulator.cli.main", "window")
 PATIENCE_S = 300.0
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.feedback.progress_words import competence_of
 from rastrainer.number_text import fixed
+from rastrainer.trial.trainee_progress import competence_of
 from Testing.error_rates.measured import Measured, share_of
 
 HEADER = (

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.feedback.progress_words import TRAINING_TRIALS, competence_of
 from rastrainer.number_text import fixed
-from rastrainer.score_reference import score_reference
-from rastrainer.scoring import PASS_MARK, TrialScore, passes, score_trial
-from rastrainer_simulator.setup import load_setup
+from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.scoring import PASS_MARK, TrialScore, passes, score_trial
+from rastrainer.trial.trainee_progress import TRAINING_TRIALS, competence_of
+from rastrainer_simulator.core.setup import load_setup
 from Testing.error_rates.played import TASKS, stored
 
 MOST = 40.0

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.inference.effect_size import small_sample_factor
-from rastrainer.inference.paired import compare_paired
-from rastrainer.inference.period_effect import fit_differences
-from rastrainer.scipy_modules import scipy_module
+from rastrainer.statistics.crossover import fit_differences
+from rastrainer.statistics.effect_size import small_sample_factor
+from rastrainer.statistics.paired import compare_paired
+from rastrainer.statistics.scipy_modules import scipy_module
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = ("paired trainees", "interval holds the truth", "limits times J (before)")

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer.brain_region import Region, region_of
-from rastrainer.fiducial_normals import fiducial_normals
 from rastrainer.number_text import fixed
-from rastrainer.scenario import Scenario
-from rastrainer.score_reference import score_reference
-from rastrainer.scoring import ScoreMeasures, ScoreReference, score_trial
-from rastrainer_simulator.setup import SimulationSetup
+from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.trial.brain_region import Region, region_of
+from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
+from rastrainer_simulator.core.setup import SimulationSetup
 from Testing.error_rates.played import HEADS, SLOW, TASKS, USUAL, stored
-from Testing.simulator.scenarios.planned_heads import setup_of
+from Testing.simulator.authoring.planned_heads import setup_of
 
 MOST_OFF = 2.0
 """Points by which a task's mean score may be off that of all tasks."""

@@ -6,7 +6,7 @@ import contextlib
 
 import numpy as np
 
-from rastrainer.clusters.trainee_clusters import (
+from rastrainer.statistics.trainee_clusters import (
     ALPHA,
     FEWEST_TRAINEES,
     NoClustersError,

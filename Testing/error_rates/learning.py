@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.learning.trend import Verdict, cohort_trend_p, falling_trend
+from rastrainer.statistics.trend import TrendVerdict, cohort_trend_p, falling_trend
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = ("series of one trainee", "shown to fall", "steady", "undecided")
@@ -61,14 +61,16 @@ def _series(
 ) -> Measured:
     rows = means + sd * _noise(kind, random, (sets, len(means)))
     verdicts = [falling_trend(row).verdict for row in rows]
-    shares = {one: share_of([verdict is one for verdict in verdicts]) for one in Verdict}
+    shares = {one: share_of([verdict is one for verdict in verdicts]) for one in TrendVerdict}
     return Measured(
         words,
-        shares[Verdict.FALLS],
+        shares[TrendVerdict.FALLS],
         sets,
         at_most=0.06 if asked == "≤" else None,
         at_least=0.8 if asked == "≥" else None,
-        beside=tuple(share_text(shares[one]) for one in (Verdict.STEADY, Verdict.UNDECIDED)),
+        beside=tuple(
+            share_text(shares[one]) for one in (TrendVerdict.STEADY, TrendVerdict.UNDECIDED)
+        ),
     )
 
 

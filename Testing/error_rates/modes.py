@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.cohort.outcome_model import OutcomeModel
-from rastrainer.cohort.rejection_rates import rejection_rates
-from rastrainer.inference.paired import rank_test
-from rastrainer.inference.period_effect import fit_differences
-from rastrainer.scipy_modules import scipy_module
+from rastrainer.statistics.crossover import fit_differences
+from rastrainer.statistics.paired import rank_test
+from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel
+from rastrainer_simulator.virtual.rejection_rates import rejection_rates
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 COVERAGE = "coverage of the 95 % interval"

@@ -16,13 +16,14 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer.brain_region import region_of
-from rastrainer.registration import register
-from rastrainer.score_reference import score_reference
-from rastrainer.scoring import ScoreMeasures, TrialScore, score_trial
-from rastrainer.scripted_trainee import Skill
-from rastrainer_simulator.setup import SimulationSetup
-from Testing.simulator.cheating_trainees import (
+from rastrainer.registration.registration import register
+from rastrainer.trial.brain_region import region_of
+from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.scoring import ScoreMeasures, TrialScore, score_trial
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from Testing.simulator.authoring.planned_heads import setup_of
+from Testing.simulator.virtual.cheating_trainees import (
     BIAS_MM,
     PlayedTrial,
     aim_beside,
@@ -31,7 +32,6 @@ from Testing.simulator.cheating_trainees import (
     play_honestly,
     press,
 )
-from Testing.simulator.scenarios.planned_heads import setup_of
 
 FILE = Path(__file__).with_name("played_trials.csv")
 TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.cohort.drawn_study import draw_protocol_study
-from rastrainer.cohort.outcome_model import DOF, OutcomeModel
-from rastrainer.experiment.study_protocol import StudyProtocol
 from rastrainer.number_text import fixed
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.report.study_data import StudyData
-from rastrainer.report.study_variation import study_variation
-from rastrainer.scipy_modules import scipy_module
+from rastrainer.report.sections.variation import study_variation
+from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.study.study_data import StudyData
+from rastrainer_simulator.virtual.outcome_model import DOF, OutcomeModel
+from Testing.error_rates.drawn_study import draw_protocol_study
 
 HEADER = ("parameter", "off by standard errors", "truth", "mean", "standard error")
 MOST = 3.0

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.localization_error import stated_error
 from rastrainer.number_text import fixed
-from rastrainer.registration import register
-from rastrainer.target_error import COMMON_BIAS_SD_MM, TargetError, target_error
+from rastrainer.registration.localization_error import stated_error
+from rastrainer.registration.registration import register
+from rastrainer.registration.target_error import COMMON_BIAS_SD_MM, TargetError, target_error
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = (

@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from rastrainer.brain_region import region_of
-from rastrainer.fiducial_normals import fiducial_normals
-from rastrainer.registration import register
-from rastrainer.score_reference import score_reference
+from rastrainer.registration.registration import register
+from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.trial.brain_region import region_of
+from rastrainer.trial.score_reference import score_reference
 from Testing.error_rates.equal_hands import HEADS, registered_errors, scenario_of, true_errors
 from Testing.error_rates.played import TASKS
-from Testing.simulator.scenarios import planned_heads
+from Testing.simulator.authoring import planned_heads
 
 
 @pytest.mark.parametrize("task", ["trial-run", "task-5"])

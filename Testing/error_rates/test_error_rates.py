@@ -6,7 +6,7 @@ import pytest
 
 from Testing.error_rates.page import PAGE, SETS, TABLES, printed, with_table
 
-FEW = {"several groups": 100}
+FEW = {"several groups": 40, "target errors": 50, "learning": 100}
 """Fewer data sets of what is costly."""
 
 

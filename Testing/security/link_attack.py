@@ -10,7 +10,7 @@ from collections import Counter
 
 from rastrainer.igtl.message import CONTENTS
 from rastrainer.igtl.stream import MessageReader, StreamError
-from rastrainer_simulator.igtl.limits import Limits
+from rastrainer_simulator.net.limits import LinkLimits
 from Testing.security.mutated_messages import MutatedMessages
 from Testing.security.wire_police import WirePolice
 
@@ -119,7 +119,7 @@ class _Messages:
 
     def __init__(self, seed: int) -> None:
         self._messages = MutatedMessages(seed)
-        self._reader = MessageReader(dict.fromkeys(CONTENTS, Limits().message_bytes))
+        self._reader = MessageReader(dict.fromkeys(CONTENTS, LinkLimits().message_bytes))
         self._swallowed = 0
         self.sent = self.decoded = 0
 

@@ -8,8 +8,7 @@ import struct
 from collections.abc import Callable
 
 from rastrainer.igtl.checksum import crc64
-from rastrainer.igtl.command import Command, CommandReply
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Command, CommandReply, Status, String, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
 from rastrainer.igtl.points import Point, Points
 from Testing.security.hostile_content import HOSTILE_JSON

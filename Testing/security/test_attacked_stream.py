@@ -11,8 +11,8 @@ from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.security.attacked_process import check_unharmed, cost_of, settled, told
 from Testing.security.stream_attack import StreamAttack
-from Testing.simulator.igtl.servers import LoopThread
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 
 
 def attack(folder, warm_up: int, count: int, capsys) -> None:

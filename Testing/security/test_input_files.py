@@ -16,28 +16,31 @@ import pytest
 import trimesh
 
 from rastrainer.errors import InputError
-from rastrainer.experiment.study_protocol import read_study_protocol
-from rastrainer.markups import read_markups
-from rastrainer.nrrd import read_nrrd, write_nrrd
-from rastrainer.plain_xml import DEEPEST, MOST_ELEMENTS
-from rastrainer.point_files import read_points
-from rastrainer.report.study_notes import read_notes
-from rastrainer.scenario import load_scenario
-from rastrainer.scenario_package import checked_scenario, unpack
-from rastrainer.scenario_setup import read_setup
-from rastrainer.study import Study
+from rastrainer.files.markups import read_markups
+from rastrainer.files.nrrd import read_nrrd, write_nrrd
+from rastrainer.files.plain_xml import DEEPEST, MOST_ELEMENTS
+from rastrainer.files.point_files import read_points
+from rastrainer.scenario.package import checked_scenario, unpack
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.setup import read_setup
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.study_notes import read_notes
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.controls.bindings_file import read_bindings, write_bindings
-from rastrainer_simulator.flow.preferences import Preferences, read_preferences, write_preferences
-from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import load_robot
-from rastrainer_simulator.robot.prepared import read_prepared
-from rastrainer_simulator.settings import (
+from rastrainer_simulator.core.prepared_robot import read_prepared
+from rastrainer_simulator.core.settings import (
     SimulationSettings,
     settings_from_json,
     settings_to_json,
 )
+from rastrainer_simulator.flow.session.preferences import (
+    Preferences,
+    read_preferences,
+    write_preferences,
+)
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, read_bindings, write_bindings
+from rastrainer_simulator.robot.meshes import load_meshes
+from rastrainer_simulator.robot.model import load_robot
 from Testing.security.hostile_content import HOSTILE_GLB, HOSTILE_JSON, HOSTILE_XML, mutations
 
 SCENARIO = asset_path("scenarios", "colin27")

@@ -13,15 +13,14 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.command import Command, CommandReply
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Command, CommandReply, Status, String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.points import Point, Points
-from rastrainer_simulator.igtl.outgoing import Outgoing, OutgoingQueue
+from rastrainer_simulator.net.igtl.outgoing import Outgoing, OutgoingQueue
 from Testing.security.wire_police import SENT_TYPES, OffenseError, WirePolice
 
 SIMULATOR = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator"
-LINK = SIMULATOR / "igtl"
+LINK = SIMULATOR / "net" / "igtl"
 SENDING = ("sendall", "sendto", "sock_sendall", "writelines", "create_connection")
 # Whatever may go wrong in the calling code: any text, any number, with what is at the edges.
 NUMBERS = some.floats(width=64) | some.sampled_from([3.4e38, 3.5e38, 1e308])
@@ -157,8 +156,8 @@ def test_no_other_part_of_the_simulator_packs_messages_or_sends_over_sockets_of_
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module == "rastrainer.igtl.message":
                 packing |= {place for alias in node.names if alias.name == "pack"}
-    assert packing == {"igtl/outgoing.py"}
-    assert sending == {("igtl/server.py", "create_connection")}
+    assert packing == {"net/igtl/outgoing.py"}
+    assert sending == {("net/igtl/server.py", "create_connection")}
 
 
 def test_the_queue_gives_whole_messages_only():

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import TouchRule
-from rastrainer_simulator.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 
 
 @pytest.fixture(scope="session")

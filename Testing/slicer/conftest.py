@@ -6,12 +6,12 @@ import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
-from rastrainer.head_mesh import HeadMesh, write_head_mesh
-from rastrainer.scenario import Perturbation, Scenario
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.headless_scene import HeadlessScene
-from rastrainer.slicer.link import Link
-from rastrainer.tasks import LABELS, Task
+from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.scenario.scenario import Perturbation, Scenario
+from rastrainer.scenario.tasks import LABELS, Task
+from rastrainer.slicer.link.link import Link
+from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 from Testing.slicer.simulator_double import SimulatorDouble
 

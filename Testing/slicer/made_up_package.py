@@ -9,10 +9,18 @@ from pathlib import Path
 
 import rastrainer
 from rastrainer import __version__
-from rastrainer.slicer.simulator_package import LOCK, WHEEL, SimulatorPackage
+from rastrainer.slicer.program.simulator_package import LOCK, WHEEL, SimulatorPackage
 
 NOTHING = "# Nothing of others.\n"
-OURS = ("__init__.py", "clean_environment.py", "private_folder.py", "trim_packages.py")
+OURS = (
+    "__init__.py",
+    "processes/__init__.py",
+    "processes/clean_environment.py",
+    "processes/private_folder.py",
+    "slicer/__init__.py",
+    "slicer/program/__init__.py",
+    "slicer/program/trim_packages.py",
+)
 """Of the real wheel: what runs a program on the packages of its folder, and trims them."""
 
 
@@ -35,10 +43,12 @@ def write_wheel(folder: Path, name: str, version: str, files: Mapping[str, str])
 
 
 def simulator_files(cli: str) -> dict[str, str]:
-    """Return the files of a simulator whose `cli.py` has this text."""
+    """Return the files of a simulator whose command line has this text."""
     source = Path(rastrainer.__file__).parent
     ours = {f"rastrainer/{name}": (source / name).read_text(encoding="utf-8") for name in OURS}
-    return {**ours, "rastrainer_simulator/__init__.py": "", "rastrainer_simulator/cli.py": cli}
+    simulator = "rastrainer_simulator"
+    empty = {f"{simulator}/__init__.py": "", f"{simulator}/cli/__init__.py": ""}
+    return {**ours, **empty, f"{simulator}/cli/main.py": cli}
 
 
 def lock_entry(package: Path, marker: str = "") -> str:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer.arm_chain import read_arm_chain
-from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
+from rastrainer.slicer.scene.urdf import read_arm_chain
 from rastrainer_simulator.assets import asset_path
 
 TICK_S = 0.004

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.revealed_truth import RevealedTruth
-from rastrainer.scenario import Scenario, load_scenario
-from rastrainer.scoring import SAFETY_METRICS
-from rastrainer.study import Study
-from rastrainer.trial_analysis import TrialAnalysis, analyze_trial
-from rastrainer.trial_record import TrialRecord
+from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.host.host import Host
 

@@ -11,13 +11,20 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rastrainer.igtl.command import ERROR_KEY, FAIL, STATUS_KEY, SUCCESS, Command, CommandReply
-from rastrainer.igtl.content import Status
+from rastrainer.igtl.content import (
+    ERROR_KEY,
+    FAIL,
+    STATUS_KEY,
+    SUCCESS,
+    Command,
+    CommandReply,
+    Status,
+)
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
-from rastrainer.protocol import PROTOCOL_VERSION, Device
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link import Link
+from rastrainer.slicer.link.link import Link
 
 Refusal = str
 Responder = Callable[[str, dict[str, Any]], "Mapping[str, Any] | Refusal | None"]
@@ -38,7 +45,7 @@ class SimulatorDouble:
         version: int = PROTOCOL_VERSION,
     ) -> None:
         self.beats = True
-        self.heartbeat = Message(Device.SIM_SERVER, Status(Status.OK, subcode=version))
+        self.heartbeat = Message(DeviceName.SIM_SERVER, Status(Status.OK, subcode=version))
         self.responder = responder or (lambda _name, _arguments: {})
         self._listener = socket.create_server(("127.0.0.1", port))
         self.port = self._listener.getsockname()[1]
@@ -80,7 +87,7 @@ class SimulatorDouble:
     def send_command(self, name: str, arguments: Mapping[str, Any]) -> None:
         command = Command(self._nextNumber, name, json.dumps(arguments))
         self._nextNumber += 1
-        self.send(Device.COMMAND, command)
+        self.send(DeviceName.COMMAND, command)
 
     def _accept(self) -> None:
         while True:
@@ -122,7 +129,9 @@ class SimulatorDouble:
         is_refusal = isinstance(answer, str)
         metadata = {STATUS_KEY: FAIL, ERROR_KEY: answer} if is_refusal else {STATUS_KEY: SUCCESS}
         body = "{}" if is_refusal else json.dumps(answer)
-        self.send(Device.COMMAND, CommandReply(command.command_id, command.name, body), metadata)
+        self.send(
+            DeviceName.COMMAND, CommandReply(command.command_id, command.name, body), metadata
+        )
 
 
 def _close(open_socket: socket.socket) -> None:
@@ -153,7 +162,7 @@ def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 30
     wait_until(condition, lambda: process_link(link), timeout)
 
 
-def run_desk_until(
+def run_logic_until(
     link: Link, work: BackgroundWork, condition: Callable[[], Any], timeout: float = 90.0
 ) -> None:
     """Let the link and what is done in the background work until `condition()`."""

@@ -4,13 +4,8 @@ import json
 
 import pytest
 
-from rastrainer.slicer.arrivals import (
-    CHARACTERS_A_TURN,
-    COMMANDS_A_TURN,
-    MOST_KEPT,
-    Arrivals,
-)
-from rastrainer.slicer.contained import Contained
+from rastrainer.slicer.link.arrivals import CHARACTERS_A_TURN, COMMANDS_A_TURN, MOST_KEPT, Arrivals
+from rastrainer.slicer.link.error_guard import ErrorGuard
 from rastrainer.slicer.signal import Signal
 
 
@@ -23,7 +18,7 @@ def told():
 def arrivals(scene, told):
     known = Signal()
     known.connect(told.append)
-    return Arrivals(scene, Contained(), Signal(), Signal(), {"Known": known})
+    return Arrivals(scene, ErrorGuard(), Signal(), Signal(), {"Known": known})
 
 
 def test_commands_are_handed_over_a_few_a_turn_in_their_order(arrivals, told):

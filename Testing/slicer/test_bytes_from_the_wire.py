@@ -5,20 +5,19 @@ import struct
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.files.point_list import PointList
 from rastrainer.igtl.checksum import crc64
-from rastrainer.igtl.command import Command, CommandReply
-from rastrainer.igtl.content import String
+from rastrainer.igtl.content import Command, CommandReply, String
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
 from rastrainer.igtl.points import Point, Points
-from rastrainer.point_list import PointList
-from rastrainer.protocol import Device
-from rastrainer.slicer.contained import Contained
-from rastrainer.slicer.control_points import labelsOf
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.link import Link
+from rastrainer.protocol import DeviceName
+from rastrainer.slicer.link.error_guard import ErrorGuard
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.scene.control_points import labelsOf
+from rastrainer.slicer.scene.link_nodes import decodedText, shownText
 from rastrainer.slicer.signal import Signal
-from rastrainer.slicer.wire_text import decodedText, shownText
+from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import run_link_until
 
 LATIN_1 = "Gehäuse".encode("latin-1")
@@ -49,10 +48,12 @@ def test_a_state_that_is_no_utf_8_is_refused_with_a_sentence_and_the_next_one_is
 ):
     states = []
     link.stateChanged.connect(states.append)
-    simulator.send_bytes(with_latin_1(Message(Device.SIM_STATE, String('{"phase": "Geh?use"}'))))
+    simulator.send_bytes(
+        with_latin_1(Message(DeviceName.SIM_STATE, String('{"phase": "Geh?use"}')))
+    )
     run_link_until(link, lambda: "cannot be read" in caplog.text)
     assert "UTF-8" in caplog.text
-    simulator.send(Device.SIM_STATE, String('{"phase": "idle"}'))
+    simulator.send(DeviceName.SIM_STATE, String('{"phase": "idle"}'))
     run_link_until(link, lambda: states)
     assert states == [{"phase": "idle"}]
 
@@ -62,10 +63,10 @@ def test_a_label_that_is_no_utf_8_is_shown_with_a_replacement_and_its_point_regi
 ):
     lists = []
     link.pointsChanged.connect(lambda node: lists.append(labelsOf(node)))
-    simulator.send_bytes(with_latin_1(Message(Device.CAPTURED_POINTS, POINTS)))
+    simulator.send_bytes(with_latin_1(Message(DeviceName.CAPTURED_POINTS, POINTS)))
     run_link_until(link, lambda: lists)
     assert lists == [("Geh\ufffduse", "2")]
-    node = scene.GetFirstNodeByName(Device.CAPTURED_POINTS)
+    node = scene.GetFirstNodeByName(DeviceName.CAPTURED_POINTS)
     assert node.GetNthControlPointLabel(0) == LATIN_1
     assert PointList(labelsOf(node), [(1, 2, 3), (4, 5, 6)]).labels == lists[0]
 
@@ -83,7 +84,7 @@ def test_a_command_that_is_no_utf_8_is_logged_and_the_one_behind_it_told(
 ):
     records = []
     link.trialCompleted.connect(records.append)
-    simulator.send_bytes(with_latin_1(Message(Device.COMMAND, command)))
+    simulator.send_bytes(with_latin_1(Message(DeviceName.COMMAND, command)))
     simulator.send_command("TrialCompleted", {"number": 8})
     run_link_until(link, lambda: records)
     assert records == [{"number": 8}]
@@ -103,7 +104,7 @@ def test_an_answer_that_is_no_utf_8_is_a_reply_with_a_sentence(
     def answer(command):
         reply = CommandReply(command.command_id, command.name, body)
         metadata = {"Status": status, "ErrorMessage": "No Geh?use."}
-        simulator.send_bytes(with_latin_1(Message(Device.COMMAND, reply, metadata)))
+        simulator.send_bytes(with_latin_1(Message(DeviceName.COMMAND, reply, metadata)))
 
     monkeypatch.setattr(simulator, "_answer", answer)
     replies = []
@@ -122,8 +123,8 @@ def test_a_listener_that_fails_keeps_no_other_from_its_turn(link, simulator, con
         signal.connect(told.append)
     for number in range(3):
         simulator.send_command("TrialCompleted", {"number": number})
-    simulator.send(Device.CAPTURED_POINTS, POINTS)
-    simulator.send(Device.SIM_STATE, String("{}"))
+    simulator.send(DeviceName.CAPTURED_POINTS, POINTS)
+    simulator.send(DeviceName.SIM_STATE, String("{}"))
     run_link_until(link, lambda: len(told) == 5)
     assert len(contained_failures) == 3
     assert "a listener's mistake" in contained_failures[0]
@@ -139,7 +140,7 @@ def test_a_reply_that_fails_keeps_no_other_from_its_turn(link, contained_failure
 
 
 def test_the_same_failure_is_logged_once_and_another_one_too(contained_failures):
-    contained, heard, signal = Contained(), [], Signal()
+    contained, heard, signal = ErrorGuard(), [], Signal()
     for sentence in ("one", "one", "another", "one"):
         contained.run("The work", fail_with, sentence)
     assert [text.splitlines()[-1] for text in contained_failures] == [

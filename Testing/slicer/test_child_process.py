@@ -8,9 +8,9 @@ import time
 
 import pytest
 
-from rastrainer.slicer import child_process
-from rastrainer.slicer.child_process import ChildProcess, runChild
-from rastrainer.slicer.simulator_program import ProgramState, SimulatorProgram
+from rastrainer.slicer.program import child_process
+from rastrainer.slicer.program.child_process import ChildProcess, runChild
+from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from Testing.running_process import runs
 from Testing.slicer.host.python_slicer import write_python_slicer
 from Testing.slicer.simulator_double import wait_until
@@ -25,6 +25,7 @@ folder = pathlib.Path(sys.argv[1])
 (folder / "pid").write_text(str(os.getpid()))
 (folder / "written").touch()
 print("begun", flush=True)
+print("  0%  Writing", flush=True)
 while True:
     (folder / "written").touch()
     time.sleep(0.005)
@@ -106,22 +107,23 @@ def test_what_is_asked_to_end_ends_with_the_real_python_and_writes_no_more(pytho
 
 
 def test_work_that_is_broken_off_ends_with_the_real_python(python, tmp_path):
-    lines = []
-
-    def rest():
-        if lines:
+    def cancel(step, _share):
+        if step == "Writing":
             raise CanceledError
 
     with pytest.raises(CanceledError):
-        runChild([python, "-c", WRITER, tmp_path], lines.append, rest)
+        runChild([python, "-c", WRITER, tmp_path], cancel)
     wait_until(lambda: not runs(number(tmp_path / "pid")), lambda: None, LONG_S)
 
 
-def test_work_is_run_to_its_end_and_each_line_is_told(python):
-    lines = []
-    code = "print('one'); print('two'); raise SystemExit(3)"
-    assert runChild([python, "-c", code], lines.append, lambda: None) == 3
-    assert lines == ["one", "two"]
+def test_work_is_run_to_its_end_with_its_steps_its_warnings_and_its_last_line(python):
+    lines = [" 50%  Sawing", "Warning: It is loud.", "done", ""]
+    steps = []
+    code = f"print(*{lines!r}, sep=chr(10)); raise SystemExit(3)"
+    ended = runChild([python, "-c", code], lambda *step: steps.append(step), "Beginning")
+    assert (ended.exitStatus, ended.lastLine, ended.warnings) == (3, "done", ("It is loud.",))
+    assert steps[-1] == ("Sawing", 0.5)
+    assert set(steps) <= {("Beginning", 0.0), ("Sawing", 0.5)}
 
 
 def test_what_computes_the_kinematics_is_told(program):
@@ -170,7 +172,7 @@ def test_a_simulator_is_started_again_once_the_former_has_ended(program, python,
     former = number(tmp_path / "pid")
     program.stop()
     program.start([str(python), "-c", SIMULATOR, str(tmp_path)])
-    assert program.sentence == "The simulator is ending; it starts again then."
+    assert program.sentence == "The simulator is ending; it will then be started again."
     wait_until(lambda: program.state is ProgramState.READY, program.process, LONG_S)
     assert not runs(former)
     assert number(tmp_path / "pid") != former
@@ -190,7 +192,7 @@ def test_a_crash_of_slicer_leaves_the_simulator_alone(tmp_path):
     """As the trial that runs is to be finished; Slicer finds the simulator again."""
     slicer = (
         "import sys, time\n"
-        "from rastrainer.slicer.child_process import ChildProcess\n"
+        "from rastrainer.slicer.program.child_process import ChildProcess\n"
         "child = ChildProcess([sys.executable, '-c', sys.argv[1], sys.argv[2]])\n"
         "time.sleep(600)\n"
     )

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.hand_placed import handPlacedLists
-from rastrainer.slicer.scene import ROLE_ATTRIBUTE
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.hand_placed import handPlacedLists
+from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE
 
 
 def add_list(scene, name, count=15, labels=None):

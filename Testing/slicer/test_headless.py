@@ -11,14 +11,17 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.points import Point, Points
-from rastrainer.protocol import Device
-from rastrainer.scenario import load_scenario
-from rastrainer.slicer import headless
-from rastrainer.slicer.control_points import labelsOf, worldPoints
-from rastrainer.slicer.headless_scene import HeadlessScene
-from rastrainer.slicer.registration_nodes import fixedNode, isApplied, matrixOf
-from rastrainer.slicer.scene import Role, findNode
-from rastrainer.study import Study
+from rastrainer.protocol import DeviceName
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scene.registration_nodes import fixedNode, isApplied, matrixOf
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.study.database.study import Study
+from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer_headless import main as headless
+from rastrainer_headless.output import results_json, writeOutput
+from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.simulator_double import SimulatorDouble
 
 ASSETS = Path(__file__).parents[2] / "assets"
@@ -34,9 +37,12 @@ class PlayingDouble(SimulatorDouble):
         super().__init__(self.respond)
         self.record = record
         self.scenario = load_scenario(COLIN)
+        self.has_played = False
 
     def respond(self, name, arguments):
-        if name == "Hello":
+        # On a busy machine the link may go stale and greet again.
+        if name == "Hello" and not self.has_played:
+            self.has_played = True
             threading.Thread(target=self.play, daemon=True).start()
         if name != "SubmitRegistration":
             return {}
@@ -51,7 +57,7 @@ class PlayingDouble(SimulatorDouble):
     def play(self):
         touched = [Point(point["label"], point["positionMm"]) for point in self.record["points"]]
         for count in range(1, 16):
-            self.send(Device.CAPTURED_POINTS, Points(tuple(touched[:count])))
+            self.send(DeviceName.CAPTURED_POINTS, Points(tuple(touched[:count])))
             time.sleep(0.03)
         self.send_command("TrialCompleted", self.record)
 
@@ -87,7 +93,8 @@ def test_a_trial_is_played_to_its_files(colin_record, tmp_path, capfd):
     text = capfd.readouterr().out
     points = lines_of(text, "point")
     assert [line["label"] for line in points] == [str(number) for number in range(1, 16)]
-    assert lines_of(text, "status")[-2]["state"] in ("greeting", "connected")
+    states = {line["state"] for line in lines_of(text, "status")}
+    assert states & {"greeting", "connected"}
     (trial,) = lines_of(text, "trial")
     (line,) = (tmp_path / "results.jsonl").read_text().splitlines()
     written = json.loads(line)
@@ -123,6 +130,14 @@ def check_saved_scene(path, results):
     assert findNode(scene, "vtkMRMLTableNode", Role.FITS).GetNumberOfRows() == 3
     assert findNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS).GetPolyData() is not None
     assert scene.GetFirstNodeByName("ToolTipToWorld") is None
+
+
+def test_files_are_written_for_a_trial_whose_true_error_nobody_revealed(colin_record, tmp_path):
+    scenario = load_scenario(COLIN)
+    analysis = analyze_trial(TrialRecord.from_json(colin_record), scenario)
+    files = writeOutput(tmp_path, HeadlessScene(), scenario, analysis)
+    assert results_json(analysis)["truth"] is None
+    assert Path(files["picture"]).stat().st_size > 1000
 
 
 def test_trials_that_do_not_come_end_with_status_1_and_a_sentence(simulator, tmp_path, capfd):

@@ -11,9 +11,9 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Status, String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.points import Point, Points
-from rastrainer.slicer.headless_command import HeadlessCommand
-from rastrainer.slicer.headless_connector import HeadlessConnector
-from rastrainer.slicer.headless_crash import CrashError, takeCrashes
+from rastrainer_headless.command import HeadlessCommand
+from rastrainer_headless.connector import HeadlessConnector
+from rastrainer_headless.peer_sockets import CrashError, takeCrashes
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 
 SHIFT = ((1, 0, 0, 10), (0, 1, 0, 20), (0, 0, 1, 30), (0, 0, 0, 1))

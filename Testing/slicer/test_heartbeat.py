@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.finding import Finding, Peer
-from rastrainer.slicer.heartbeat import LinkObservation, LinkState, judge, notInstalled
+from rastrainer.slicer.link.heartbeat import LinkObservation, LinkState, judge, notInstalled
+from rastrainer.slicer.link.peer import Peer, ProbeResult
 
 WELL = LinkObservation(
     "127.0.0.1:18944",
@@ -19,7 +19,7 @@ WELL = LinkObservation(
 
 
 def found(peer):
-    return replace(WELL, isOpen=False, finding=Finding(peer))
+    return replace(WELL, isOpen=False, finding=ProbeResult(peer))
 
 
 @pytest.mark.parametrize(
@@ -29,7 +29,7 @@ def found(peer):
         (replace(WELL, isWanted=False), LinkState.OFF, "Not connected", "Start and connect"),
         (replace(WELL, isOpen=False), LinkState.LOOKING, "Looking for a simulator at 127", ""),
         (
-            replace(WELL, isOpen=False, finding=Finding(Peer.SIMULATOR, "", PROTOCOL_VERSION)),
+            replace(WELL, isOpen=False, finding=ProbeResult(Peer.SIMULATOR, "", PROTOCOL_VERSION)),
             LinkState.LOOKING,
             "Looking for a simulator",
             "",
@@ -38,7 +38,7 @@ def found(peer):
         (found(Peer.UNKNOWN_HOST), LinkState.ABSENT, "no computer of that name", "IPv4"),
         (found(Peer.WEB_PAGE), LinkState.OTHER_PROGRAM, "is a web page (HTTP), not", "18944"),
         (found(Peer.ENCRYPTED), LinkState.OTHER_PROGRAM, "encrypted port (TLS)", "18944"),
-        (found(Peer.SILENT), LinkState.OTHER_PROGRAM, "says nothing", "18944"),
+        (found(Peer.SILENT), LinkState.OTHER_PROGRAM, "sends nothing", "18944"),
         (
             found(Peer.OTHER_OPENIGTLINK),
             LinkState.OTHER_PROGRAM,
@@ -47,7 +47,9 @@ def found(peer):
         ),
         (found(Peer.OTHER_PROGRAM), LinkState.OTHER_PROGRAM, "is another program, not", "18944"),
         (
-            replace(WELL, isOpen=False, finding=Finding(Peer.SIMULATOR, "", PROTOCOL_VERSION + 1)),
+            replace(
+                WELL, isOpen=False, finding=ProbeResult(Peer.SIMULATOR, "", PROTOCOL_VERSION + 1)
+            ),
             LinkState.WRONG_VERSION,
             f"version {PROTOCOL_VERSION + 1} of the protocol",
             "Update the module",
@@ -63,7 +65,7 @@ def found(peer):
         (
             replace(WELL, isHeard=False, silenceS=5.0),
             LinkState.STALE,
-            "no RASTrainer simulator",
+            "not a RASTrainer simulator",
             "host and port",
         ),
         (

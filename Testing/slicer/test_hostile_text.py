@@ -11,11 +11,11 @@ import pytest
 from rastrainer import transforms
 from rastrainer.igtl.content import Status, String
 from rastrainer.panels.plain_text import LONGEST_TEXT, toolTip
-from rastrainer.protocol import PROTOCOL_VERSION, Device
-from rastrainer.scenario import load_scenario
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.tasks import LABELS
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer_simulator.assets import asset_path
 
 MODULE = Path(__file__).parents[2] / "RASTrainer"
@@ -43,7 +43,7 @@ def connected(open_module, simulator):
     host.type("portSpinBox", str(simulator.port))
     host.press("connectButton")
     host.wait_until(lambda: simulator.commands, "the module says hello")
-    simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
     host.wait_until(lambda: host.text("stateText").startswith("Connected"), "it is connected")
     return host
 
@@ -131,7 +131,7 @@ def test_what_the_simulator_tells_of_its_trial(connected, simulator):
     host = connected
     state = dict.fromkeys(("instruction", "trainee", "task", "phase", "nextPoint"), HOSTILE)
     state |= {"trialId": "", "mode": HOSTILE, "proximity": HOSTILE, "clearanceMm": 1.0}
-    simulator.send(Device.SIM_STATE, String(json.dumps(state)))
+    simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     host.wait_until(lambda: host.text("trainingText"), "the instruction is shown")
     host.wait_until(lambda: "bold" in host.text("phaseText"), "the phase is shown")
     for name in ("trainingText", "instructionText", "phaseText", "nextPointText", "clearanceText"):
@@ -227,7 +227,7 @@ def test_a_tool_tip_is_never_taken_for_html():
 def test_a_question_about_a_trainee_shows_the_name_as_it_stands(connected, simulator):
     host = connected
     state = {"trialId": "", "phase": "running", "trainee": HTML, "task": "task-1"}
-    simulator.send(Device.SIM_STATE, String(json.dumps(state)))
+    simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     host.wait_until(lambda: host.find("abortButton").enabled, "a trial runs")
     host.answer("Abort the trial", "No")
     host.press("abortButton")

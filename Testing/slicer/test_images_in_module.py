@@ -11,13 +11,13 @@ from PySide6 import QtGui
 
 from rastrainer import transforms
 from rastrainer.igtl.content import Status, String, Transform
-from rastrainer.protocol import PROTOCOL_VERSION, Device
-from rastrainer.scenario import load_scenario
-from rastrainer.scenario_library import user_library
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.head.volume import volume_from_node
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.scenario_volume import VOLUME
-from rastrainer.slicer.scene import Role, findNode
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.scene.scenario_volume import VOLUME
+from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.host.host import Host
 from Testing.slicer.test_slice_follower import place
@@ -140,7 +140,7 @@ def trial(host, simulator):
     host.unfold("portSpinBox")
     host.type("portSpinBox", str(simulator.port))
     host.press("connectButton")
-    simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
     link = host.widget.logic.session.link
     host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it is connected")
     trial = Trial(host, simulator)
@@ -157,7 +157,7 @@ class Trial:
 
     def tell(self, **state):
         told = {"trialId": self._id, "phase": "running", "task": "task-1", "trainee": "T-001"}
-        self._simulator.send(Device.SIM_STATE, String(json.dumps({**told, **state})))
+        self._simulator.send(DeviceName.SIM_STATE, String(json.dumps({**told, **state})))
 
     def wait_for_slices_at(self, wanted):
         self._host.wait_until(
@@ -193,7 +193,7 @@ def test_the_slices_follow_the_tool_which_makes_the_module_ask_for_poses(host, t
     for place_ras in ((10.0, 70.0, 60.0), (-30.0, 20.0, 80.0)):
         world = transforms.apply(COLIN27.head_to_world, place_ras)
         pose = transforms.rigid(np.eye(3), world)
-        simulator.send(Device.TOOL_TIP_TO_WORLD, Transform.from_matrix(pose))
+        simulator.send(DeviceName.TOOL_TIP_TO_WORLD, Transform.from_matrix(pose))
         trial.wait_for_slices_at(place_ras)
     host.check("slicesToolCheckBox", False)
     host.wait_until(lambda: not trial.wishes()[-1], "poses are wished no more")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer import __version__
-from rastrainer.slicer.simulator_package import WHEEL, SimulatorPackage
+from rastrainer.slicer.program.simulator_package import WHEEL, SimulatorPackage
 
 ROOT = Path(__file__).parents[2]
 STUB = Path(__file__).parent / "cmake"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rastrainer.slicer.label_placement import placeLabels
+from rastrainer_headless.picture_layout import placeLabels
 
 SIZE = (80.0, 28.0)
 NOTHING = np.zeros((0, 2))

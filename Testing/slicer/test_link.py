@@ -5,15 +5,15 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Status, String
 from rastrainer.igtl.points import Point, Points
-from rastrainer.protocol import PROTOCOL_VERSION, Device
-from rastrainer.slicer.heartbeat import RECONNECT_AFTER_S, LinkState
-from rastrainer.slicer.link import POSES_HZ, Link
-from rastrainer.slicer.scene import ROLE_ATTRIBUTE, Role
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.slicer.link.heartbeat import RECONNECT_AFTER_S, LinkState
+from rastrainer.slicer.link.link import POSES_HZ, Link
+from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 
 def beat(simulator, version=PROTOCOL_VERSION):
-    simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=version))
+    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=version))
 
 
 def connect(link, simulator):
@@ -123,14 +123,14 @@ def test_touched_points_are_told_as_they_come(link, simulator):
     link.pointsChanged.connect(lambda node: counts.append(node.GetNumberOfControlPoints()))
     for count in (1, 2, 1):
         points = tuple(Point(str(i + 1), (i, 0.0, 0.0)) for i in range(count))
-        simulator.send(Device.CAPTURED_POINTS, Points(points))
+        simulator.send(DeviceName.CAPTURED_POINTS, Points(points))
         run_link_until(link, lambda wanted=count: counts and counts[-1] == wanted)
     assert counts == [1, 2, 1]
 
 
 def test_the_list_of_touched_points_keeps_our_display_and_role(link, simulator, scene):
     connect(link, simulator)
-    simulator.send(Device.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
+    simulator.send(DeviceName.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
     run_link_until(
         link, lambda: scene.GetFirstNodeByName("CapturedPoints").GetNumberOfControlPoints()
     )
@@ -143,7 +143,7 @@ def test_the_list_of_touched_points_keeps_our_display_and_role(link, simulator, 
 def test_a_deleted_list_comes_again(link, simulator, scene):
     connect(link, simulator)
     scene.RemoveNode(scene.GetFirstNodeByName("CapturedPoints"))
-    simulator.send(Device.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
+    simulator.send(DeviceName.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
     run_link_until(
         link,
         lambda: (
@@ -159,7 +159,7 @@ def test_a_renamed_list_still_receives_and_tells(link, simulator, scene):
     link.pointsChanged.connect(lambda node: counts.append(node.GetNumberOfControlPoints()))
     for count in (1, 2):
         points = tuple(Point(str(i + 1), (i, 0.0, 0.0)) for i in range(count))
-        simulator.send(Device.CAPTURED_POINTS, Points(points))
+        simulator.send(DeviceName.CAPTURED_POINTS, Points(points))
         run_link_until(link, lambda wanted=count: counts and counts[-1] == wanted)
         scene.GetFirstNodeByName("CapturedPoints" if count == 1 else "mine").SetName("mine")
     assert scene.GetFirstNodeByName("CapturedPoints") is None
@@ -169,7 +169,7 @@ def test_the_state_of_the_simulator_is_told_when_it_changes(link, simulator):
     states = []
     connect(link, simulator)
     link.stateChanged.connect(states.append)
-    simulator.send(Device.SIM_STATE, String('{"phase": "running"}'))
+    simulator.send(DeviceName.SIM_STATE, String('{"phase": "running"}'))
     run_link_until(link, lambda: states)
     assert states == [{"phase": "running"}]
 
@@ -178,9 +178,9 @@ def test_what_cannot_be_read_is_logged_and_changes_nothing(link, simulator, capl
     states = []
     connect(link, simulator)
     link.stateChanged.connect(states.append)
-    simulator.send(Device.SIM_STATE, String("{not json"))
+    simulator.send(DeviceName.SIM_STATE, String("{not json"))
     run_link_until(link, lambda: "cannot be read" in caplog.text)
-    simulator.send(Device.SIM_STATE, String('{"phase": "idle"}'))
+    simulator.send(DeviceName.SIM_STATE, String('{"phase": "idle"}'))
     run_link_until(link, lambda: states)
 
 
@@ -230,7 +230,7 @@ def test_a_simulator_that_never_answers_does_not_leave_one_waiting(link, clock):
         link.send("ListTasks", onReply=replies.append, timeoutS=2.0)
         clock.ahead += 2.1
         run_link_until(link, lambda: replies)
-        assert replies[0].error == "The simulator gave no answer to ListTasks."
+        assert replies[0].error == "The simulator did not answer ListTasks."
 
 
 def test_a_wrong_argument_is_refused_before_it_travels(link, simulator):

@@ -7,7 +7,7 @@ import pytest
 import slicer
 
 from rastrainer.igtl.content import Status, String
-from rastrainer.protocol import PROTOCOL_VERSION, Device
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 
 pytestmark = pytest.mark.usefixtures("module_widget")
 
@@ -18,7 +18,7 @@ def connected(host, simulator):
     host.type("portSpinBox", str(simulator.port))
     host.press("connectButton")
     host.wait_until(lambda: simulator.commands, "the module says hello")
-    simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
     host.wait_until(
         lambda: host.text("stateText").startswith("Connected"), "the heartbeat is heard"
     )
@@ -26,7 +26,7 @@ def connected(host, simulator):
 
 @pytest.mark.usefixtures("connected")
 def test_one_button_connects_and_disconnects(host, simulator):
-    simulator.send(Device.SIM_STATE, String('{"instruction": "Touch point 3."}'))
+    simulator.send(DeviceName.SIM_STATE, String('{"instruction": "Touch point 3."}'))
     host.wait_until(lambda: host.text("trainingText") == "Touch point 3.", "the instruction")
     assert host.text("connectButton") == "Disconnect"
     with pytest.raises(AssertionError, match="Disconnect first"):
@@ -62,7 +62,7 @@ def test_any_node_may_be_deleted_while_connected(host, simulator):
     host.delete_nodes()
 
     def is_connected_again():
-        simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+        simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
         return host.text("stateText").startswith("Connected")
 
     host.wait_until(is_connected_again, "it is connected again")
@@ -111,7 +111,7 @@ def test_a_sample_that_does_not_come_though_there_is_a_network_is_told(host, mon
     logic = slicer.util.getModuleLogic("SampleData")
     monkeypatch.setattr(logic, "downloadSamples", lambda _name: [None])
     host.press("sampleDataButton")
-    assert "did not come over the network" in host.messages[-1].text
+    assert "could not be downloaded" in host.messages[-1].text
 
 
 def test_every_choice_that_can_be_made_without_a_simulator_is_taken(host):

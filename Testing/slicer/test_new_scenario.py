@@ -9,26 +9,29 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer.head_pose import Perturbation
-from rastrainer.scenario_library import user_library
-from rastrainer.scenario_package import pack, unpack
-from rastrainer.scenario_setup import SetUp
-from rastrainer.scenario_writer import new_folder, write_scenario
-from rastrainer.slicer import scenario_files
-from rastrainer.slicer.control_points import setPoints
+from rastrainer.head.pose import Perturbation
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.package import pack, unpack
+from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer.head import scenario_build
 from rastrainer.slicer.head.extraction import find_head
 from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.segment import for_segment, volume_of_segment
 from rastrainer.slicer.head.volume import Volume
-from rastrainer.slicer.head_preview import HeadPreview
-from rastrainer.slicer.scene import Role, findNode
-from Testing.domain.made_up_scenario import ball_head, made_up_scenario, png
+from rastrainer.slicer.logic import scenario_files
+from rastrainer.slicer.logic.head_preview import HeadPreview
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.scene import Role, findNode
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import add_transform, add_volume
 from Testing.slicer.host.cancels import cancels
 
 pytestmark = pytest.mark.usefixtures("module_widget")
+
+SIZE = 0.75
+"""Of the heads: small ones are sooner found."""
 
 EMPTY = Volume(np.zeros((16, 16, 16), np.float32), np.eye(4))
 
@@ -141,7 +144,7 @@ def test_a_volume_that_holds_no_head_is_told(host):
 
 
 def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
     host.press("previewHeadButton")
@@ -149,7 +152,7 @@ def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(ho
     node = findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
     assert node.GetSegmentation().GetNumberOfSegments() == 1
     bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
-    assert bounds[5] == pytest.approx(70.0, abs=1.5)
+    assert bounds[5] == pytest.approx(70.0 * SIZE, abs=1.5)
     preview = HeadPreview(host.scene, Path(sys.executable))
     settings = HeadSettings()
     found = find_head(
@@ -168,7 +171,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
 ):
     made = host.widget.logic.session.scenario.find("colin27")
     monkeypatch.setattr(scenario_build, "build_scenario", lambda *_arguments: (made, []))
-    volume = add_volume(host.scene, phantom(), "phantom")
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())
     unfold(host, "newScenarioCollapsibleButton")
@@ -195,21 +198,21 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
 
 
 def test_a_preview_shows_a_warning_and_stands_where_the_volumes_transform_places_it(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0)), "MRI")
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0), size=SIZE), "MRI")
     volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
-    host.type("cutSpinBox", "80")
+    host.type("cutSpinBox", "65")
     host.press("previewHeadButton")
     assert host.messages == []
     assert "The slices are 5.0 mm apart" in host.text("newScenarioText")
     bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
-    assert bounds[4] == pytest.approx(80.0, abs=0.01)
-    assert bounds[5] == pytest.approx(170.0, abs=3.0)
+    assert bounds[4] == pytest.approx(65.0, abs=0.01)
+    assert bounds[5] == pytest.approx(100.0 + 70.0 * SIZE, abs=3.0)
 
 
 def test_the_threshold_that_is_typed_is_the_one_that_the_head_is_looked_for_with(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
     host.type("thresholdSpinBox", "150")
@@ -219,7 +222,7 @@ def test_the_threshold_that_is_typed_is_the_one_that_the_head_is_looked_for_with
 
 
 def test_a_canceled_preview_leaves_nothing_behind(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
     before = nodes(host)
@@ -233,7 +236,7 @@ def test_a_canceled_preview_leaves_nothing_behind(host):
 
 
 def test_a_canceled_search_for_another_head_leaves_the_one_that_is_shown(host):
-    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5)), "MRI")
+    volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     host.press("showScenarioButton")
     unfold(host, "otherHeadGroupBox")
     host.choose("headModelComboBox", volume)

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.experiment.steps import StepKind
-from rastrainer.slicer.free_port import ANY, freePort
-from rastrainer.slicer.heartbeat import LinkState, LinkStatus
-from rastrainer.slicer.next_step import Action, Section, Situation, nextStep
-from rastrainer.slicer.simulator_program import ProgramState
+from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.logic.next_step import NextAction, Section, WorkflowState, nextStep
+from rastrainer.slicer.logic.simulator_logic import ANY, freePort
+from rastrainer.slicer.program.simulator_program import ProgramState
+from rastrainer.study.protocol.steps import StepKind
 from Testing.slicer.simulator_double import SimulatorDouble
 
 
@@ -16,8 +16,10 @@ def link(state):
     return LinkStatus(state, f"The link is {state.value}.", "Do something.")
 
 
-OFF = Situation(link(LinkState.OFF))
-CONNECTED = Situation(link(LinkState.CONNECTED), ProgramState.READY, taskTitle="Task 1", total=15)
+OFF = WorkflowState(link(LinkState.OFF))
+CONNECTED = WorkflowState(
+    link(LinkState.CONNECTED), ProgramState.READY, taskTitle="Task 1", total=15
+)
 CHOSEN = replace(CONNECTED, trainee="T001", hasTrainees=True)
 PRACTICED = replace(CHOSEN, hasPracticed=True)
 
@@ -72,66 +74,66 @@ def test_the_section_of_a_step_is_that_in_which_it_can_be_done():
 @pytest.mark.parametrize("state", list(LinkState))
 @pytest.mark.parametrize("program", list(ProgramState))
 def test_there_is_a_next_step_whatever_the_link_and_the_program_do(state, program):
-    step = nextStep(Situation(link(state), program, "Something happened."))
+    step = nextStep(WorkflowState(link(state), program, "Something happened."))
     assert step.title
     assert step.sentence
 
 
 def test_what_ended_by_itself_is_told_and_can_be_started_again():
     ended = step_of(OFF, program=ProgramState.FAILED, programSentence="It ended: no screen.")
-    assert (ended.action, ended.sentence) == (Action.START_SIMULATOR, "It ended: no screen.")
+    assert (ended.action, ended.sentence) == (NextAction.START_SIMULATOR, "It ended: no screen.")
 
 
 def test_a_port_that_is_taken_by_something_else_does_not_keep_from_starting():
-    assert step_of(OFF, link=link(LinkState.OTHER_PROGRAM)).action is Action.START_SIMULATOR
-    assert step_of(OFF, link=link(LinkState.ABSENT)).action is Action.START_SIMULATOR
+    assert step_of(OFF, link=link(LinkState.OTHER_PROGRAM)).action is NextAction.START_SIMULATOR
+    assert step_of(OFF, link=link(LinkState.ABSENT)).action is NextAction.START_SIMULATOR
 
 
 def test_a_simulator_of_another_computer_is_only_connected_to():
-    assert step_of(OFF, isElsewhere=True).action is Action.CONNECT
-    assert step_of(OFF, isElsewhere=True, needsSetup=True).action is Action.CONNECT
+    assert step_of(OFF, isElsewhere=True).action is NextAction.CONNECT
+    assert step_of(OFF, isElsewhere=True, needsSetup=True).action is NextAction.CONNECT
     absent = step_of(OFF, isElsewhere=True, link=link(LinkState.ABSENT))
     assert (absent.action, absent.sentence) == (
-        Action.WAIT,
+        NextAction.WAIT,
         "The link is absent. Do something.",
     )
 
 
 def test_who_has_disconnected_from_a_simulator_that_runs_here_can_connect_again():
-    assert step_of(OFF, program=ProgramState.READY).action is Action.CONNECT
+    assert step_of(OFF, program=ProgramState.READY).action is NextAction.CONNECT
 
 
 def test_a_simulator_that_runs_already_is_connected_to_rather_than_started_beside():
     found = step_of(OFF, runningSentence="One runs already.")
-    assert (found.action, found.sentence) == (Action.CONNECT_TO_RUNNING, "One runs already.")
+    assert (found.action, found.sentence) == (NextAction.CONNECT_TO_RUNNING, "One runs already.")
 
 
 def test_nothing_can_be_pressed_while_the_simulator_is_set_up():
-    assert step_of(OFF, isBeingSetUp=True).action is Action.WAIT
+    assert step_of(OFF, isBeingSetUp=True).action is NextAction.WAIT
 
 
 def test_a_trial_stays_in_sight_while_the_simulator_is_silent():
     silent = step_of(CHOSEN, link=link(LinkState.STALE), phase="running")
-    assert (silent.action, silent.section) == (Action.WAIT, Section.TRAINING)
+    assert (silent.action, silent.section) == (NextAction.WAIT, Section.TRAINING)
 
 
 def test_a_study_with_trainees_lets_choose_one():
-    assert step_of(CONNECTED, hasTrainees=True).action is Action.CHOOSE_TRAINEE
+    assert step_of(CONNECTED, hasTrainees=True).action is NextAction.CHOOSE_TRAINEE
 
 
 def test_a_study_decides_what_its_trainee_does_next():
     actions = {kind: step_of(PRACTICED, studyStep=kind).action for kind in StepKind}
     assert actions == {
-        StepKind.TRIAL: Action.START_STUDY_STEP,
-        StepKind.TRIAL_RUN: Action.START_STUDY_STEP,
-        StepKind.QUESTIONNAIRE: Action.ANSWER,
-        StepKind.BREAK: Action.WAIT,
+        StepKind.TRIAL: NextAction.START_STUDY_STEP,
+        StepKind.TRIAL_RUN: NextAction.START_STUDY_STEP,
+        StepKind.QUESTIONNAIRE: NextAction.ANSWER,
+        StepKind.BREAK: NextAction.WAIT,
     }
 
 
 def test_a_trial_that_cannot_be_scored_does_not_keep_from_the_next_one():
     stuck = step_of(PRACTICED, phase="registered", isUnscored=True)
-    assert stuck.action is Action.START_TASK
+    assert stuck.action is NextAction.START_TASK
 
 
 def test_the_port_is_the_preferred_one_unless_somebody_listens_there():
@@ -143,5 +145,5 @@ def test_the_port_is_the_preferred_one_unless_somebody_listens_there():
 
 def test_an_aborted_step_of_a_study_asks_for_its_reason_before_it_is_started():
     step = step_of(PRACTICED, studyStep=StepKind.TRIAL, needsRepeatReason=True)
-    assert step.action is Action.EXPLAIN_REPEAT
+    assert step.action is NextAction.EXPLAIN_REPEAT
     assert step.section is Section.STUDY

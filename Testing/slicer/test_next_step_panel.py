@@ -9,7 +9,7 @@ import pytest
 from PySide6 import QtCore, QtTest
 
 from rastrainer.igtl.content import Status, String
-from rastrainer.protocol import PROTOCOL_VERSION, Device
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 
 UI = Path(__file__).parents[2] / "RASTrainer" / "Resources" / "UI"
 SCREEN_HEIGHT = 730
@@ -28,14 +28,14 @@ class Instructor:
 
     def tell(self, **state):
         told = {"trialId": str(uuid.UUID(int=5)), "trainee": "T001", "task": "task-1", **state}
-        self.simulator.send(Device.SIM_STATE, String(json.dumps(told)))
+        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps(told)))
 
     def wait_for(self, title):
         self.wait_until(lambda: self.host.text("nextStepButton") == title, f"it says {title}")
 
     def wait_until(self, condition, what):
         def beats():
-            self.simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+            self.simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
             return condition()
 
         self.host.wait_until(beats, what)
@@ -79,6 +79,7 @@ def test_a_section_opens_when_its_step_comes_and_is_folded_after_it(instructor):
 def test_what_is_opened_or_folded_by_hand_stays_so_until_the_next_step(instructor):
     host = instructor.host
     host.press("createTraineeButton")
+    instructor.wait_for("Start the trial run")
     host.unfold("residualsTable")
     host.find("trainingCollapsibleButton").collapsed = True
     instructor.tell(phase="running")
@@ -103,6 +104,7 @@ def test_sections_that_are_no_steps_are_the_users_alone(instructor):
 def test_a_trainee_is_chosen_from_the_list_that_the_button_opens(instructor):
     host = instructor.host
     host.press("createTraineeButton")
+    instructor.wait_for("Start the trial run")
     host.choose("traineeComboBox", "Choose a trainee")
     instructor.wait_for("Choose a trainee")
     host.find("traineesCollapsibleButton").collapsed = True

@@ -14,19 +14,19 @@ import slicer
 from PySide6 import QtCore
 
 from rastrainer import transforms
-from rastrainer.experiment.study_progress import StudyProgress
-from rastrainer.experiment.study_protocol import read_study_protocol
-from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.scenario import load_scenario
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.slicer.scene import Role, findNode
-from rastrainer.study import Study
-from rastrainer.target_error import INTERVAL_NOTE
-from rastrainer.tasks import LABELS
+from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli import main
+from rastrainer_simulator.cli.main import main
 from Testing.slicer.recorded_trial import write_recorded_trial
 from Testing.slicer.scored_trials import scored_analysis
 
@@ -507,9 +507,9 @@ def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
 def test_no_journal_is_read_by_the_main_thread(panels, add_trial, monkeypatch):
     readers = []
 
-    def watched(path):
+    def watched(path, rest):
         readers.append(threading.get_ident())
-        return read_journal(path)
+        return read_journal(path, rest)
 
     for module in ("replay_track", "folder"):
         monkeypatch.setattr(f"rastrainer.journal.{module}.read_journal", watched)

@@ -5,11 +5,11 @@ import time
 
 import pytest
 
-from rastrainer.slicer.headless_crash import takeCrashes
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.link import Link
-from rastrainer.slicer.pending_commands import MOST_AT_ONCE, SENDING_S
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.link.pending_commands import MOST_AT_ONCE, SENDING_S
+from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.peer_sockets import takeCrashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
 
 BURST = 300
@@ -188,7 +188,7 @@ def test_a_command_that_was_given_up_lives_until_the_connector_is_done_with_it(s
     wait_until(lambda: silent.asked(), lambda: None)
     silent.clock.ahead += 3.0
     silent.link.process()
-    assert "no answer" in silent.replies[0].error
+    assert "did not answer" in silent.replies[0].error
     silent.may_answer.set()
     silent.ask()
     silent.run_until(lambda: len(silent.replies) == 2)

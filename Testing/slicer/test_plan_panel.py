@@ -5,11 +5,11 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import Status
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Device
-from rastrainer.scenario import load_scenario
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.tasks import LABELS
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.simulator_double import SimulatorDouble
 
@@ -24,7 +24,7 @@ def planner(host):
         host.type("portSpinBox", str(simulator.port))
         host.press("connectButton")
         host.wait_until(lambda: simulator.commands, "the module says hello")
-        simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+        simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
         host.wait_until(lambda: host.text("stateText").startswith("Connected"), "the heartbeat")
         host.press("showScenarioButton")
         colin = load_scenario(asset_path("scenarios", "colin27"))

@@ -9,9 +9,8 @@ import pytest
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer import address_lookup
-from rastrainer.slicer.finding import Finding, Peer
-from rastrainer.slicer.probe import ANSWER_S, LOOKUP_S, Probe
+from rastrainer.slicer.link.peer import Peer, ProbeResult
+from rastrainer.slicer.link.probe import ANSWER_S, LOOKUP_S, Probe
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 from Testing.slicer.strangers import (
     floods,
@@ -58,7 +57,7 @@ def ask_and_lose_patience(port):
 def test_a_simulator_is_recognized_with_its_version(version):
     with SimulatorDouble(version=version) as simulator:
         found = ask("localhost", simulator.port)
-        assert found == Finding(Peer.SIMULATOR, "127.0.0.1", version)
+        assert found == ProbeResult(Peer.SIMULATOR, "127.0.0.1", version)
         assert simulator.commands == []
 
 
@@ -103,7 +102,7 @@ def test_whoever_keeps_the_answer_is_not_waited_for_without_end(behavior, peer):
 def test_nobody_at_home_is_told():
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
-    assert ask("127.0.0.1", port) == Finding(Peer.NOBODY, "127.0.0.1")
+    assert ask("127.0.0.1", port) == ProbeResult(Peer.NOBODY, "127.0.0.1")
 
 
 def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypatch):
@@ -114,7 +113,7 @@ def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypat
         assert answers.wait(20)
         return [(None, None, None, None, ("127.0.0.1", 0))]
 
-    monkeypatch.setattr(address_lookup.socket, "getaddrinfo", look_up)
+    monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
     with SimulatorDouble() as simulator:
         probes = [Probe("a-computer", simulator.port) for _ in range(2)]
         assert [probe.process() for probe in probes] == [None, None]
@@ -131,17 +130,17 @@ def test_a_name_that_is_looked_up_for_too_long_is_given_up(monkeypatch):
         answers.wait(20)
         raise socket.gaierror
 
-    monkeypatch.setattr(address_lookup.socket, "getaddrinfo", look_up)
+    monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
     probe = Probe("a-slow-computer", 18944, clock)
     assert probe.process() is None
     clock.ahead = LOOKUP_S
-    assert probe.process() == Finding(Peer.UNKNOWN_HOST)
+    assert probe.process() == ProbeResult(Peer.UNKNOWN_HOST)
     answers.set()
 
 
 @pytest.mark.parametrize("host", ["nowhere.invalid", "::1", "a" * 300, "b..c"])
 def test_a_host_without_an_address_is_told(host):
-    assert ask(host, 18944) == Finding(Peer.UNKNOWN_HOST)
+    assert ask(host, 18944) == ProbeResult(Peer.UNKNOWN_HOST)
 
 
 def test_asking_leaves_no_socket_open():
@@ -150,4 +149,4 @@ def test_asking_leaves_no_socket_open():
         probe.process()
         probe.close()
         probe.close()
-        assert probe._socket is None
+        assert probe._connection is None

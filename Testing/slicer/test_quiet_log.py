@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.slicer.trial_replay import findReplay
-from rastrainer.tasks import LABELS
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.trial_replay import findReplay
 from Testing.slicer.recorded_trial import write_recorded_trial
 from Testing.slicer.scored_trials import store_trial_on_colin
 

@@ -3,10 +3,9 @@
 import time
 
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.headless_crash import takeCrashes
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.heartbeat import RECONNECT_AFTER_S, LinkState
-from rastrainer.slicer.peer_sockets import RETRY_PERIOD_S
+from rastrainer.slicer.link.heartbeat import RECONNECT_AFTER_S, LinkState
+from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.peer_sockets import RETRY_PERIOD_S, takeCrashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 from Testing.slicer.strangers import is_silent, says, stranger, web_server
 
@@ -86,7 +85,7 @@ def test_after_a_half_open_connection_it_is_asked_again_who_answers(link, clock)
         link.process()
         clock.ahead += 4.0
         run_until_state(link, LinkState.OTHER_PROGRAM)
-        assert "says nothing" in link.status.sentence
+        assert "sends nothing" in link.status.sentence
     simulator.close()
 
 

@@ -6,11 +6,11 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer import registration_nodes
-from rastrainer.slicer.control_points import labelsOf, localPoints, setPoints, worldPoints
-from rastrainer.slicer.registration_nodes import registerNodes, showRegistration
-from rastrainer.slicer.result_tables import showFits, showResiduals
-from rastrainer.target_error import target_error
+from rastrainer.registration.target_error import target_error
+from rastrainer.slicer.scene import registration_nodes
+from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints, worldPoints
+from rastrainer.slicer.scene.registration_nodes import registerNodes, showRegistration
+from rastrainer.slicer.scene.tables import showFits, showResiduals
 
 LABELS = tuple(str(i + 1) for i in range(15))
 

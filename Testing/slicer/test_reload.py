@@ -10,8 +10,8 @@ KEPT = (
     "RASTrainer.RASTrainerWidget",
     "rastrainer.panels.panel_stack.PanelStack",
     "rastrainer.panels.score_panel.ScorePanel",
-    "rastrainer.slicer.link.Link",
-    "rastrainer.slicer.session.Session",
+    "rastrainer.slicer.link.link.Link",
+    "rastrainer.slicer.logic.module_session.ModuleSession",
 )
 
 

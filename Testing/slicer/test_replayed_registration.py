@@ -9,10 +9,10 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import String
-from rastrainer.protocol import Device
-from rastrainer.scenario import load_scenario
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.study import Study
+from rastrainer.protocol import DeviceName
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.study.database.study import Study
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import write_recorded_trial
 from Testing.slicer.scored_trials import scored_analysis
@@ -99,7 +99,7 @@ def test_a_trial_that_is_played_is_not_disturbed_and_begins_without_the_replays_
         host.press("connectButton")
         host.wait_until(lambda: simulator.commands, "the module says hello")
         state = {"trialId": str(uuid.UUID(int=9)), "phase": "running", "task": "task-2"}
-        simulator.send(Device.SIM_STATE, String(json.dumps({**state, "trainee": "T001"})))
+        simulator.send(DeviceName.SIM_STATE, String(json.dumps({**state, "trainee": "T001"})))
         captured = capturedPointsNode(host.scene)
         host.wait_until(lambda: captured.GetNumberOfControlPoints() == 0, "the trial begins")
         assert captured.GetDisplayNode().GetVisibility()

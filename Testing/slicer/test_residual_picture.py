@@ -5,16 +5,16 @@ import pytest
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-from rastrainer.head_mesh import HeadMesh
-from rastrainer.registration import register
-from rastrainer.slicer.residual_glyphs import (
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.registration import register
+from rastrainer.slicer.scene.residual_glyphs import (
     SCALARS,
     glyphsPolyData,
     magnification,
     showResidualArrows,
 )
-from rastrainer.slicer.residual_picture import HEIGHT, WIDTH, writeResidualPicture
-from rastrainer.slicer.residual_views import chooseTwoViews, outwardDirections
+from rastrainer_headless.picture_layout import chooseTwoViews, outwardDirections
+from rastrainer_headless.residual_picture import HEIGHT, WIDTH, writeResidualPicture
 
 
 @pytest.fixture

@@ -7,11 +7,11 @@ import pytest
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.slicer.registration_nodes import setApplied
-from rastrainer.slicer.robot_scene import robotNode, setRobotVisible, showRobot
-from rastrainer.slicer.scenario import showTask
-from rastrainer.slicer.world_placement import followPlacement, showPlannedPlace
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.registration_nodes import followPlacement, setApplied, showPlannedPlace
+from rastrainer.slicer.scene.robot_scene import robotNode, setRobotVisible, showRobot
+from rastrainer.slicer.scene.scenario_nodes import showTask
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
@@ -48,10 +48,10 @@ def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
     poses = make_kinematics(model).links(model.home)
     for number in range(8):
         pose = np.array(poses[f"iiwa_link_{number}"])
-        pose[:3, 3] *= 1000.0
+        pose[:3, 3] *= MM_PER_M
         node = scene.GetFirstNode(f"Link{number}ToWorld", "vtkMRMLLinearTransformNode")
         node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
-    tip = 1000.0 * np.array(poses["iiwa_tool_tip_ee"])[:3, 3]
+    tip = MM_PER_M * np.array(poses["iiwa_tool_tip_ee"])[:3, 3]
     hand = bounds(robot[7])
     # The tool belongs to link 7: its lowest point is the tip, which points down at home.
     assert hand[4] == pytest.approx(tip[2], abs=1.0)
@@ -93,5 +93,22 @@ def test_a_folder_without_a_robot_is_told(scene, tmp_path):
         showRobot(scene, tmp_path)
     shutil.copy(ROBOT / "iiwa7.urdf", tmp_path)
     with pytest.raises(InputError, match=r"mesh .*stl is missing"):
+        showRobot(scene, tmp_path)
+    assert robotNode(scene, 0) is None
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "problem"),
+    [
+        pytest.param("<child ", "<offspring ", "<child> with link", id="joint-without-child"),
+        pytest.param("rgba=", "rgb=", "<color> with rgba", id="color-without-values"),
+        pytest.param("</robot>", "", "not well-formed", id="cut-short"),
+    ],
+)
+def test_a_malformed_urdf_is_refused_with_a_sentence(scene, tmp_path, before, after, problem):
+    text = (ROBOT / "iiwa7.urdf").read_text(encoding="utf-8")
+    assert before in text
+    (tmp_path / "iiwa7.urdf").write_text(text.replace(before, after), encoding="utf-8")
+    with pytest.raises(InputError, match=problem):
         showRobot(scene, tmp_path)
     assert robotNode(scene, 0) is None

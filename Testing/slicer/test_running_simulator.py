@@ -9,10 +9,10 @@ import sys
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder_holder import STARTED_BY, read_holder
-from rastrainer.slicer import running_simulator
-from rastrainer.slicer.process_group import OPTIONS
-from rastrainer.slicer.running_simulator import RunningSimulator
+from rastrainer.journal.folder_lock import STARTED_BY, read_holder
+from rastrainer.slicer.program import running_simulator
+from rastrainer.slicer.program.child_process import OPTIONS
+from rastrainer.slicer.program.running_simulator import RunningSimulator
 from rastrainer_simulator.record.records_folder import RecordsFolder
 from Testing.slicer.simulator_double import wait_until
 
@@ -24,7 +24,7 @@ if "stubborn" in sys.argv:
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
 records = RecordsFolder(pathlib.Path(sys.argv[1]))
 subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
-records.tell("0.0.0.0", 18999, "http://127.0.0.1:18945")
+records.announce("0.0.0.0", 18999, "http://127.0.0.1:18945")
 print("ready", flush=True)
 time.sleep(600)
 """
@@ -79,7 +79,7 @@ def running(tmp_path):
 def test_none_is_found_where_none_records(running):
     assert not running.look()
     assert (running.sentence, running.canConnect, running.canEnd) == ("", False, False)
-    with pytest.raises(InputError, match="no simulator any more"):
+    with pytest.raises(InputError, match="no longer a simulator"):
         running.connect()
 
 
@@ -133,7 +133,7 @@ def test_one_that_a_person_has_started_is_ended_alone_without_its_shell(running,
 
 
 def test_whoever_looks_keeps_no_simulator_from_starting(tmp_path):
-    look = "import sys, pathlib; from rastrainer.journal.folder_holder import read_holder\n"
+    look = "import sys, pathlib; from rastrainer.journal.folder_lock import read_holder\n"
     look += "print(flush=True)\nwhile True: read_holder(pathlib.Path(sys.argv[1]))"
     RecordsFolder(tmp_path).close()
     words = [sys.executable, "-c", look, str(tmp_path)]

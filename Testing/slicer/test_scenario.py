@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.head_mesh import write_head_mesh
-from rastrainer.scenario_plan import PlannedTarget, PlannedTrajectory
-from rastrainer.slicer import scenario as shown
-from rastrainer.slicer.control_points import labelsOf, worldPoints
-from rastrainer.slicer.scenario import showScenario, showTask
-from rastrainer.slicer.scene import Role, findNode
-from Testing.domain.made_up_scenario import ball_head
+from rastrainer.head.mesh import write_head_mesh
+from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory
+from rastrainer.slicer.scene import scenario_nodes as shown
+from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scene import Role, findNode
+from Testing.domain.scenario.made_up_scenario import ball_head
 
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
 LINE, MODEL = "vtkMRMLMarkupsLineNode", "vtkMRMLModelNode"

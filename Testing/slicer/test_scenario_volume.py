@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer.head_volume import VolumeFile, write_head_volume
-from rastrainer.slicer import scenario_volume
+from rastrainer.head.volume import VolumeFile, write_head_volume
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.headless_scene import HeadlessScene
-from rastrainer.slicer.scenario import showScenario
-from rastrainer.slicer.scenario_volume import VOLUME, VolumeLoader, showImages
-from rastrainer.slicer.scene import Role, findNode
-from Testing.domain.made_up_scenario import ball_volume
+from rastrainer.slicer.scene import scenario_volume
+from rastrainer.slicer.scene.scenario_nodes import showScenario
+from rastrainer.slicer.scene.scenario_volume import VOLUME, VolumeLoader, showImages
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer_headless.scene import HeadlessScene
+from Testing.domain.scenario.made_up_scenario import ball_volume
 
 
 class Loading:

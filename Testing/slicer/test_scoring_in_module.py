@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.scenario import load_scenario
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import write_recorded_trial
 

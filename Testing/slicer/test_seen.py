@@ -23,7 +23,7 @@ from Testing.slicer.host.host import Host
 def test_what_is_seen_depends_on_the_layout_and_on_the_module(
     host, layout, is_entered, in_slices, is_seen
 ):
-    from rastrainer.panels.seen import isSomethingSeen
+    from rastrainer.panels.application import isSomethingSeen
 
     number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
     slicer.app.layoutManager().setLayout(number)
@@ -35,7 +35,7 @@ def test_what_is_seen_depends_on_the_layout_and_on_the_module(
 
 
 def test_without_a_window_the_module_alone_may_be_seen(tmp_path):
-    from rastrainer.panels.seen import isSomethingSeen
+    from rastrainer.panels.application import isSomethingSeen
 
     bare = Host(tmp_path, window=False)
     try:

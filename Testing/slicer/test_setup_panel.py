@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer.slicer.simulator_package import SimulatorPackage
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from Testing.slicer.made_up_package import lock_entry, write_package, write_wheel
 
 CLI = """
@@ -40,7 +40,7 @@ def test_source_size_and_folder_are_told_before_anything_is_fetched(host, monkey
     sizes = setup.package.sizes()
     assert "comes from the package index https://mirror.example/simple" in told
     assert str(setup.folder) in told
-    assert f"About {sizes.downloadMB} MB are fetched, and {sizes.keptMB} MB stay." in told
+    assert f"About {sizes.downloadMB} MB are downloaded, and {sizes.keptMB} MB stay." in told
     host.type("indexLineEdit", "")
     assert "comes from the public package index of Python" in host.text("setupText")
     host.type("wheelsPathLineEdit", "/media/wheels")

@@ -4,8 +4,8 @@ import sqlite3
 
 import pytest
 
-from rastrainer.slicer.trainee_desk import LOOK_EVERY_S, TraineeDesk
-from rastrainer.study import Study
+from rastrainer.slicer.logic.trainee_logic import LOOK_EVERY_S, TraineeLogic
+from rastrainer.study.database.study import Study
 
 
 @pytest.fixture
@@ -14,44 +14,44 @@ def path(tmp_path):
 
 
 @pytest.fixture
-def desk(path):
-    """A desk whose time is told by the test."""
+def logic(path):
+    """A logic whose time is told by the test."""
     times = [0.0]
-    desk = TraineeDesk(lambda: Study.open(path), path.parent, clock=lambda: times[0])
-    desk.wait = lambda: times.append(times.pop() + LOOK_EVERY_S)
-    desk.study.trainees()
-    desk.wait()
-    assert not desk.noticesOthers()
-    yield desk
-    desk.close()
+    logic = TraineeLogic(lambda: Study.open(path), path.parent, clock=lambda: times[0])
+    logic.wait = lambda: times.append(times.pop() + LOOK_EVERY_S)
+    logic.study.trainees()
+    logic.wait()
+    assert not logic.hasChangedElsewhere()
+    yield logic
+    logic.close()
 
 
-def test_a_trainee_of_another_slicer_is_noticed_once(desk, path):
+def test_a_trainee_of_another_slicer_is_noticed_once(logic, path):
     with Study.open(path) as other:
         other.create_trainee("Blue")
-    assert not desk.noticesOthers()
-    desk.wait()
-    assert desk.noticesOthers()
-    desk.wait()
-    assert not desk.noticesOthers()
+    assert not logic.hasChangedElsewhere()
+    logic.wait()
+    assert logic.hasChangedElsewhere()
+    logic.wait()
+    assert not logic.hasChangedElsewhere()
 
 
-def test_what_was_done_here_is_nobody_elses(desk):
-    desk.create("Blue", consent=False)
-    desk.wait()
-    assert not desk.noticesOthers()
+def test_what_was_done_here_is_nobody_elses(logic):
+    logic.create("Blue", consent=False)
+    logic.wait()
+    assert not logic.hasChangedElsewhere()
 
 
-def test_a_study_that_is_locked_is_looked_at_later(desk, path):
+def test_a_study_that_is_locked_is_looked_at_later(logic, path):
     other = sqlite3.connect(path, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
-    desk.wait()
-    assert not desk.noticesOthers()
+    logic.wait()
+    assert not logic.hasChangedElsewhere()
     other.execute("INSERT INTO trainees VALUES (NULL, 'Blue', 0, 0, '2026-01-01T00:00:00Z')")
     other.execute("COMMIT")
     other.close()
-    desk.wait()
-    assert desk.noticesOthers()
+    logic.wait()
+    assert logic.hasChangedElsewhere()
 
 
 def test_the_list_shows_a_trainee_of_another_slicer(host):

@@ -8,11 +8,10 @@ import pytest
 
 from rastrainer import __version__
 from rastrainer.errors import InputError
-from rastrainer.slicer.setup_source import SetupSource
-from rastrainer.slicer.simulator_package import LOCK, WHEEL, SimulatorPackage
-from rastrainer.slicer.simulator_place import pythonSlicer
-from rastrainer.slicer.simulator_program import ProgramState, SimulatorProgram
-from rastrainer.slicer.simulator_setup import SimulatorSetup
+from rastrainer.slicer.program.pip_install import SetupSource, pythonSlicer
+from rastrainer.slicer.program.simulator_package import LOCK, WHEEL, SimulatorPackage
+from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
+from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from Testing.slicer.made_up_package import (
     lock_entry,
     write_checkout,
@@ -95,7 +94,7 @@ def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_network(setup, 
     lines, error = run_setup(setup, source)
     assert error == "", lines
     assert (setup.installedVersion, setup.isCurrent) == (__version__, True)
-    assert (setup.folder / "rastrainer_simulator" / "cli.py").is_file()
+    assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
     assert (setup.folder / "bolt.py").is_file()
     assert setup.installedMB == 0
 
@@ -139,7 +138,7 @@ def test_an_index_of_ones_own_is_asked_only_for_what_others_have_made(setup, bol
         lines, error = run_setup(setup, SetupSource(index=index.address))
         assert error == "", lines
         assert index.asked == ["/simple/bolt/", f"/files/{bolt.name}"]
-    assert (setup.folder / "rastrainer_simulator" / "cli.py").is_file()
+    assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
 
 
 def test_pip_does_not_follow_the_settings_of_whoever_runs_slicer(
@@ -193,7 +192,7 @@ def test_in_a_checkout_its_sources_are_run_as_they_are(tmp_path):
     assert error == "", lines
     assert setup.isCurrent
     assert not (setup.folder / "rastrainer").exists()
-    source = tmp_path / "checkout" / "RASTrainerSimulatorServer" / "rastrainer_simulator" / "cli.py"
+    source = tmp_path / "checkout" / "RASTrainerSimulatorServer/rastrainer_simulator/cli/main.py"
     source.write_text("print('Edited since.')", encoding="utf-8")
     program, told = SimulatorProgram(), []
     program.wroteLine.connect(told.append)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.protocol import Device
-from rastrainer.slicer.link_nodes import capturedPointsNode, prepareNodes
-from rastrainer.slicer.scenario import showTask
-from rastrainer.slicer.scene import Role, findNode
-from rastrainer.slicer.slice_follower import LEAST_MOVE_MM, PERIOD_S, SliceFollower, toolTip
-from rastrainer.slicer.slice_views import jumpTo
-from rastrainer.slicer.world_placement import showPlannedPlace
+from rastrainer.protocol import DeviceName
+from rastrainer.slicer.logic.slice_follower import LEAST_MOVE_MM, PERIOD_S, SliceFollower, toolTip
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode, prepareNodes
+from rastrainer.slicer.scene.registration_nodes import showPlannedPlace
+from rastrainer.slicer.scene.scenario_nodes import showTask
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.views import jumpTo
 from Testing.slicer.head.placed import vtk_matrix
 from Testing.slicer.training_room import Room
 
@@ -28,7 +28,7 @@ def room(scene, scenario):
 
 @pytest.fixture
 def follower(room):
-    return SliceFollower(room.scene, room.desk, lambda: room.now)
+    return SliceFollower(room.scene, room.logic, lambda: room.now)
 
 
 def place(scene):
@@ -46,14 +46,14 @@ def play(room, follower, point, task="task-1"):
     """Let the simulator tell which point is next."""
     room.tell(nextPoint=point, task=task)
     told = (point, task)
-    room.run_until(lambda: (room.desk.progress.nextPoint, room.desk.progress.task) == told)
+    room.run_until(lambda: (room.logic.progress.nextPoint, room.logic.progress.task) == told)
     room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
     follower.process()
 
 
 def put_tool(scene, tip):
     prepareNodes(scene)
-    pose = findNode(scene, TRANSFORM, Device.TOOL_TIP_TO_WORLD)
+    pose = findNode(scene, TRANSFORM, DeviceName.TOOL_TIP_TO_WORLD)
     pose.SetMatrixTransformToParent(vtk_matrix(transforms.rigid(np.eye(3), tip)))
 
 
@@ -83,7 +83,7 @@ def test_the_first_point_of_another_task_is_shown_once_its_fiducials_are(room, f
     showTask(room.scene, scenario, "task-2")
     jumpTo(room.scene, (1.0, 2.0, 3.0))
     room.tell(nextPoint="1", task="task-1", phase="running", trialId="")
-    room.run_until(lambda: room.desk.progress.nextPoint == "1")
+    room.run_until(lambda: room.logic.progress.nextPoint == "1")
     follower.process()
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
     showTask(room.scene, scenario, "task-1")
@@ -98,7 +98,7 @@ def test_the_slices_stay_where_they_are_when_that_is_wished_or_no_trial_runs(roo
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
     follower.showsNextPoint = True
     room.tell(phase="idle", nextPoint="1")
-    room.run_until(lambda: room.desk.progress.phase == "idle")
+    room.run_until(lambda: room.logic.progress.phase == "idle")
     follower.process()
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.aborted_trial import AbortedTrial
-from rastrainer.experiment.steps import StepKind
-from rastrainer.experiment.study_progress import StudyProgress
-from rastrainer.questionnaires.ssq import SSQ
-from rastrainer.study import Study
-from rastrainer.study_aborted import AbortedTrials
-from Testing.domain.aborted_records import make_aborted
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.steps import StepKind
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.questionnaires.catalog import SSQ
+from rastrainer.trial.aborted_trial import AbortedTrial
+from Testing.domain.trial.aborted_records import make_aborted
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.brain_region import region_of
 from rastrainer.errors import InputError
-from rastrainer.revealed_truth import RevealedTruth
-from rastrainer.scoring import ScoreReference
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_files import read_trials
-from rastrainer.trial_record import TrialRecord
-from rastrainer.trial_results import results_json
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.brain_region import region_of
+from rastrainer.trial.ctps import read_trials
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import ScoreReference
+from rastrainer_headless.output import results_json
 
 PUBLISHED = Path(__file__).parents[2] / "assets" / "studies" / "published.csv"
 

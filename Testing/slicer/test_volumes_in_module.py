@@ -1,9 +1,10 @@
 """Broken volumes in the section New scenario: each gets a sentence and leaves all as it was."""
 
 import numpy as np
+import pytest
 from vtk.util.numpy_support import vtk_to_numpy
 
-from rastrainer.scenario_library import user_library
+from rastrainer.scenario.library import user_library
 from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE
 from Testing.slicer.head.placed import add_volume
@@ -14,18 +15,24 @@ def nodes_of(scene):
     return [(node.GetID(), node.GetName()) for node in nodes]
 
 
-def test_a_broken_volume_gets_a_sentence_and_leaves_scene_and_library_as_they_were(host, tmp_path):
+ALL = UNUSABLE | HEADLESS
+BUTTONS = ("previewHeadButton", "makeScenarioButton")
+
+
+def refuse_each(host, folder, cases):
+    """Press the buttons, by the names of the volumes: a sentence, and all is as it was."""
     host.open()
-    program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", [])
+    program = write_program(folder / "rastrainer", folder / "simulator.pid", [])
     for name in ("setupGroupBox", "newScenarioCollapsibleButton", "adjustHeadGroupBox"):
         host.find(name).collapsed = False
         host.process_events()
     host.type("programPathLineEdit", str(program))
-    for name, (volume, sentence) in (UNUSABLE | HEADLESS).items():
+    for name, buttons in cases.items():
+        volume, sentence = ALL[name]
         node = add_volume(host.scene, volume, name)
         host.choose("scanComboBox", node)
         before = nodes_of(host.scene)
-        for button in ("previewHeadButton", "makeScenarioButton"):
+        for button in buttons:
             told = len(host.messages)
             host.press(button)
             assert len(host.messages) == told + 1, (name, button)
@@ -35,3 +42,12 @@ def test_a_broken_volume_gets_a_sentence_and_leaves_scene_and_library_as_they_we
         values = vtk_to_numpy(node.GetImageData().GetPointData().GetScalars())
         assert np.array_equal(values, volume.values.ravel(order="F"), equal_nan=True)
     assert not user_library().exists()
+
+
+def test_a_broken_volume_gets_a_sentence_and_leaves_scene_and_library_as_they_were(host, tmp_path):
+    refuse_each(host, tmp_path, {"2D": BUTTONS[:1], "NaN": BUTTONS[1:], "a block": BUTTONS[:1]})
+
+
+@pytest.mark.soak
+def test_each_broken_volume_gets_its_sentence_at_each_button(host, tmp_path):
+    refuse_each(host, tmp_path, dict.fromkeys(ALL, BUTTONS))

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.scenario import load_scenario
-from rastrainer.slicer.control_points import setPoints
-from rastrainer.slicer.link_nodes import capturedPointsNode
-from rastrainer.tasks import LABELS
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 
 ALL = ", ".join(LABELS)
@@ -36,6 +37,8 @@ def touches():
 
 def touch(host, points):
     """Put touches into the scene, and wait until the panel has taken them."""
+    work = host.widget.logic.session.work
+    host.wait_until(lambda: not work.isBusy, "what was there before is shown")
     host.find("registrationText").text = ""
     setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
     host.wait_until(lambda: host.text("registrationText"), "the touches are registered")
@@ -85,7 +88,7 @@ def test_one_click_mends_it_at_once_and_undo_brings_it_back(panel, touches, chan
     ("change", "named", "advice"),
     [
         (lambda points: points * [1, 1, -1], f"({ALL}) are a mirror image", "check the sign"),
-        (lambda points: points / 1000, f"({ALL}) are 998.9 times", "must be in millimeters"),
+        (lambda points: points / MM_PER_M, f"({ALL}) are 998.9 times", "must be in millimeters"),
         (lambda points: points[0] + ONE_LINE, f"({ALL})", "one line"),
         (lambda points: points[:2], "", "at least 3"),
     ],

@@ -5,7 +5,7 @@ import re
 import socket
 from pathlib import Path
 
-from rastrainer_simulator.cli import main
+from rastrainer_simulator.cli.main import main
 from Testing.forked_child import in_child
 
 RASTRAINER = Path(__file__).parents[2] / "RASTrainer"

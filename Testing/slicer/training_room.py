@@ -1,34 +1,34 @@
-"""A training desk on a link to a simulator double, for the tests of what steers trials."""
+"""The training logic on a link to a simulator double, for the tests of what steers trials."""
 
 import json
 import uuid
 
 from rastrainer.igtl.content import Status, String
-from rastrainer.protocol import PROTOCOL_VERSION, Device
-from rastrainer.slicer.headless_kit import headlessKit
-from rastrainer.slicer.link import Link
-from rastrainer.slicer.scene import findNode
-from rastrainer.slicer.training_desk import TrainingDesk
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.training_logic import TrainingLogic
+from rastrainer.slicer.scene.scene import findNode
+from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 TRIAL = str(uuid.UUID(int=5))
 
 
 class Room:
-    """A desk on a link to a simulator double that has the ball scenario."""
+    """A logic on a link to a simulator double that has the ball scenario."""
 
     def __init__(self, scene, scenario):
         self.scene, self.now, self.refusal = scene, 100.0, None
         self.simulator = SimulatorDouble(self.answer)
         self.link = Link(scene, headlessKit)
-        self.desk = TrainingDesk(scene, self.link, lambda _name: scenario, lambda: self.now)
+        self.logic = TrainingLogic(scene, self.link, lambda _name: scenario, lambda: self.now)
         self.answers = []
-        self.desk.answered.connect(self.answers.append)
+        self.logic.answered.connect(self.answers.append)
         opened = []
         self.link.opened.connect(lambda: opened.append(True))
         self.link.connectTo(port=self.simulator.port)
         self.run_until(lambda: opened)
-        self.simulator.send(Device.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+        self.simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
 
     def answer(self, name, _arguments):
         if name == "ListTasks":
@@ -37,7 +37,7 @@ class Room:
 
     def tell(self, **state):
         told = {"trialId": TRIAL, "phase": "running", "task": "task-1", "trainee": "T001"}
-        self.simulator.send(Device.SIM_STATE, String(json.dumps({**told, **state})))
+        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**told, **state})))
 
     def sent(self, name):
         return [arguments for sent, arguments in self.simulator.commands if sent == name]
@@ -49,6 +49,6 @@ class Room:
         run_link_until(self.link, condition)
 
     def close(self):
-        self.desk.close()
+        self.logic.close()
         self.link.disconnect()
         self.simulator.close()

@@ -17,19 +17,19 @@ from playwright.sync_api import Page
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.onto_skin import lowered
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
-from Testing.simulator.igtl.servers import LoopThread
-from Testing.simulator.view_server.served import ViewClient
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 
-SLICER = (sys.executable, "-m", "rastrainer.slicer.headless")
+SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
 TRAINEE = "P7"
 PATIENCE_S = 60
-MM = 1000.0
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
 SETTLED_STATES = 20
@@ -201,7 +201,7 @@ class CarriedTrainee(Trainee):
         if self.menu is not None:
             # A machine that is too busy to draw counts as a headset that is not worn.
             self.choose("resume")
-        target = {"positionMm": (MM * place).tolist(), "speedMmS": 400}
+        target = {"positionMm": (MM_PER_M * place).tolist(), "speedMmS": 400}
         reply = self._client.send_command("MoveTipTo", target, timeout=20)
         assert reply.ok, reply.error
         give_up = self.view.state["time"] + 4.0
@@ -218,7 +218,7 @@ class CarriedTrainee(Trainee):
         """Have the tip lowered onto a fiducial, until it is in contact."""
         place = self.place_of(label)
         self.steer_to(place, 0.002)
-        below = lowered(MM * place, MM * self.head_center)
+        below = lowered(MM_PER_M * place, MM_PER_M * self.head_center)
         target = {"positionMm": below, "speedMmS": 400}
         assert self._client.send_command("MoveTipTo", target, timeout=20).ok
         self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")

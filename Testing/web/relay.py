@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 
-from Testing.simulator.igtl.servers import LoopThread
+from Testing.simulator.net.igtl.servers import LoopThread
 
 HOST = "127.0.0.1"
 CHUNK = 65536

@@ -16,13 +16,13 @@ from playwright.sync_api import sync_playwright
 
 from rastrainer import transforms
 from rastrainer.report.report import write_report
-from rastrainer.report.study_data import read_study_data
-from rastrainer.scenario import Scenario, Task, load_scenario
-from rastrainer.study import Study
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer.trial_record import TrialRecord
+from rastrainer.scenario.scenario import Scenario, Task, load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import read_study_data
+from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
-from Testing.domain.trial_records import make_record
+from Testing.domain.trial.trial_records import make_record
 from Testing.web.chromium import launch
 
 FOLDER = Path(__file__).parents[2] / "Screenshots"

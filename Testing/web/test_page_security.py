@@ -11,7 +11,7 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.command import Command
+from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message, pack
 from Testing.web.chromium import PATIENCE_MS, SMALL, open_page
 from Testing.web.hands import PageKeys

@@ -6,9 +6,9 @@ import re
 import pytest
 
 from rastrainer.report.report import report_html
-from rastrainer.report.study_data import read_study_data
-from Testing.domain.played_study import STUDIES
-from Testing.domain.test_report import cohort
+from rastrainer.study.study_data import read_study_data
+from Testing.domain.report.test_report import cohort
+from Testing.domain.study.played_study import STUDIES
 
 WIDTH, HEIGHT = 180, 263
 """Of what may be printed on a page, mm; see `@page` in the report's style."""

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.scenario import load_scenario
-from rastrainer.scripted_trial import play_trial, say_hello
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
 from Testing.web.chromium import open_page, wait_for
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place

@@ -19,6 +19,8 @@ import trimesh
 from iiwa7_dimensions import LINK_NAMES, link_origins
 from make_iiwa7 import visual_parts
 
+from rastrainer.units import MM_PER_M
+
 DIRECTIONS = 128
 OPEN_FRACTION = 0.05
 LIFT = 1e-4
@@ -70,7 +72,7 @@ def surface_distances(
     links = np.repeat(np.arange(len(one)), [len(mesh.faces) for mesh in one])[faces]
     seen = _visible(whole, points, whole.face_normals[faces]) & (points[:, 2] > GROUND)
     _, distances, _ = trimesh.proximity.closest_point(target, points[seen])
-    return distances * 1000.0, links[seen]
+    return distances * MM_PER_M, links[seen]
 
 
 def _visible(mesh: trimesh.Trimesh, points: np.ndarray, normals: np.ndarray) -> np.ndarray:

@@ -19,6 +19,8 @@ from iiwa7_sections import (
 from loft import Station, loft
 from solids import box, cylinder, difference, enclosing, hull, moved, revolve, trim
 
+from rastrainer.units import MM_PER_M
+
 Parts = dict[str, trimesh.Trimesh]
 
 SEAM_GAP = 1.4
@@ -26,7 +28,6 @@ SEAM_DEPTH = 2.0
 RING_WIDTH = 7.0
 RING_HEIGHT = 0.5
 RING_SEGMENTS = 40
-MM_IN_M = 1000.0
 
 # How far the pan joint's end of an arm shell is below (links 1, 3) or above (2, 4) the tilt joint.
 LOWER_ARM_ENDS = {1: -182.5, 3: -215.0}
@@ -104,12 +105,12 @@ def _turned_over(shell: trimesh.Trimesh) -> trimesh.Trimesh:
 
 def _to_tilt(link: int) -> tuple[float, float, float]:
     """Return the tilt joint's center in the frame of the link whose far end it is."""
-    return (0.0, 0.0, JOINTS[link].origin[2] * MM_IN_M)
+    return (0.0, 0.0, JOINTS[link].origin[2] * MM_PER_M)
 
 
 def _from_tilt(link: int) -> tuple[float, float, float]:
     """Return the tilt joint's center in the frame of the link that it moves."""
-    return (0.0, -JOINTS[link - 1].origin[1] * MM_IN_M, 0.0)
+    return (0.0, -JOINTS[link - 1].origin[1] * MM_PER_M, 0.0)
 
 
 def _ringed(shell: trimesh.Trimesh, face: Station) -> Parts:

@@ -16,11 +16,10 @@ from iiwa7_shells import plain_shells, shells
 from iiwa7_urdf import LinkBody, urdf_text
 from pointer_tool import plain_tool, tip, tool
 
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.collision.shape_json import shape_to_json
+from rastrainer_simulator.core.prepared_robot import model_to_json, shape_to_json, write_prepared
 from rastrainer_simulator.robot.model import load_robot
-from rastrainer_simulator.robot.model_json import model_to_json
-from rastrainer_simulator.robot.prepared import write_prepared
 
 RINGS = 25
 SEGMENTS = 40
@@ -88,7 +87,7 @@ def in_metres(part: trimesh.Trimesh) -> trimesh.Trimesh:
     Rounding and sorting take out what could differ from machine to machine: the last bits of
     sines, and the order in which cuts and hulls return their triangles.
     """
-    vertices = np.round(part.vertices / 1000.0, MESH_DECIMALS) + 0.0
+    vertices = np.round(part.vertices / MM_PER_M, MESH_DECIMALS) + 0.0
     vertices, index = np.unique(vertices, axis=0, return_inverse=True)
     faces = index.reshape(-1)[part.faces]
     a, b, c = faces.T

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.head_pose import Perturbation
-from rastrainer.scenario import FORMAT_VERSION
+from rastrainer.head.pose import Perturbation
+from rastrainer.scenario.scenario import FORMAT_VERSION
 
 HEAD_CENTER_MM = np.array([480.0, 0.0, 220.0])
 """In World. Nearer, the robot cannot reach the ear on its own side; farther or higher, not the

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.head_mesh import HeadMesh, write_head_mesh
-from rastrainer.head_volume import HeadVolume, write_head_volume
-from rastrainer.nrrd import read_nrrd
+from rastrainer.files.nrrd import read_nrrd
+from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.head.volume import HeadVolume, write_head_volume
 from rastrainer.slicer.head.head_draft import make_draft
 from rastrainer.slicer.head.volume import read_volume
 

@@ -17,28 +17,28 @@ import numpy as np
 from colin27_setup import CLOSE_UP_MM, PERTURBATION, head_to_world, scenario_json
 
 from rastrainer import transforms
-from rastrainer.files import write_text
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.head_pose import Perturbation, perturbed_pose
-from rastrainer.markups import write_markups
-from rastrainer.motion.shortest_path import shortest_path_mm
-from rastrainer.point_list import PointList
-from rastrainer.scenario import FILE_NAME
-from rastrainer.surface_path import SurfaceGraph
-from rastrainer.surface_queries import outward_normal
-from rastrainer.tasks import LABELS
-from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.planning.skin_places import smooth_places
-from rastrainer_simulator.planning.task_proposal import (
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.files.writing import write_text
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.pose import Perturbation, perturbed_pose
+from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
+from rastrainer.head.surface_queries import outward_normal
+from rastrainer.scenario.scenario import FILE_NAME
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.authoring.planning_setup import touchable
+from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     Proposal,
     TaskProposer,
     places_seen_from,
     target_spread,
 )
-from rastrainer_simulator.planning.touch_planner import TouchPlanner
-from rastrainer_simulator.planning.touchable import MM_PER_M, touchable
+from rastrainer_simulator.authoring.task_set import smooth_places
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.robot.model import load_robot
 
 FOLDER = Path(__file__).parent / "colin27"

@@ -1,3 +1,3 @@
 """The domain of RASTrainer: registration, scoring, tasks, protocol and study, on numpy alone."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

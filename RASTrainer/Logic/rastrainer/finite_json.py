@@ -22,12 +22,15 @@ def decode_finite_json(text: str, deepest: int = DEEPEST) -> Any:
             finite.
     """
     try:
-        value = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite_float)
+        value = _DECODER.decode(text)
     except RecursionError:
         raise ValueError("too deeply nested") from None
     # Most texts have too few brackets to be deep, and need no second look.
     if text.count("[") + text.count("{") > deepest and _is_deeper_than(deepest, value):
         raise ValueError("too deeply nested")
+    if not _is_finite(value):
+        # Only this way is it known which digits they are.
+        json.loads(text, parse_float=_finite_float)
     return value
 
 
@@ -85,3 +88,27 @@ def _finite_float(digits: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"{digits} is too large a number")
     return value
+
+
+def _is_finite(value: Any) -> bool:
+    """Return whether a decoded value is free of infinity, as which digits like 1e999 are decoded.
+
+    To look at what is decoded takes far less time than to have the decoder call a function for each
+    number.
+    """
+    values = [value]
+    # It grows while it is looked through.
+    for each in values:
+        kind = each.__class__
+        if kind is float:
+            if math.isinf(each):
+                return False
+        elif kind is list:
+            values += each
+        elif kind is dict:
+            values += each.values()
+    return True
+
+
+_DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
+"""One for all: `json.loads` with arguments makes another each time."""

@@ -46,5 +46,5 @@ def counted(count: int, what: str) -> str:
 
 
 def _past_half(value: float) -> float:
-    """Return the number a trifle farther from 0: 0.1465, stored as 0.14649…, becomes 0.147."""
+    """Return the number slightly farther from 0: 0.1465, stored as 0.14649…, becomes 0.147."""
     return value * (1 + 1e-12)

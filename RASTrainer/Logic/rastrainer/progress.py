@@ -1,4 +1,4 @@
-"""How far work has come, told step by step, also by one process to another in lines."""
+"""Progress of long work, reported step by step, also from one process to another in lines."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import re
 from collections.abc import Callable
 
 Progress = Callable[[str, float], None]
-"""Told a step's name and the share of the work done, 0 to 1; may raise to cancel."""
+"""Receives a step's name and the share of the work done, 0 to 1; may raise to cancel."""
 Warn = Callable[[str], None]
-"""Told a warning, one sentence."""
+"""Receives a warning, one sentence."""
 
 HEAD_MADE = "The head is made."
 _STEP = re.compile(r"\s*(\d+)%  (.+)")
@@ -16,17 +16,17 @@ _WARNING = "Warning: "
 
 
 def print_progress(step: str, share: float) -> None:
-    """Print a step as a line that `tell_line` understands."""
+    """Print a step as a line that `report_line` understands."""
     print(f"{share:4.0%}  {step}", flush=True)
 
 
 def print_warning(sentence: str) -> None:
-    """Print a warning as a line that `tell_line` understands."""
+    """Print a warning as a line that `report_line` understands."""
     print(f"{_WARNING}{sentence}", flush=True)
 
 
-def tell_line(line: str, progress: Progress, warn: Warn) -> None:
-    """Tell what a line of another process says of its work; another line says nothing."""
+def report_line(line: str, progress: Progress, warn: Warn) -> None:
+    """Report the step or warning in a line of another process's output; ignore other lines."""
     step = _STEP.fullmatch(line)
     if step:
         progress(step.group(2), int(step.group(1)) / 100.0)

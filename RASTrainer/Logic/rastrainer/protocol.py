@@ -7,23 +7,34 @@ Both sides import this one file, so that neither can drift from the other. It sa
 from __future__ import annotations
 
 import json
-import uuid
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from enum import Enum
 from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_message_object
+from rastrainer.json_checks import (
+    Argument,
+    number,
+    numbers,
+    one_of,
+    plain_object,
+    pseudonym,
+    text,
+    trial_id,
+    whole_number,
+    yes_or_no,
+)
 
 PROTOCOL_VERSION = 2
 DEFAULT_HOST = "127.0.0.1"
 DEFAULT_PORT = 18944
+DEFAULT_VIEW_PORT = 18945
 FIDUCIAL_COUNT = 15
 TRIAL_RUN = "trial-run"
 
 
-class Device:
+class DeviceName:
     """OpenIGTLink device names of what the server sends; each becomes the name of a MRML node."""
 
     TOOL_TIP_TO_WORLD = "ToolTipToWorld"
@@ -48,7 +59,7 @@ class Rate:
 
 
 class Phase(str, Enum):
-    """Where a trial stands."""
+    """The state of a trial."""
 
     IDLE = "idle"
     RUNNING = "running"
@@ -144,119 +155,6 @@ class CommandName:
 
 SPEED_LIMIT_MM_S = 500.0
 WORLD_LIMIT_MM = 5000.0
-OBJECT_LIMIT = 65_536
-"""Characters of a JSON object that is kept with a trial, such as the details of a score."""
-
-
-@dataclass(frozen=True)
-class Argument:
-    """One argument of a command: how it is checked, and what it is when left out.
-
-    `check` returns the accepted value or raises `ValueError` with the words that follow
-    "argument NAME must be". An argument without `default` is required.
-    """
-
-    check: Callable[[Any], Any]
-    default: Any = ...
-
-
-def text(longest: int = 64) -> Callable[[Any], str]:
-    """Accept printable text of 1 to `longest` characters."""
-
-    def check(value: Any) -> str:
-        if not isinstance(value, str) or not 1 <= len(value) <= longest or not value.isprintable():
-            raise ValueError(f"printable text of 1 to {longest} characters")
-        return value
-
-    return check
-
-
-def pseudonym() -> Callable[[Any], str]:
-    """Accept what a trainee may be called: short printable text without a space at an end."""
-
-    def check(value: Any) -> str:
-        if text()(value) != value.strip():
-            raise ValueError("printable text without a space at its beginning or end")
-        return value
-
-    return check
-
-
-def number(lowest: float, highest: float, unit: str = "") -> Callable[[Any], float]:
-    """Accept a finite number from `lowest` to `highest`."""
-
-    def check(value: Any) -> float:
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not is_number or not lowest <= value <= highest:
-            raise ValueError(f"a number from {lowest:g} to {highest:g} {unit}".rstrip())
-        return float(value)
-
-    return check
-
-
-def whole_number(lowest: int, highest: int) -> Callable[[Any], int]:
-    """Accept an integer from `lowest` to `highest`."""
-
-    def check(value: Any) -> int:
-        if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
-            raise ValueError(f"a whole number from {lowest} to {highest}")
-        return value
-
-    return check
-
-
-def numbers(count: int, limit: float, unit: str = "") -> Callable[[Any], tuple[float, ...]]:
-    """Accept a list of `count` finite numbers, each within ±`limit`."""
-    check_one = number(-limit, limit)
-
-    def check(value: Any) -> tuple[float, ...]:
-        sentence = f"a list of {count} numbers within ±{limit:g} {unit}".rstrip()
-        if not isinstance(value, (list, tuple)) or len(value) != count:
-            raise ValueError(sentence)
-        try:
-            return tuple(check_one(item) for item in value)
-        except ValueError:
-            raise ValueError(sentence) from None
-
-    return check
-
-
-def one_of(*choices: str) -> Callable[[Any], str]:
-    """Accept one of the given words."""
-
-    def check(value: Any) -> str:
-        if not isinstance(value, str) or value not in choices:
-            raise ValueError("one of " + ", ".join(choices))
-        return value
-
-    return check
-
-
-def yes_or_no(value: Any) -> bool:
-    """Accept true or false."""
-    if not isinstance(value, bool):
-        raise ValueError("true or false")
-    return value
-
-
-def trial_id(value: Any) -> str:
-    """Accept the UUID of a trial in its canonical spelling."""
-    try:
-        return str(uuid.UUID(value))
-    except (ValueError, AttributeError, TypeError):
-        raise ValueError("the UUID of a trial") from None
-
-
-def plain_object(value: Any) -> dict[str, Any]:
-    """Accept a JSON object as it is, within a size that fits a line of a journal."""
-    words = f"a JSON object of at most {OBJECT_LIMIT} characters"
-    try:
-        size = len(json.dumps(value, allow_nan=False))
-    except (TypeError, ValueError, RecursionError):
-        raise ValueError(words) from None
-    if not isinstance(value, dict) or size > OBJECT_LIMIT:
-        raise ValueError(words)
-    return value
 
 
 COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
@@ -344,18 +242,12 @@ def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any
         if name not in expected:
             takes = ", ".join(expected) or "none"
             raise InputError(f"{command} has no argument {_quoted(name)}; it takes {takes}.")
-    return {name: _checked(command, name, arguments, expected[name]) for name in expected}
-
-
-def _checked(command: str, name: str, arguments: Mapping[str, Any], argument: Argument) -> Any:
-    if name not in arguments:
-        if argument.default is ...:
+    fields = {}
+    for name, argument in expected.items():
+        if name not in arguments and argument.is_required:
             raise InputError(f"{command} needs the argument {name}.")
-        return argument.default
-    try:
-        return argument.check(arguments[name])
-    except ValueError as error:
-        raise InputError(f"{command}: the argument {name} must be {error}.") from None
+        fields[name] = argument.checked(arguments, name, f"{command}: the argument {name}")
+    return fields
 
 
 def _quoted(word: object) -> str:

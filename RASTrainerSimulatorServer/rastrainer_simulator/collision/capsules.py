@@ -70,15 +70,15 @@ def _fit(points: np.ndarray, directions: np.ndarray) -> Capsule:
     The search starts along each of the `directions` (3, 3) and moves the ends of the axis.
     """
     outermost = points[np.unique((points @ _sphere_directions().T).argmax(axis=0))]
-    best = None
+    found = []
     for direction in directions:
         along = outermost @ direction
         center = (outermost.min(axis=0) + outermost.max(axis=0)) / 2.0
         reach = direction * np.ptp(along) / 5.0
-        found = _pattern_search(outermost, np.concatenate([center - reach, center + reach]))
-        if best is None or found[0] < best[0]:
-            best = found
-    start, end = best[1][:3], best[1][3:]
+        ends = np.concatenate([center - reach, center + reach])
+        found.append(_pattern_search(outermost, ends))
+    _, best = min(found, key=lambda each: each[0])
+    start, end = best[:3], best[3:]
     return Capsule(start, end, _radius(points, start, end))
 
 

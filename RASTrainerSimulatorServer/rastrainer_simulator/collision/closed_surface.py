@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, vector
 
 # Shares of a triangle: below them a point lies on an edge or corner, and a triangle has no area.
 _ON_FEATURE = 1e-6
@@ -60,8 +60,8 @@ class ClosedSurface:
         corner = self._corners[triangle, 0]
         before, behind = (float(normal @ (np.array(point) - corner)) for point in (start, end))
         share = before / (before - behind) if before != behind else 0.0
-        point = tuple(a + share * (b - a) for a, b in zip(start, end, strict=True))
-        return point, tuple(normal.tolist())
+        point = vector(a + share * (b - a) for a, b in zip(start, end, strict=True))
+        return point, vector(normal.tolist())
 
     def _feature(self, triangle: int, point: np.ndarray) -> int:
         """Return the row of the face, edge or vertex on which the point lies."""

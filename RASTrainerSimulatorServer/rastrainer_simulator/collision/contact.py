@@ -19,8 +19,14 @@ import numpy as np
 
 from rastrainer_simulator.collision.clearance import Clearance
 from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.half_spaces import HalfSpace, nearest_inside
-from rastrainer_simulator.collision.sliding import RECOVERY, REST, Slide, slide
+from rastrainer_simulator.collision.sliding import (
+    RECOVERY,
+    REST,
+    HalfSpace,
+    Slide,
+    nearest_inside,
+    slide,
+)
 from rastrainer_simulator.robot.kinematics import Kinematics
 from rastrainer_simulator.vectors import Vector, dot, length, subtract
 
@@ -153,6 +159,7 @@ def _value(clearance: Clearance, part: str) -> float:
 def _pushed_back(way: Slide, start: Moved, end: Moved, broken: str) -> Slide | None:
     """Return the way with the overlap at its end taken back, None where that cannot be."""
     nearest = end.clearance.tip if broken == "tip" else end.clearance.shaft
+    assert nearest is not None, "what is broken was measured"
     gap = min(REST, _value(start.clearance, broken) + RECOVERY) - nearest.distance_m
     planes = (*way.half_spaces, _shifted(nearest.normal, gap, way.position))
     position = nearest_inside(way.position, planes)

@@ -10,10 +10,10 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.collision.clearance import FAR, Nearest
+from rastrainer_simulator.collision.distance_bounds import DistanceBounds
 from rastrainer_simulator.collision.head_surface import HeadSurface
-from rastrainer_simulator.collision.lookout import Lookout
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
-from rastrainer_simulator.collision.thin_segment import thin_segment
+from rastrainer_simulator.collision.segments import thin_segment
 from rastrainer_simulator.vectors import ZERO, Vector
 
 _RIGID = 1e-6
@@ -33,7 +33,7 @@ class HeadClearance:
         self._arm = arm
         self._segments = [thin_segment(c.start, c.end) for c in arm.capsules]
         self._bodies = arm.body.tolist()
-        self._lookout = Lookout(arm.link_count)
+        self._distance_bounds = DistanceBounds(arm.link_count)
         self.set_pose(np.eye(4))
 
     def set_pose(self, head_to_world: np.ndarray) -> None:
@@ -59,7 +59,7 @@ class HeadClearance:
         self._world_to_head_rows = self._world_to_head[:3].tolist()
         # What each capsule's clearance was when it was last queried, and where its axis was then.
         self._known = [(-math.inf, ZERO, ZERO)] * len(self._arm.capsules)
-        self._lookout.forget()
+        self._distance_bounds.forget()
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""
@@ -78,14 +78,14 @@ class HeadClearance:
         """Return the clearance of the links, m, and the nearest of them.
 
         The clearance is at most FAR, and then no link is named. `travelled` is how far the arm has
-        moved since ever, m.
+        moved in all, m.
         """
-        rows = self._lookout.due(travelled)
+        rows = self._distance_bounds.due(travelled)
         if not rows:
             return FAR, ""
         found, nearest = self._nearest(posed, rows, self._bounds(posed, rows), FAR)
         for row, bound in zip(rows, self._bounds(posed, rows), strict=True):
-            self._lookout.put_off(row, bound, travelled)
+            self._distance_bounds.put_off(row, bound, travelled)
         return (FAR, "") if found is None else (found.distance_m, self._arm.names[nearest])
 
     def are_links_off(self, posed: PosedArm, clearance: float) -> bool:

@@ -47,11 +47,11 @@ class ArmCapsules:
         """(n,) float: radius of the sphere about each capsule, m."""
         self._frames = (*(link.name for link in shape.links), shape.tip_name)
         # One product with all poses, their columns one below the other, gives all ends.
-        self._ends = np.zeros((len(rows), 2, len(self._frames), 4))
+        columns = np.zeros((len(rows), 2, len(self._frames), 4))
         for end, points in enumerate((starts, ends)):
-            self._ends[range(len(rows)), end, self.body, :3] = points
-            self._ends[range(len(rows)), end, self.body, 3] = 1.0
-        self._ends = self._ends.reshape(2 * len(rows), -1)
+            columns[range(len(rows)), end, self.body, :3] = points
+            columns[range(len(rows)), end, self.body, 3] = 1.0
+        self._ends = columns.reshape(2 * len(rows), -1)
 
     def pose(self, link_to_world: Mapping[str, np.ndarray]) -> PosedArm:
         """Return the capsules in World; `link_to_world` holds (4, 4) float by link, the tip too."""

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.protocol import Proximity
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.clearance import Clearance
-
-MM = 1000.0
 
 
 @dataclass(frozen=True)
@@ -22,10 +21,10 @@ class ProximitySettings:
         released: clearance of the whole tool at which contact ends.
     """
 
-    near: float = NEAR_MM / MM
-    far: float = FAR_MM / MM
-    touching: float = TOUCHING_MM / MM
-    released: float = RELEASED_MM / MM
+    near: float = NEAR_MM / MM_PER_M
+    far: float = FAR_MM / MM_PER_M
+    touching: float = TOUCHING_MM / MM_PER_M
+    released: float = RELEASED_MM / MM_PER_M
 
 
 def next_proximity(

@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from rastrainer_simulator.collision.lookout import Lookout
+from rastrainer_simulator.collision.distance_bounds import DistanceBounds
 from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
-from rastrainer_simulator.collision.segment_distance import segment_distance
+from rastrainer_simulator.collision.segments import segment_distance
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class TableClearance:
         self._table = surroundings.table_height
         self._stand_radius = surroundings.stand_radius
         self._stand: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
-        self._lookout = Lookout(len(arm.capsules))
+        self._distance_bounds = DistanceBounds(len(arm.capsules))
         fixed = np.where(arm.joints > 0, 0.0, -math.inf)
         self._below = arm.radii + surroundings.table_height + fixed
         self._around = arm.reach + surroundings.stand_radius + fixed
@@ -45,15 +45,15 @@ class TableClearance:
         top -= self._stand_radius  # The column is a capsule: its round end fills up to the base.
         upright = self._stand_radius > 0.0 and top > self._table
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
-        self._lookout.forget()
+        self._distance_bounds.forget()
 
     def nearest(self, posed: PosedArm, travelled: float) -> tuple[float, str]:
         """Return the least signed distance to table and stand, m, and the link.
 
         The distance is at most FAR, and then no link is named. `travelled` is how far the arm has
-        moved since ever, m.
+        moved in all, m.
         """
-        best, row = self._lookout.nearest(
+        best, row = self._distance_bounds.nearest(
             travelled, partial(self._distance, posed), partial(self._bounds, posed)
         )
         name = "" if row is None else self._arm.names[row]

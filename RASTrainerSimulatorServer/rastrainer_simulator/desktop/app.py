@@ -16,28 +16,36 @@ from typing import IO, Any
 import pygame
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.desktop.connection import Connection
-from rastrainer_simulator.desktop.frame_count import FrameCount
+from rastrainer_simulator.desktop.connection import ServerConnection
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox
-from rastrainer_simulator.desktop.key_repeats import without_late_repeats
-from rastrainer_simulator.desktop.operator_keys import OperatorKeys
+from rastrainer_simulator.desktop.keyboard import OperatorKeys, without_late_repeats
+from rastrainer_simulator.desktop.performance import (
+    SLOWEST_FRAME_S,
+    FrameCount,
+    Quality,
+    first_quality,
+)
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.desktop.quality import SLOWEST_FRAME_S, Quality, first_quality
+from rastrainer_simulator.desktop.screenshot import (
+    Screenshot,
+    picture_path,
+    save_screenshot,
+    write_picture,
+)
 from rastrainer_simulator.desktop.sounds import Sounds
-from rastrainer_simulator.desktop.still import Still, keep_still, picture_path, write_picture
-from rastrainer_simulator.view_server.messages import FRAMES, ITEM
+from rastrainer_simulator.net.views.messages import FRAMES, ITEM
 
-LOOK_S = 0.004
-"""How often the window looks for keys while nothing arrives."""
+POLL_S = 0.004
+"""How often the window polls the keyboard while nothing arrives."""
 LEAST_REFRESH_HZ = 60.0
-LEAST_REST_S = 0.002
+MIN_PAUSE_S = 0.002
 """Between two pictures, however slowly they are drawn: what has arrived is taken in by then."""
 TRIED_FRAMES = 12
-POLITENESS = 10
+NICENESS = 10
 LEFT_BUTTON = 1
 OWN_KEYS = (pygame.K_F11, pygame.K_F12)
-"""Full screen, and keep a picture: these the simulator is not told."""
+"""Full screen, and screenshot: these are not sent to the simulator."""
 
 _log = logging.getLogger(__name__)
 
@@ -83,17 +91,17 @@ class DesktopWindow:
         quality = options.quality or first_quality(self._window.renderer_name)
         if quality is Quality.LOW:
             # It draws with the processor that the control loop needs on time.
-            _be_polite()
+            _lower_priority()
         self._picture = Picture(self._window, self._inbox, quality)
-        self._trial: list[float] | None = [] if options.quality is None else None
-        self._connection = Connection(
+        self._frame_times: list[float] | None = [] if options.quality is None else None
+        self._connection = ServerConnection(
             options.url, options.key, self._inbox, self._window.refresh_hz
         )
         self._keys = OperatorKeys(self._connection)
         self._frames = FrameCount(self._report_frames, time.monotonic())
         self._own_held: set[int] = set()
-        self._stills: set[asyncio.Task[None]] = set()
-        self._one_still = asyncio.Lock()
+        self._screenshots: set[asyncio.Task[None]] = set()
+        self._one_screenshot = asyncio.Lock()
         self._is_open = True
 
     async def run(self) -> None:
@@ -102,16 +110,16 @@ class DesktopWindow:
         try:
             with self._open_log() as log:
                 while self._is_open and not connecting.done():
-                    await self._turn(log)
+                    await self._step(log)
         finally:
             connecting.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await connecting
-            await asyncio.gather(*self._stills)
+            await asyncio.gather(*self._screenshots)
             self._sounds.close()
             self._window.close()
 
-    async def _turn(self, log: IO[str] | None) -> None:
+    async def _step(self, log: IO[str] | None) -> None:
         """Take what has come, and draw it if it shows."""
         begin = time.monotonic()
         for event in without_late_repeats(pygame.event.get(), self._keys.is_held):
@@ -122,18 +130,18 @@ class DesktopWindow:
             self._sounds.play(sound.name, sound.volume)
         is_due = self._picture.is_due(begin)
         if not is_due:
-            self._frames.tell(begin)
-            await self._inbox.wait(LOOK_S)
+            self._frames.report(begin)
+            await self._inbox.wait(POLL_S)
             return
         self._frames.due()
         self._picture.draw()
         self._frames.shown()
         self._log_frame(log)
-        self._judge(time.monotonic() - begin)
-        self._frames.tell(begin)
+        self._lower_quality_if_slow(time.monotonic() - begin)
+        self._frames.report(begin)
         rest = begin + 1.0 / max(LEAST_REFRESH_HZ, self._window.refresh_hz) - time.monotonic()
         # Not drawn faster than it can be seen; what arrives meanwhile is taken in.
-        await asyncio.sleep(max(LEAST_REST_S, rest))
+        await asyncio.sleep(max(MIN_PAUSE_S, rest))
 
     def _take(self, event: pygame.event.Event) -> None:
         if event.type in (pygame.KEYDOWN, pygame.KEYUP) and event.key in OWN_KEYS:
@@ -160,7 +168,7 @@ class DesktopWindow:
             if event.key == pygame.K_F11:
                 self._window.toggle_fullscreen()
             else:
-                self._keep_picture()
+                self._save_screenshot()
 
     def _click(self, place: tuple[int, int]) -> None:
         now = time.monotonic()
@@ -169,43 +177,43 @@ class DesktopWindow:
         if name:
             self._connection.send(ITEM, name=name)
 
-    def _keep_picture(self) -> None:
-        """Have what is shown now kept, while the window goes on."""
+    def _save_screenshot(self) -> None:
+        """Save what is shown now, while the window keeps running."""
         path = picture_path(self._options.pictures)
         best = self._options.picture_quality
-        if best is self._picture.stage.quality:
+        if best is self._picture.viewports.quality:
             keep = asyncio.to_thread(write_picture, self._window.pixels(), path)
         else:
-            keep = keep_still(Still.of(self._inbox, path, self._window.size, best))
+            keep = save_screenshot(Screenshot.of(self._inbox, path, self._window.size, best))
         keeping = asyncio.create_task(self._keep(keep, path))
-        self._stills.add(keeping)
-        keeping.add_done_callback(self._stills.discard)
+        self._screenshots.add(keeping)
+        keeping.add_done_callback(self._screenshots.discard)
 
     async def _keep(self, keep: Coroutine[Any, Any, None], path: Path) -> None:
-        """Keep a picture when those before it are kept."""
+        """Save a picture after those before it."""
         try:
-            async with self._one_still:
+            async with self._one_screenshot:
                 await keep
         except InputError as error:
             _log.warning("%s", error)
         else:
             print(f"Picture {path}", flush=True)
 
-    def _judge(self, seconds: float) -> None:
-        """Draw with less light where the machine turns out to be too slow for so much."""
-        if self._trial is None or self._inbox.scene is None:
+    def _lower_quality_if_slow(self, seconds: float) -> None:
+        """Lower the quality where the machine turns out to be too slow."""
+        if self._frame_times is None or self._inbox.scene is None:
             return
-        self._trial.append(seconds)
-        if len(self._trial) < TRIED_FRAMES:
+        self._frame_times.append(seconds)
+        if len(self._frame_times) < TRIED_FRAMES:
             return
         # The first pictures also compile what draws them.
-        median = sorted(self._trial[TRIED_FRAMES // 2 :])[TRIED_FRAMES // 4]
-        quality = self._picture.stage.quality
+        median = sorted(self._frame_times[TRIED_FRAMES // 2 :])[TRIED_FRAMES // 4]
+        quality = self._picture.viewports.quality
         if median <= SLOWEST_FRAME_S or quality is Quality.LOW:
-            self._trial = None
+            self._frame_times = None
         else:
-            self._trial = []
-            self._picture.set_quality(quality.lower)
+            self._frame_times = []
+            self._picture.set_quality(quality.next_lower)
 
     def _report_frames(self, shown: int, dropped: int) -> None:
         hz = self._window.refresh_hz
@@ -223,8 +231,8 @@ class DesktopWindow:
         log.flush()
 
 
-def _be_polite() -> None:
-    """Give way to the simulator: on Linux each thread has a priority of its own."""
+def _lower_priority() -> None:
+    """Leave the processor to the simulator: on Linux each thread has a priority of its own."""
     if not hasattr(os, "setpriority"):
         return
     tasks = Path("/proc/self/task")
@@ -234,4 +242,4 @@ def _be_polite() -> None:
         with contextlib.suppress(OSError):  # It may have ended.
             # What has a place of its own, such as SDL's sound, keeps it.
             if os.getpriority(os.PRIO_PROCESS, thread) == ordinary:
-                os.setpriority(os.PRIO_PROCESS, thread, max(ordinary, POLITENESS))
+                os.setpriority(os.PRIO_PROCESS, thread, max(ordinary, NICENESS))

@@ -1,4 +1,4 @@
-"""Join the simulator, hear its stream, and come back whenever it was away."""
+"""Connect to the simulator, receive its stream, and reconnect whenever the connection is lost."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ import aiohttp
 
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
-from rastrainer_simulator.desktop.flight import Viewpoint
+from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, SceneNews, SoundEvent
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent
+from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
 from rastrainer_simulator.desktop.screen_reader import screen_from_json
-from rastrainer_simulator.desktop.thumbnail import Thumbnail
-from rastrainer_simulator.flow.screen import focused_picture
-from rastrainer_simulator.view_server.messages import HELLO, SUBPROTOCOL
+from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL
+from rastrainer_simulator.net.views.screen import focused_picture
 
 RETRY_S = 1.0
 ANSWER_S = 10.0
@@ -33,7 +33,7 @@ UNAUTHORIZED = 401
 _log = logging.getLogger(__name__)
 
 
-class Connection:
+class ServerConnection:
     """One view of one simulator."""
 
     def __init__(self, url: str, key: str, inbox: Inbox, refresh_hz: float):
@@ -152,7 +152,7 @@ class Connection:
     async def _take_scene(self, session: aiohttp.ClientSession, message: Mapping[str, Any]) -> None:
         """Load a scene; the one that is shown stays until the next is there."""
         content = await self._content(session, str(message["url"]), LARGEST_SCENE)
-        self._inbox.scene = SceneNews(
+        self._inbox.scene = LoadedScene(
             read_parts(content, self._inbox.bodies),
             {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
             {str(label): tuple(place) for label, place in message["fiducials"].items()},
@@ -172,11 +172,11 @@ class Connection:
         self._inbox.touch()
 
 
-_TAKE: Mapping[str, Callable[[Connection, Mapping[str, Any]], None]] = {
-    "welcome": Connection._take_welcome,
-    "event": Connection._take_event,
-    "control": Connection._take_control,
-    "pairing": Connection._take_pairing,
+_TAKE: Mapping[str, Callable[[ServerConnection, Mapping[str, Any]], None]] = {
+    "welcome": ServerConnection._take_welcome,
+    "event": ServerConnection._take_event,
+    "control": ServerConnection._take_control,
+    "pairing": ServerConnection._take_pairing,
 }
 
 

@@ -118,7 +118,8 @@ class GlWindow:
             "WindowFrameEvent": lambda *_event: self._window.flip(),
         }
         for name, answer in answers.items():
-            window.AddObserver(name, answer)
+            # VTK's stubs leave out that events have names.
+            window.AddObserver(name, answer)  # type: ignore[arg-type]
         window.SetOwnContext(False)
         window.SetMapped(True)
         window.SetReadyForRendering(True)

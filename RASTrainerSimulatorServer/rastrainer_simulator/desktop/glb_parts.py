@@ -57,7 +57,7 @@ def read_parts(content: bytes, bodies: Collection[str]) -> list[Part]:
         InputError: it is no GLB, or none of the bodies is in it.
     """
     try:
-        scene = trimesh.load(io.BytesIO(content), file_type="glb", process=False, force="scene")
+        scene = trimesh.load_scene(io.BytesIO(content), file_type="glb", process=False)
         parents = dict(scene.graph.transforms.parents)
     except Exception as error:  # Whatever trimesh trips over in a file that is not what it says.
         raise InputError(UNREADABLE.format(reason=error)) from None

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.finite_json import decode_finite_json
-from rastrainer_simulator.desktop.flight import Viewpoint
+from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import Part
-from rastrainer_simulator.desktop.thumbnail import Thumbnail
-from rastrainer_simulator.flow.screen import Screen
+from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.net.views.screen import Screen
 
 STATE_MEMBERS = ("tick", "phase", "proximity", "camera", "next", "touched")
 
@@ -22,7 +22,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class SceneNews:
+class LoadedScene:
     """A scene to be shown, its cameras by name, and its fiducials in the head's frame (m)."""
 
     parts: list[Part]
@@ -57,7 +57,7 @@ class Inbox:
         self.state: Mapping[str, Any] | None = None
         self._unread: str | None = None
         self.screen: Screen | None = None
-        self.scene: SceneNews | None = None
+        self.scene: LoadedScene | None = None
         self.sounds: deque[SoundEvent] = deque(maxlen=16)
         self.problem = "window.connecting"
         self.holder = ""

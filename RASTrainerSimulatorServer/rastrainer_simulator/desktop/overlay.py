@@ -9,17 +9,20 @@ from typing import Any
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from rastrainer_simulator.desktop import theme
-from rastrainer_simulator.desktop.canvas import Box
-from rastrainer_simulator.desktop.panels import edges, strips
+from rastrainer_simulator.desktop.panels import edges, strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.canvas import Box
 from rastrainer_simulator.desktop.panels.edges import Side
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
-from rastrainer_simulator.desktop.panels.target_arrow import REACH, STEP_DEG, target_arrow
-from rastrainer_simulator.desktop.sprite import Sprite
-from rastrainer_simulator.desktop.target_direction import Direction
-from rastrainer_simulator.desktop.thumbnail import Thumbnail
-from rastrainer_simulator.flow.screen import Screen
+from rastrainer_simulator.desktop.panels.sprite import Sprite
+from rastrainer_simulator.desktop.panels.target_arrow import (
+    REACH,
+    STEP_DEG,
+    Direction,
+    target_arrow,
+)
+from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.net.views.screen import Screen
 
 MOST_WARNINGS = 3
 GLOW = 44
@@ -54,15 +57,15 @@ class Overlay:
         self._slots = {name: _Slot(Sprite(renderer, order)) for order, name in enumerate(_SLOTS)}
         self._size = (0, 0)
         self._brush = Brush(1.0)
-        self._menu: tuple[MenuPicture, Box] | None = None
+        self._menu: MenuPicture | None = None
+        self._menu_box: Box | None = None
         self._shown: Content | None = None
 
     def item_at(self, x: float, y: float) -> str:
         """Return the name of the menu's item at a pixel, counted from the upper left corner."""
-        if self._menu is None:
+        if self._menu is None or self._menu_box is None:
             return ""
-        picture, box = self._menu
-        return picture.item_at(x - box.left, y - box.top)
+        return self._menu.item_at(x - self._menu_box.left, y - self._menu_box.top)
 
     def show(self, content: Content, size: tuple[int, int]) -> bool:
         """Lay something over a window of so many pixels; return whether anything has changed."""
@@ -128,20 +131,19 @@ class Overlay:
             self._slots["scrim"].sprite.show(0, 0, *self._size)
         if menu is None:
             self._slots["menu"].hide()
-            self._menu = None
+            self._menu_box = None
             return
         room = (self._size[0] - 2 * self._brush.px(theme.MARGIN), bottom - top)
         slot = self._slots["menu"]
         shown = (content.hovered, content.thumbnail)
-        if slot.is_other((menu, room, *shown, self._scale)):
-            picture = menu_panel(menu, self._scale, room, *shown)
-            slot.sprite.paint(picture.pixels)
-            self._menu = (picture, Box(0, 0, 0, 0))
+        if slot.needs_painting((menu, room, *shown, self._scale)):
+            self._menu = menu_panel(menu, self._scale, room, *shown)
+            slot.sprite.paint(self._menu.pixels)
         width, height = slot.sprite.size
         # To the left, so that the robot is seen beside it.
         left = min(self._brush.px(theme.MENU_LEFT), (self._size[0] - width) // 2)
         box = Box(left, top + (room[1] - height) // 2, width, height)
-        self._menu = (self._menu[0], box)
+        self._menu_box = box
         self._place("menu", box.left, box.top)
 
     def _show_contact(self, is_contact: bool) -> None:
@@ -161,8 +163,9 @@ class Overlay:
 
     def _show_inset(self, box: Box | None) -> None:
         thick = self._brush.px(INSET_FRAME)
-        outer = box and box.inset(-thick)
-        if self._paint("inset", outer, edges.frame, thick, theme.INSET_EDGE):
+        outer = None if box is None else box.inset(-thick)
+        is_shown = self._paint("inset", outer, edges.frame, thick, theme.INSET_EDGE)
+        if is_shown and outer is not None:
             self._place("inset", outer.left, outer.top)
 
     def _show_target(self, target: tuple[Direction, int] | None) -> None:
@@ -189,7 +192,7 @@ class Overlay:
         if not content:
             slot.hide()
             return False
-        if slot.is_other((content, how)):
+        if slot.needs_painting((content, how)):
             slot.sprite.paint(paint(content, *how))
         return True
 
@@ -215,10 +218,10 @@ class _Slot:
         self.sprite = sprite
         self._key: Hashable = None
 
-    def is_other(self, key: Hashable) -> bool:
+    def needs_painting(self, key: Hashable) -> bool:
         """Return whether something else is to be painted, and take note of it."""
-        is_other, self._key = key != self._key, key
-        return is_other
+        needs_painting, self._key = key != self._key, key
+        return needs_painting
 
     def hide(self) -> None:
         self.sprite.hide()

@@ -5,23 +5,68 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import pygame
 
 from rastrainer.protocol import Phase
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.desktop.gl_window import GlWindow
-from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
-from rastrainer_simulator.desktop.notices import notice, own_facts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.overlay import Content, Overlay
-from rastrainer_simulator.desktop.pointer import Pointer
-from rastrainer_simulator.desktop.quality import Quality
+from rastrainer_simulator.desktop.panels.target_arrow import Direction, direction_out_of_sight
+from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
-from rastrainer_simulator.desktop.stage import Stage
-from rastrainer_simulator.desktop.target_direction import Direction, direction_out_of_sight
-from rastrainer_simulator.flow.screen import Screen, focused_picture
+from rastrainer_simulator.desktop.viewports import Viewports
+from rastrainer_simulator.net.views.screen import Menu, Screen, focused_picture
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 
-MM_IN_M = 1000.0
+REST_S = 3.0
+NOWHERE = (-1, -1)
+
+
+class Pointer:
+    """Hides the pointer when it rests, so that it marks nothing for those who use a gamepad."""
+
+    def __init__(self) -> None:
+        self._place = NOWHERE
+        self._moved = -REST_S
+        self._is_visible = True
+
+    def move(self, place: tuple[int, int], now: float) -> None:
+        """Somebody moved it, or clicked, at `now` (s)."""
+        self._place, self._moved = place, now
+
+    def place(self, now: float) -> tuple[int, int]:
+        """Return where it points, in pixels from the upper left; NOWHERE while it rests."""
+        is_visible = now - self._moved < REST_S
+        if is_visible != self._is_visible:
+            self._is_visible = is_visible
+            pygame.mouse.set_visible(is_visible)
+        return self._place if is_visible else NOWHERE
+
+
+def notice(key: str, language: str) -> Screen:
+    """Return what the trainee reads while there is no connection."""
+    texts = Texts(LANGUAGES.get(language, {}))
+    return Screen(menu=Menu("notice", texts.say("window.title"), (texts.say(key),)))
+
+
+@lru_cache(maxsize=8)
+def own_facts(language: str, holder: str, pairing: tuple[str, str] | None) -> tuple[str, ...]:
+    """Return who holds the control, and how another view is paired where that is to be told."""
+    texts = Texts(LANGUAGES.get(language, {}))
+    key = f"source.{holder}"
+    source = texts.say(key) if key in texts else holder
+    fact = texts.say("control.holder", source=source) if holder else texts.say("control.nobody")
+    if pairing is None:
+        return (fact,)
+    code, addresses = pairing
+    return fact, texts.say("window.pairing", code=code, addresses=addresses)
+
+
 PULSE_S = 1.4
 FAR = "far"
 BESIDE_MENU = 0.44
@@ -34,10 +79,10 @@ class Picture:
     def __init__(self, window: GlWindow, inbox: Inbox, quality: Quality):
         self._window = window
         self._inbox = inbox
-        self.stage = Stage(window, quality)
-        self._overlay = Overlay(self.stage.overlay)
+        self.viewports = Viewports(window, quality)
+        self._overlay = Overlay(self.viewports.overlay)
         self._scene: ShownScene | None = None
-        self._news: SceneNews | None = None
+        self._loaded: LoadedScene | None = None
         self._drawn_state: Mapping[str, Any] | None = None
         self._pulse_step = 0
         self._must_draw = True
@@ -58,11 +103,11 @@ class Picture:
         self._take_scene()
         self._take_state(now)
         screen = self._inbox.screen
-        self.stage.wants_inset = screen is None or screen.menu is None
-        self.stage.prepare(now)
+        self.viewports.wants_inset = screen is None or screen.menu is None
+        self.viewports.prepare(now)
         if self._overlay.show(self._content(now), self._window.size):
             self._must_draw = True
-        return self._must_draw or self.stage.is_moving(now)
+        return self._must_draw or self.viewports.is_moving(now)
 
     def draw(self) -> None:
         """Draw it."""
@@ -71,16 +116,16 @@ class Picture:
 
     def set_quality(self, quality: Quality) -> None:
         """Draw better, or faster."""
-        self.stage.set_quality(quality)
+        self.viewports.set_quality(quality)
         self._drawn_state = None
 
     def _take_scene(self) -> None:
-        news = self._inbox.scene
-        if news is None or news is self._news:
+        loaded = self._inbox.scene
+        if loaded is None or loaded is self._loaded:
             return
-        self._news, self._drawn_state = news, None
-        self._scene = ShownScene(news.parts, self.stage.quality.is_physical)
-        self.stage.show(self._scene, news.cameras)
+        self._loaded, self._drawn_state = loaded, None
+        self._scene = ShownScene(loaded.parts, self.viewports.quality.is_physical)
+        self.viewports.show(self._scene, loaded.cameras)
 
     def _take_state(self, now: float) -> None:
         state = self._inbox.state
@@ -97,10 +142,10 @@ class Picture:
         """Look as the simulator says; beside a menu, and from afar while no trial is open."""
         screen = self._inbox.screen
         if screen is None or screen.menu is None:
-            self.stage.choose(state["camera"], now)
+            self.viewports.choose(state["camera"], now)
             return
-        is_idle = state["phase"] == Phase.IDLE and FAR in self.stage.cameras
-        self.stage.choose(FAR if is_idle else state["camera"], now, BESIDE_MENU)
+        is_idle = state["phase"] == Phase.IDLE and FAR in self.viewports.cameras
+        self.viewports.choose(FAR if is_idle else state["camera"], now, BESIDE_MENU)
 
     def _mark(self, now: float) -> None:
         """Color what the state says; the next fiducial grows brighter and darker again."""
@@ -110,7 +155,7 @@ class Picture:
         self._scene.mark(state["next"], state["touched"], state["proximity"])
         if state["next"] is None or self._inbox.problem:
             return
-        step = math.floor(now * PULSE_HZ[self.stage.quality])
+        step = math.floor(now * PULSE_HZ[self.viewports.quality])
         if step != self._pulse_step:
             self._pulse_step = step
             self._scene.pulse(0.5 - 0.5 * math.cos(2.0 * math.pi * now / PULSE_S))
@@ -127,7 +172,7 @@ class Picture:
         return Content(
             screen=replace(screen, status=(*screen.status, *facts)),
             is_contact=is_free and state.get("proximity") == "contact",
-            inset=self.stage.inset_box if self.stage.has_inset else None,
+            inset=self.viewports.inset_box if self.viewports.has_inset else None,
             target=self._target() if is_free else None,
             hovered=self.item_at_pointer(now),
             thumbnail=self._inbox.thumbnails.get(focused_picture(screen.menu)),
@@ -136,17 +181,17 @@ class Picture:
     def _target(self) -> tuple[Direction, int] | None:
         """Return the direction to the next fiducial and its distance in mm, if out of sight."""
         state = self._inbox.state
-        if self._scene is None or self._news is None or state is None or state["next"] is None:
+        if self._scene is None or self._loaded is None or state is None or state["next"] is None:
             return None
-        place = self._news.fiducials.get(state["next"])
+        place = self._loaded.fiducials.get(state["next"])
         head, tool = self._scene.poses.get("head"), self._scene.poses.get("tool")
         if place is None or head is None or tool is None:
             return None
         target = head[:3, :3] @ place + head[:3, 3]
-        direction = direction_out_of_sight(self.stage.main, target, self._window.size)
+        direction = direction_out_of_sight(self.viewports.main, target, self._window.size)
         if direction is None:
             return None
-        return direction, round(MM_IN_M * float(np.linalg.norm(target - tool[:3, 3])))
+        return direction, round(MM_PER_M * float(np.linalg.norm(target - tool[:3, 3])))
 
 
 def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from rastrainer_simulator.flow.screen import (
+from rastrainer_simulator.net.views.screen import (
     Fact,
     Hint,
-    Item,
     ItemKind,
     Menu,
-    Message,
+    MenuItem,
     Screen,
+    ScreenMessage,
     Tone,
 )
 
@@ -51,8 +51,8 @@ def _menu(value: Json) -> Menu:
     )
 
 
-def _item(value: Json) -> Item:
-    return Item(
+def _item(value: Json) -> MenuItem:
+    return MenuItem(
         name=str(value["name"]),
         label=str(value["label"]),
         kind=ItemKind(value["kind"]),
@@ -63,5 +63,5 @@ def _item(value: Json) -> Item:
     )
 
 
-def _message(value: Json) -> Message:
-    return Message(str(value["text"]), Tone(value["tone"]))
+def _message(value: Json) -> ScreenMessage:
+    return ScreenMessage(str(value["text"]), Tone(value["tone"]))

@@ -8,12 +8,53 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 
-from rastrainer_simulator.desktop.finish import finish_surface, glow
-from rastrainer_simulator.desktop.glb_parts import Part
+from rastrainer_simulator.desktop.glb_parts import Finish, Part
 from rastrainer_simulator.scene.materials import NEXT, TIP_FREE, TIP_NEAR, TOUCHED, WAITING
-from rastrainer_simulator.views.actors import surface
+from rastrainer_simulator.scene.surfaces import surface
+
+Shade = tuple[float, float, float]
+
+
+def to_srgb(color: Shade) -> Shade:
+    """Return a linear color as screens take it (IEC 61966-2-1)."""
+    red, green, blue = (
+        12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+        for value in color
+    )
+    return red, green, blue
+
+
+def finish_surface(target: vtkProperty, finish: Finish, is_physical: bool) -> None:
+    """Set a property: physically based where there is light for that, else plain."""
+    if finish.is_glowing:
+        glow(target, to_srgb(finish.glow))
+    elif is_physical:
+        target.SetInterpolationToPBR()
+        target.SetColor(*finish.color)
+        target.SetAmbient(0.0)
+        target.SetDiffuse(1.0)
+        target.SetRoughness(finish.roughness)
+        target.SetMetallic(finish.metallic)
+    else:
+        target.SetInterpolationToPhong()
+        target.SetColor(*to_srgb(finish.color))
+        target.SetAmbient(0.34)
+        target.SetDiffuse(0.72)
+        target.SetSpecular(0.28 * (1.0 - finish.roughness))
+        target.SetSpecularPower(4.0 + 40.0 * (1.0 - finish.roughness))
+
+
+def glow(target: vtkProperty, color: Shade) -> None:
+    """Give a surface its own color (sRGB) in any light."""
+    # Not by switching the lighting off, which breaks the shader of the shadows.
+    target.SetInterpolationToPhong()
+    target.SetColor(*color)
+    target.SetAmbient(1.0)
+    target.SetDiffuse(0.0)
+    target.SetSpecular(0.0)
+
 
 TIP_MARKER = "tip_marker"
 FIDUCIAL = "fiducial_"

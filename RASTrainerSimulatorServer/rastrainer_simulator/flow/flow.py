@@ -5,20 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
-from rastrainer_simulator.control_loop import ControlLoop
-from rastrainer_simulator.controls.control_name import ControlName, Situation
-from rastrainer_simulator.flow.feedback import happening
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
-from rastrainer_simulator.flow.screen import Hint, Message, Screen, Tone
-from rastrainer_simulator.flow.session import Session
-from rastrainer_simulator.flow.working import Working, points_in_world
-from rastrainer_simulator.replaying.replay_loop import ReplayLoop
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
+from rastrainer_simulator.input.control_name import ControlContext, ControlName
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.views.feedback_event import feedback_event
+from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.ops.texts.texts import LocalizedText
+from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import EventKind, SimulationState, StepResult
-from rastrainer_simulator.texts.texts import Said
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = "interrupted"
@@ -31,10 +31,10 @@ class Flow:
     or aborts leads to the same screen as one of the trainee's.
     """
 
-    def __init__(self, session: Session, control_loop: ControlLoop) -> None:
+    def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:
         self._session = session
         self._control_loop = control_loop
-        self._working = Working(session)
+        self._trial_screen = TrialScreen(session)
         self._seen = ("", Phase.IDLE)
         self._had_slicer = False
         self._unseen = ""
@@ -42,28 +42,28 @@ class Flow:
         session.pages.show_start()
 
     @property
-    def situation(self) -> Situation:
+    def situation(self) -> ControlContext:
         """Whether the trainee drives the arm or is in a menu."""
-        return Situation.WORK if self._session.pages.top is None else Situation.MENU
+        return ControlContext.WORK if self._session.pages.top is None else ControlContext.MENU
 
     @property
-    def replay(self) -> ReplayLoop | None:
+    def playback(self) -> Playback | None:
         """What is shown in place of the arm: the trial, while it is shown again."""
         page = self._session.pages.top
-        return page.replay if isinstance(page, ReplayPage) else None
+        return page.playback if isinstance(page, ReplayPage) else None
 
     def take(self, result: StepResult) -> None:
         """Take a tick in which something happened."""
         for event in result.events:
             said = result.state.training.instruction
-            is_back = isinstance(said, Said) and said.key == NOT_RECORDED
-            felt = happening(event, is_back and event.kind is EventKind.PHASE)
+            is_back = isinstance(said, LocalizedText) and said.key == NOT_RECORDED
+            felt = feedback_event(event, is_back and event.kind is EventKind.PHASE)
             if felt is not None:
                 self._session.happened(felt)
-            self._working.take(event)
+            self._trial_screen.take(event)
 
     def advance(self, dt: float, state: SimulationState) -> None:
-        """Go on for `dt` seconds with the newest state."""
+        """Advance by `dt` seconds with the newest state."""
         session = self._session
         session.advance(dt, state)
         training = state.training
@@ -72,30 +72,30 @@ class Flow:
             self._follow(before)
         if session.pages.top is not None:
             session.pages.top.advance(dt)
-        elif self._working.end_of_practice_to_tell():
-            self._working.open_menu()
+        elif self._trial_screen.has_practice_just_ended():
+            self._trial_screen.open_menu()
 
     def pressed(self, control: ControlName) -> None:
         """Take a press of a control."""
         if self._session.pages.top is None:
-            self._working.pressed(control)
+            self._trial_screen.pressed(control)
         else:
             self._session.pages.pressed(control)
 
     def taken_over(self) -> None:
         """Another operator takes the control: they begin in the menu."""
         if self._session.pages.top is None:
-            self._working.open_menu()
+            self._trial_screen.open_menu()
 
     def pause(self, why: str) -> None:
         """Pause what runs, since nobody can see it; `why` is the key of a sentence."""
-        if self.replay is not None:
-            self.replay.pause(True)
+        if self.playback is not None:
+            self.playback.pause(True)
         if self._session.training.phase is Phase.RUNNING and self._session.pages.top is None:
             self._unseen = why
-            self._working.open_menu()
+            self._trial_screen.open_menu()
 
-    def screen(self, more_warnings: tuple[Message, ...] = ()) -> Screen:
+    def screen(self, more_warnings: tuple[ScreenMessage, ...] = ()) -> Screen:
         """Return what the trainee reads now."""
         session = self._session
         page, menu = session.pages.top, session.pages.menu()
@@ -107,15 +107,15 @@ class Flow:
             return Screen(
                 menu=menu,
                 warnings=(*self._pause_warnings(), *warnings),
-                status=self._working.status() if session.has_open_trial else (),
+                status=self._trial_screen.status() if session.has_open_trial else (),
                 hints=self._menu_hints(),
                 language=session.preferences.language,
             )
         return Screen(
-            instruction=self._working.instruction(),
-            warnings=(*self._working.warnings(), *warnings),
-            status=self._working.status(),
-            hints=self._working.hints(),
+            instruction=self._trial_screen.instruction(),
+            warnings=(*self._trial_screen.warnings(), *warnings),
+            status=self._trial_screen.status(),
+            hints=self._trial_screen.hints(),
             language=session.preferences.language,
         )
 
@@ -134,7 +134,7 @@ class Flow:
         if training.phase is not Phase.PAUSED:
             self._unseen = ""
         if training.trial_id and training.trial_id != before[0]:
-            self._working.begin(*points_in_world(self._control_loop.truth))
+            self._trial_screen.begin(*points_in_world(self._control_loop.truth))
             session.trainee = training.trainee
             session.mode = training.mode
             if training.task == TRIAL_RUN:
@@ -142,7 +142,7 @@ class Flow:
         if training.phase in (Phase.RUNNING, Phase.COMPLETE):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
-            is_over = self._working.is_practice_over
+            is_over = self._trial_screen.is_practice_over
             session.pages.show((PracticePage if is_over else TrialPage)(session))
         elif training.phase is Phase.REGISTERED:
             self._note_done()
@@ -155,23 +155,23 @@ class Flow:
             session.pages.show_start()
             session.pages.open(ExperimentPage(session))
 
-    def _link_warnings(self) -> tuple[Message, ...]:
-        """Tell that Slicer has been lost, once it was there."""
-        is_there = self._session.is_slicer_there()
-        self._had_slicer = self._had_slicer or is_there
-        if is_there or not self._had_slicer:
+    def _link_warnings(self) -> tuple[ScreenMessage, ...]:
+        """Warn that the connection to Slicer was lost, once there was one."""
+        is_connected = self._session.is_slicer_connected()
+        self._had_slicer = self._had_slicer or is_connected
+        if is_connected or not self._had_slicer:
             return ()
-        return (Message(self._session.texts.say("warning.slicer"), Tone.WARNING),)
+        return (ScreenMessage(self._session.texts.say("warning.slicer"), Tone.WARNING),)
 
-    def _pause_warnings(self) -> tuple[Message, ...]:
-        """Tell why the trial was paused where it was not the trainee who did it."""
+    def _pause_warnings(self) -> tuple[ScreenMessage, ...]:
+        """Say why the trial was paused where it was not the trainee who did it."""
         if self._unseen:
-            return (Message(self._session.texts.say(self._unseen), Tone.WARNING),)
+            return (ScreenMessage(self._session.texts.say(self._unseen), Tone.WARNING),)
         said = self._session.training.instruction
-        if isinstance(said, Said) and said.key == INTERRUPTED:
-            return (Message(self._session.texts.again(said), Tone.WARNING),)
-        if isinstance(said, Said) and said.key == NOT_RECORDED:
-            return (Message(self._session.texts.again(said), Tone.ERROR),)
+        if isinstance(said, LocalizedText) and said.key == INTERRUPTED:
+            return (ScreenMessage(self._session.texts.again(said), Tone.WARNING),)
+        if isinstance(said, LocalizedText) and said.key == NOT_RECORDED:
+            return (ScreenMessage(self._session.texts.again(said), Tone.ERROR),)
         return ()
 
     def _menu_hints(self) -> tuple[Hint, ...]:

@@ -12,10 +12,15 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.journal.file_lock import lock
-from rastrainer.journal.journal_line import NO_LINE, encode_line
-from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
-from rastrainer.private_files import make_private_folder, open_private
+from rastrainer.files.writing import make_private_folder, open_private
+from rastrainer.journal.folder_lock import lock
+from rastrainer.journal.journal_file import (
+    NO_LINE,
+    Integrity,
+    JournalReading,
+    encode_line,
+    read_journal,
+)
 
 
 class RecordError(RASTrainerError):
@@ -59,15 +64,15 @@ class Journal:
         """
         self._unwritten.extend(entries)
         try:
-            self._open()
+            descriptor, size = self._opened()
             count, previous, data = self._encoded()
-            self._append(data)
+            _write_at(descriptor, size, data)
             if sync:
-                os.fsync(self._descriptor)
+                os.fsync(descriptor)
         except OSError as error:
             self._cut_off()
             raise RecordError(f"{self.path.name}: {error.strerror or error}") from error
-        self._count, self._previous, self._size = count, previous, self._size + len(data)
+        self._count, self._previous, self._size = count, previous, size + len(data)
         self._unwritten.clear()
 
     def close(self) -> None:
@@ -79,21 +84,23 @@ class Journal:
             self.path.unlink(missing_ok=True)
             self._size = None
 
-    def _open(self) -> None:
-        if self._descriptor is not None:
-            return
+    def _opened(self) -> tuple[int, int]:
+        """Open the file where it is not open; return its descriptor and size."""
+        if self._descriptor is not None and self._size is not None:
+            return self._descriptor, self._size
         flags = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
         if self._size is None:
             make_private_folder(self.path.parent)
-            self._descriptor = open_private(self.path, flags | os.O_CREAT | os.O_EXCL)
+            self._descriptor = descriptor = open_private(self.path, flags | os.O_CREAT | os.O_EXCL)
             self._size = 0
             _sync_folder(self.path.parent)
         else:
-            self._descriptor = open_private(self.path, flags)
-        lock(self._descriptor)
-        if os.fstat(self._descriptor).st_size != self._size:
-            self._catch_up()
-            os.ftruncate(self._descriptor, self._size)
+            self._descriptor = descriptor = open_private(self.path, flags)
+        lock(descriptor)
+        if os.fstat(descriptor).st_size != self._size:
+            self._size = self._caught_up()
+            os.ftruncate(descriptor, self._size)
+        return descriptor, self._size
 
     def _encoded(self) -> tuple[int, str, bytes]:
         count, previous, lines = self._count, self._previous, []
@@ -103,30 +110,34 @@ class Journal:
             lines.append(line)
         return count, previous, b"".join(lines)
 
-    def _append(self, data: bytes) -> None:
-        os.lseek(self._descriptor, self._size, os.SEEK_SET)
-        rest = memoryview(data)
-        while rest:
-            rest = rest[os.write(self._descriptor, rest) :]
-
     def _cut_off(self) -> None:
         """Leave no half line behind; where even that fails, the next `write` sees to it."""
         if self._descriptor is not None:
-            with contextlib.suppress(OSError):
-                os.ftruncate(self._descriptor, self._size)
+            if self._size is not None:
+                with contextlib.suppress(OSError):
+                    os.ftruncate(self._descriptor, self._size)
             os.close(self._descriptor)
             self._descriptor = None
 
-    def _catch_up(self) -> None:
+    def _caught_up(self) -> int:
+        """Read on from what somebody else has written; return the size of its whole lines."""
         reading = read_journal(self.path)
         if reading.integrity is Integrity.ALTERED:
             raise RecordError(f"{self.path.name} is {reading.sentence}; nothing is added to it.")
         self._take_up(reading)
+        return reading.end
 
     def _take_up(self, reading: JournalReading) -> None:
         self._count = len(reading.entries)
         self._previous = reading.last_hash
         self._size = reading.end
+
+
+def _write_at(descriptor: int, place: int, data: bytes) -> None:
+    os.lseek(descriptor, place, os.SEEK_SET)
+    rest = memoryview(data)
+    while rest:
+        rest = rest[os.write(descriptor, rest) :]
 
 
 def _sync_folder(folder: Path) -> None:

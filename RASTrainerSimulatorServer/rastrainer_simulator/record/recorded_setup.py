@@ -1,4 +1,4 @@
-"""What a trial was recorded with, to simulate it again or to go on with it."""
+"""What a trial was recorded with, to simulate it again or to resume it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import TouchRule
-from rastrainer_simulator.settings import SimulationSettings, settings_from_json
-from rastrainer_simulator.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.settings import SimulationSettings, settings_from_json
+from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 
 
 def setup_of(

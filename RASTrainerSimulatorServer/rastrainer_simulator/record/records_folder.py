@@ -10,16 +10,16 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.journal.file_lock import lock
+from rastrainer.files.writing import keep_others_out, make_private_folder, open_private
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.folder_holder import (
+from rastrainer.journal.folder_lock import (
     LOCK_NAME,
     STARTED_BY,
     FolderHolder,
+    lock,
     read_open_holder,
     write_holder,
 )
-from rastrainer.private_files import keep_others_out, make_private_folder, open_private
 
 LOOK_S = 0.5
 """How long somebody who only looks who holds the folder may hold it."""
@@ -56,7 +56,7 @@ class RecordsFolder:
             os.close(self._descriptor)
             raise
 
-    def tell(self, host: str, port: int, page: str) -> None:
+    def announce(self, host: str, port: int, page: str) -> None:
         """Say in the folder where the simulator that holds it is found; see `FolderHolder`."""
         self._holder = replace(self._holder, host=host, port=port, page=page)
         # Who it is helps others only: a full disk is told with the first trial.
@@ -88,7 +88,7 @@ class RecordsFolder:
                 f"{self._folder} cannot be kept from being written by two simulators at once: "
                 f"{error.strerror}. Let it be on a disk of this computer{self._or_elsewhere}."
             ) from None
-        self.tell("", 0, "")
+        self.announce("", 0, "")
         for journal in self._folder.glob(f"*{SUFFIX}"):
             keep_others_out(journal)
 

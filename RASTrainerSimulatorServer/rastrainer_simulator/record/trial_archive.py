@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import SUFFIX, journals_of
-from rastrainer.journal.journal_reader import Integrity, JournalReading, read_journal
+from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName
-from rastrainer.trial_record import TrialRecord
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.true_error import Truth
 
 FIRST_REACH = 1 << 16
@@ -54,7 +54,7 @@ class ArchivedTrial:
     scored: Mapping[str, Any] | None = None
     acknowledged: bool = False
 
-    def told(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, Any]:
         """Return what GetTrial answers: the truth only once a registration was submitted."""
         data: dict[str, Any] = {
             "trialId": self.record.trial_id,
@@ -68,7 +68,9 @@ class ArchivedTrial:
 
     def revealed(self) -> dict[str, Any]:
         """Return what SubmitRegistration answers, once it was submitted."""
-        matrix = np.array(self.registration["matrix"], dtype=float).reshape(4, 4)
+        if self.registration is None:
+            raise InputError("No registration of the trial was submitted.")
+        matrix = np.array(self.registration["matrix"], dtype=np.float64).reshape(4, 4)
         touches = zip(self.record.labels, self.record.positions_mm, strict=True)
         return self.truth.revealed(matrix, touches)
 
@@ -148,7 +150,7 @@ class TrialArchive:
             trial = replace(trial, scored=arguments)
         self._keep(trial)
         if command == CommandName.GET_TRIAL:
-            return trial.told()
+            return trial.summary()
         revealed = trial.revealed() if command == CommandName.SUBMIT_REGISTRATION else {}
         return {"trialId": trial_id, **revealed}
 
@@ -244,7 +246,7 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
         acknowledged=bool(reading.of_kind("acknowledged")),
     )
     # What GetTrial and SubmitRegistration tell can be computed from it.
-    replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).told()
+    replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).summary()
     return trial
 
 

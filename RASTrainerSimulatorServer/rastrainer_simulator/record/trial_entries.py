@@ -8,15 +8,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.aborted_trial import AbortedTrial
-from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName, Phase
-from rastrainer.trial_record import TouchedPoint, TrialRecord
-from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
+from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
-from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.state import (
@@ -27,12 +28,12 @@ from rastrainer_simulator.state import (
     StepResult,
     TrainingState,
 )
+from rastrainer_simulator.vectors import vector
 
 if TYPE_CHECKING:
-    from rastrainer_simulator.simulation import Simulation
+    from rastrainer_simulator.core.simulation import Simulation
 
 SAMPLE_HZ = 50.0
-MM = 1000.0
 MUST_LAST = frozenset({EventKind.PHASE, EventKind.TOUCH, EventKind.UNDO})
 """Events that nobody may be told of before they are on the disk."""
 
@@ -189,7 +190,7 @@ class TrialEntries:
         taken, self.pending = self.pending, []
         return taken
 
-    def _command_entry(self, times: dict[str, Any], command: Command) -> dict[str, Any]:
+    def _command_entry(self, times: dict[str, Any], command: OperatorCommand) -> dict[str, Any]:
         arguments = dict(command.arguments)
         if command.name == CommandName.START_TASK:
             arguments |= {"seed": self._seed, "trialId": self.trial_id}
@@ -235,7 +236,7 @@ class TrialEntries:
         return tuple(
             TouchedPoint(
                 label=touch.label,
-                position_mm=tuple(MM * value for value in touch.position),
+                position_mm=vector(MM_PER_M * value for value in touch.position),
                 sim_time_s=touch.sim_time,
                 utc=self._utc[touch.sim_time],
             )
@@ -279,7 +280,7 @@ def _sample_entry(times: dict[str, Any], state: SimulationState) -> dict[str, An
         "kind": "sample",
         **times,
         "q": state.q,
-        "tipMm": [MM * float(value) for value in state.tool_tip_to_world[:3, 3]],
-        "clearanceMm": MM * state.clearance,
-        "depthMm": MM * state.depth,
+        "tipMm": [MM_PER_M * float(value) for value in state.tool_tip_to_world[:3, 3]],
+        "clearanceMm": MM_PER_M * state.clearance,
+        "depthMm": MM_PER_M * state.depth,
     }

@@ -5,24 +5,24 @@ from __future__ import annotations
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rastrainer.journal.journal_reader import JournalReading
+from rastrainer.journal.folder import newest_journal, number_of
+from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.ops.stamps import file_stamp, stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.record.stamps import file_stamp, stamp
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
-from rastrainer_simulator.record.trial_order import newest_journal, number_of
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
 
 if TYPE_CHECKING:
-    from rastrainer_simulator.simulation import Simulation
+    from rastrainer_simulator.core.simulation import Simulation
 
 FLUSH_TICKS = 50
 """Entries that nobody waits for go to the disk after so many ticks."""
@@ -32,12 +32,19 @@ FLUSH_TICKS = 50
 class Written:
     """A write that is under way.
 
-    `future` fails where the disk refuses; with `is_awaited` the tick may not be told to anyone
+    `future` fails where the disk refuses; with `is_awaited` the tick may not be published
     before it is done.
     """
 
     future: Future[Any]
     is_awaited: bool
+
+
+class _OpenTrial(NamedTuple):
+    """The trial that is recorded: its entries, and the journal that they are written to."""
+
+    entries: TrialEntries
+    journal: Journal
 
 
 class TrialRecorder:
@@ -54,8 +61,7 @@ class TrialRecorder:
         self._archive = archive
         self._writer = writer
         self._dt = dt
-        self._entries: TrialEntries | None = None
-        self._journal: Journal | None = None
+        self._open: _OpenTrial | None = None
         self._registering: Future[Any] | None = None
         self._is_stuck = False
         self._waiting: tuple[JournalReading, float] | None = None
@@ -63,8 +69,8 @@ class TrialRecorder:
         self._left = newest
         self._number = 0 if newest is None else number_of(newest)
 
-    def take_up(self, simulation: Simulation, reading: JournalReading) -> None:
-        """Go on with the journal of the trial that the simulation has just taken up.
+    def resume_trial(self, simulation: Simulation, reading: JournalReading) -> None:
+        """Append to the journal of the trial that the simulation has just resumed.
 
         While the trial is paused the file stays as it is.
         """
@@ -72,7 +78,7 @@ class TrialRecorder:
         self._left = None
         self._waiting = reading, state.sim_time
         if state.training.phase is not Phase.PAUSED:
-            self._go_on(simulation, state)
+            self._resume(simulation, state, self._waiting)
 
     def record(
         self,
@@ -86,35 +92,38 @@ class TrialRecorder:
         if training.trial_id and training.trial_id != before.training.trial_id:
             self._begin(simulation, before, result)
         if self._waiting is not None and any(e.kind in MUST_LAST for e in result.events):
-            self._go_on(simulation, before)
-        if self._entries is None:
+            self._resume(simulation, before, self._waiting)
+        trial = self._open
+        if trial is None:
             return None
         if any(command.name == RECORDING_FAILED for command in operator_input.commands):
-            return self._taken_back(simulation, operator_input, result)
+            self._take_back(trial, simulation, operator_input, result)
+            return None
         if self._is_registered():
             return self._after_registration(operator_input, result)
-        record = self._entries.add(simulation, operator_input, result)
+        record = trial.entries.add(simulation, operator_input, result)
         if record is not None:
-            return self._register(simulation, record)
+            return self._register(trial, simulation, record)
         if training.phase is Phase.IDLE:
-            return self._abort(before, operator_input, result)
+            return self._abort(trial, before, operator_input, result)
         if any(event.kind in MUST_LAST for event in result.events):
             self._is_stuck = False
-            return self._hand_over(is_awaited=True)
-        is_due = self._entries.pending and result.state.tick % FLUSH_TICKS == 0
-        return self._hand_over(is_awaited=False) if is_due and not self._is_stuck else None
+            return self._hand_over(trial, is_awaited=True)
+        is_due = trial.entries.pending and result.state.tick % FLUSH_TICKS == 0
+        return self._hand_over(trial, is_awaited=False) if is_due and not self._is_stuck else None
 
     def note_display(self, report: DisplayReport, state: SimulationState) -> None:
         """Take note of how a view draws the trial, if one is open."""
-        if self._entries is not None and self._registering is None:
-            self._entries.add_display(report, state)
+        if self._open is not None and self._registering is None:
+            self._open.entries.add_display(report, state)
 
     def stop(self, state: SimulationState) -> None:
         """Write what is left; a trial that is still open is marked as stopped."""
-        if self._entries is None or self._registering is not None:
+        trial = self._open
+        if trial is None or self._registering is not None:
             return
-        self._entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
-        self._hand_over_and_leave()
+        trial.entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
+        self._hand_over_and_leave(trial)
 
     def _begin(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
         if self._left is not None:
@@ -122,42 +131,50 @@ class TrialRecorder:
             self._writer.submit(self._archive.add_left, self._left)
             self._left = None
         self._number += 1
-        self._entries = TrialEntries.begun(simulation, before, result, self._dt, self._number)
-        name = f"{file_stamp(self._entries.started_utc)}_{self._entries.trial_id}{SUFFIX}"
-        self._journal = Journal(self._folder / name)
+        entries = TrialEntries.begun(simulation, before, result, self._dt, self._number)
+        name = f"{file_stamp(entries.started_utc)}_{entries.trial_id}{SUFFIX}"
+        self._open = _OpenTrial(entries, Journal(self._folder / name))
         self._registering = None
         self._is_stuck = False
 
-    def _go_on(self, simulation: Simulation, state: SimulationState) -> None:
+    def _resume(
+        self, simulation: Simulation, state: SimulationState, waiting: tuple[JournalReading, float]
+    ) -> None:
         """Append to the journal of an interrupted trial from now on."""
-        reading, since = self._waiting
+        reading, since = waiting
         self._waiting = None
-        self._entries = TrialEntries.continued(simulation, state, reading.entries, since, self._dt)
-        self._journal = Journal.continuing(reading)
+        entries = TrialEntries.continued(simulation, state, reading.entries, since, self._dt)
+        self._open = _OpenTrial(entries, Journal.continuing(reading))
 
     def _is_registered(self) -> bool:
         future = self._registering
         return future is not None and future.done() and future.exception() is None
 
-    def _taken_back(
-        self, simulation: Simulation, operator_input: OperatorInput, result: StepResult
+    def _take_back(
+        self,
+        trial: _OpenTrial,
+        simulation: Simulation,
+        operator_input: OperatorInput,
+        result: StepResult,
     ) -> None:
-        """Keep what the disk has refused until the trainee goes on: then it is tried again."""
+        """Keep what the disk has refused until the trainee resumes: then it is tried again."""
         phase = result.state.training.phase
         if phase is Phase.IDLE:
-            self._leave()
+            self._leave(trial)
         elif not self._is_registered():
             self._registering = None
             self._is_stuck = True
-            self._entries.add(simulation, operator_input, result)
+            trial.entries.add(simulation, operator_input, result)
 
-    def _hand_over(self, is_awaited: bool) -> Written:
-        future = self._writer.submit(self._journal.write, self._entries.taken(), sync=is_awaited)
+    def _hand_over(self, trial: _OpenTrial, is_awaited: bool) -> Written:
+        future = self._writer.submit(trial.journal.write, trial.entries.taken(), sync=is_awaited)
         return Written(future, is_awaited)
 
-    def _register(self, simulation: Simulation, record: UnmeasuredRecord) -> Written:
+    def _register(
+        self, open_trial: _OpenTrial, simulation: Simulation, record: UnmeasuredRecord
+    ) -> Written:
         truth, seed = simulation.truth, simulation.trial_seed
-        journal, entries = self._journal, self._entries.taken()
+        journal, entries = open_trial.journal, open_trial.entries.taken()
 
         def write() -> None:
             trial = ArchivedTrial(record.measured(), truth, seed)
@@ -169,24 +186,28 @@ class TrialRecorder:
         return Written(self._registering, is_awaited=True)
 
     def _abort(
-        self, before: SimulationState, operator_input: OperatorInput, result: StepResult
+        self,
+        trial: _OpenTrial,
+        before: SimulationState,
+        operator_input: OperatorInput,
+        result: StepResult,
     ) -> Written:
-        """Keep the record of the aborted trial where there is something to tell of it."""
+        """Keep the record of the aborted trial unless nothing was done in it."""
         times = stamp(result.state.tick, result.state.sim_time)
         given = [c for c in operator_input.commands if c.name == CommandName.ABORT]
         reason = given[-1].arguments.get("reason") if given else None
-        record = self._entries.aborted(before, reason or AbortReason.CLIENT.value, times["utc"])
+        record = trial.entries.aborted(before, reason or AbortReason.CLIENT.value, times["utc"])
         if not record.is_kept:
-            return self._hand_over_and_leave()
-        self._entries.pending.append(attempt_entry(record, times))
-        journal, entries = self._journal, self._entries.taken()
+            return self._hand_over_and_leave(trial)
+        trial.entries.pending.append(attempt_entry(record, times))
+        journal, entries = trial.journal, trial.entries.taken()
 
         def write() -> None:
             journal.write(entries, sync=True)
             self._archive.add_aborted(record, journal)
 
         written = Written(self._writer.submit(write), is_awaited=False)
-        self._leave()
+        self._leave(trial)
         return written
 
     def _after_registration(
@@ -202,11 +223,11 @@ class TrialRecorder:
         )
         return Written(future, is_awaited=True)
 
-    def _hand_over_and_leave(self) -> Written:
-        written = self._hand_over(is_awaited=False)
-        self._leave()
+    def _hand_over_and_leave(self, trial: _OpenTrial) -> Written:
+        written = self._hand_over(trial, is_awaited=False)
+        self._leave(trial)
         return written
 
-    def _leave(self) -> None:
-        self._writer.submit(self._journal.close)
-        self._entries = self._journal = self._registering = None
+    def _leave(self, trial: _OpenTrial) -> None:
+        self._writer.submit(trial.journal.close)
+        self._open = self._registering = None

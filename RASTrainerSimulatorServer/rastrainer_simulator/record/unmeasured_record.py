@@ -7,7 +7,7 @@ from typing import Any
 
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.trial_record import TrialRecord
+from rastrainer.trial.record import TrialRecord
 
 
 @dataclass(frozen=True)

@@ -33,9 +33,10 @@ def close(
     (cx, cy, cz), (sx, sy, sz), _ = circle
     elbow = (cx + sx, cy + sy, cz + sz)
     if not tilts_allow(arm, elbow, wrist, tool):
-        elbow = nearest_elbow(arm, circle, wrist, tool)
-        if elbow is None:
+        nearest = nearest_elbow(arm, circle, wrist, tool)
+        if nearest is None:
             return None
+        elbow = nearest
     theta = _branch(arm, elbow, wrist, tool, roll, last)
     if theta is not None and _near(theta, last, farthest):
         return theta

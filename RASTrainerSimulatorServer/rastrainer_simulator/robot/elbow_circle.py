@@ -145,7 +145,8 @@ def _pans_at(pans: dict[int, tuple[Wave, Wave]], angles: Sequence[tuple[float, .
     for joint, (sine, cosine) in pans.items():
         for angle in angles[joint]:
             c, s = cos(angle), sin(angle)
-            waves.append(tuple([a * c - b * s for a, b in zip(sine, cosine, strict=True)]))
+            (ax, ay, az), (bx, by, bz) = sine, cosine
+            waves.append((ax * c - bx * s, ay * c - by * s, az * c - bz * s))
     return waves
 
 
@@ -199,7 +200,7 @@ def _pan_waves(
 
 def _nearest_first(waves: list[Wave]) -> list[float]:
     """Return every φ within ±π at which one of the waves vanishes, the smallest first."""
-    roots = []
+    roots: list[float] = []
     for a, b, c in waves:
         size = hypot(a, b)
         if size > abs(c):

@@ -38,7 +38,7 @@ def with_least_motion(
     if motion < LEAP:
         return theta
     # Close to a singularity the nearest elbow can need a pan to turn far: try to keep each.
-    elbows = elbows_that_keep_a_pan(arm, circle, wrist, goal.tool, goal.roll, last)
+    elbows = elbows_that_keep_a_pan(arm, circle, wrist, goal.held_tool, goal.roll, last)
     for elbow in islice(elbows, _MOST_KEPT):
         kept = _near(arm, elbow, wrist, goal, last)
         if kept is not None and squared_motion(kept, last) < motion:
@@ -57,7 +57,7 @@ def _slide(
         if way < _NO_MOTION:
             break
         elbow = circle.turned(scale(links[0], arm.upper), angle)
-        slid = close_at(arm, elbow, wrist, goal.tool, goal.roll, last)
+        slid = close_at(arm, elbow, wrist, goal.held_tool, goal.roll, last)
         if slid is None:
             slid = _near(arm, elbow, wrist, goal, last)
         if slid is None or squared_motion(slid, last) >= motion:
@@ -73,7 +73,7 @@ def _near(
 ) -> Angles | None:
     """Return θ with the elbow as near to `elbow` as the tilts allow, or None."""
     circle = elbow_circle(arm, wrist, elbow)
-    return close(arm, circle, wrist, goal.tool, goal.roll, last)
+    return close(arm, circle, wrist, goal.held_tool, goal.roll, last)
 
 
 def squared_motion(theta: Angles, last: Angles) -> float:

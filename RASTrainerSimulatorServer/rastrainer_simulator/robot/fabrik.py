@@ -1,7 +1,7 @@
 """FABRIK for 7R S-R-S arms: tool position, position and direction, or full pose to joint angles.
 
 1. A goal close by continues a motion: a position is predicted by a step along the Jacobian
-   (`prediction`); with the tool held the elbow's way is predicted (`elbow_prediction`), and close
+   (`prediction`); with the tool held the elbow's path is predicted (`prediction` too), and close
    to a singularity it is slid to where the joints move least (`elbow_slide`). A goal far away
    starts from the last posture.
 2. FABRIK reaches backward from the target and forward from the base (`fabrik_passes`), and each
@@ -19,11 +19,10 @@ from math import inf
 from rastrainer.errors import InputError
 from rastrainer_simulator.robot.arm_frame import ArmFrame
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, chain
-from rastrainer_simulator.robot.elbow_prediction import follow
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.robot.prediction import predict
+from rastrainer_simulator.robot.prediction import follow, predict
 from rastrainer_simulator.robot.reaching import (
     Reached,
     Start,
@@ -86,7 +85,7 @@ class Fabrik:
     ) -> Solution:
         goal = self._goal(position, direction, rotation)
         aim = goal.within_lengths(self._arm)
-        start = self._frame.theta(q_start)
+        start: Angles = self._frame.theta(q_start)
         links = chain(start)
         if not aim.is_near(self._arm, links):
             reached = self._reach(goal, aim, start, links, inf)
@@ -107,14 +106,13 @@ class Fabrik:
         rotation: Sequence[Sequence[float]] | None,
     ) -> Goal:
         target = self._frame.position(position)
-        if direction is None and rotation is None:
-            return Goal(target, None, None)
         if rotation is None:
-            return Goal(target, self._frame.direction(direction), None)
+            tool = None if direction is None else self._frame.direction(direction)
+            return Goal(target, tool, None)
         if direction is not None:
             raise InputError("Give the tool a direction or a rotation, not both.")
-        x, y, tool = self._frame.rotation(rotation)
-        return Goal(target, tool, (x, y))
+        x, y, z = self._frame.rotation(rotation)
+        return Goal(target, z, (x, y))
 
     def _solution(self, goal: Goal, theta: Angles, passes: int, blocked: bool = False) -> Solution:
         off, turned = goal.errors(self._arm, theta, chain(theta))

@@ -21,9 +21,15 @@ class Goal(NamedTuple):
     tool: Vector | None
     roll: Roll
 
+    @property
+    def held_tool(self) -> Vector:
+        """The tool's direction, of a goal that has one."""
+        assert self.tool is not None
+        return self.tool
+
     def wrist(self, arm: CanonicalArm) -> Vector:
         """Return where a wrist has to be that holds the tool's direction, m."""
-        (x, y, z), (tx, ty, tz), size = self.position, self.tool, arm.tool
+        (x, y, z), (tx, ty, tz), size = self.position, self.held_tool, arm.tool
         return x - size * tx, y - size * ty, z - size * tz
 
     def is_near(self, arm: CanonicalArm, links: Chain) -> bool:
@@ -60,7 +66,7 @@ class Goal(NamedTuple):
 
     def _turn(self, theta: Angles, links: Chain) -> tuple[Vector, float]:
         """Return axis · sine and the cosine of the rotation from θ's tool to the goal's."""
-        (ax, ay, az), (bx, by, bz) = links[2], self.tool
+        (ax, ay, az), (bx, by, bz) = links[2], self.held_tool
         x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
         cosine = ax * bx + ay * by + az * bz
         if self.roll is None:

@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.vectors import vector
 
 if TYPE_CHECKING:
     import yourdfpy
 
 KINDS = ("visual", "collision")
 _SUFFIXES = (".glb", ".dae", ".obj", ".ply", ".stl")
+Color = tuple[float, float, float, float]
+"""RGBA, 0…1."""
 _GREY = (0.8, 0.8, 0.8, 1.0)
 
 
@@ -28,7 +31,7 @@ class MeshPart:
     path: Path
     origin: np.ndarray  # (4, 4) float: the mesh's frame to the link's frame, m
     scale: tuple[float, float, float]
-    color: tuple[float, float, float, float]  # RGBA, 0…1
+    color: Color
     replaced: bool = False  # stands in for the URDF's own mesh
 
 
@@ -75,7 +78,7 @@ def _replacement(link: str, kind: str, folder: Path) -> Path | None:
 
 
 def _own_parts(
-    link: yourdfpy.Link, kind: str, folder: Path, colors: dict[str, tuple[float, ...]]
+    link: yourdfpy.Link, kind: str, folder: Path, colors: dict[str, Color]
 ) -> list[MeshPart]:
     parts = []
     for shape in link.visuals if kind == "visual" else link.collisions:
@@ -92,7 +95,7 @@ def _own_parts(
                 kind,
                 mesh_inside(folder, folder / name, link.name),
                 origin,
-                tuple(map(float, scale)),
+                vector(scale),
                 color,
             )
         )
@@ -114,13 +117,12 @@ def mesh_inside(folder: Path, path: Path, link: str) -> Path:
     return path
 
 
-def _color(
-    material: yourdfpy.Material | None, colors: dict[str, tuple[float, ...]]
-) -> tuple[float, ...]:
+def _color(material: yourdfpy.Material | None, colors: dict[str, Color]) -> Color:
     if material is None:
         return _GREY
     return _rgba(material) if material.color is not None else colors.get(material.name, _GREY)
 
 
-def _rgba(material: yourdfpy.Material) -> tuple[float, ...]:
-    return tuple(float(part) for part in material.color.rgba)
+def _rgba(material: yourdfpy.Material) -> Color:
+    red, green, blue, opacity = map(float, material.color.rgba)
+    return red, green, blue, opacity

@@ -12,7 +12,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.mesh_files import MeshPart, mesh_parts
-from rastrainer_simulator.robot.srs_geometry import SrsGeometry, srs_geometry
+from rastrainer_simulator.robot.srs_geometry import Joint, SrsGeometry, srs_geometry
 
 if TYPE_CHECKING:
     import yourdfpy
@@ -24,19 +24,7 @@ _ENDLESS = 1000.0 * 2.0 * math.pi
 
 
 @dataclass(frozen=True)
-class Joint:
-    """A revolute joint: where it sits on the link before it, and how it may move."""
-
-    name: str
-    origin: np.ndarray  # (4, 4) float: this joint's frame to the movable frame before it, m
-    axis: np.ndarray  # (3,) float: unit vector in this joint's frame
-    lower: float  # rad
-    upper: float  # rad
-    velocity: float  # rad/s
-
-
-@dataclass(frozen=True)
-class Link:
+class RobotLink:
     """A link, rigidly fixed to a joint's frame."""
 
     name: str
@@ -50,8 +38,8 @@ class RobotModel:
 
     name: str
     joints: tuple[Joint, ...]
-    links: tuple[Link, ...]
-    tip: Link
+    links: tuple[RobotLink, ...]
+    tip: RobotLink
     home: tuple[float, ...]  # rad: elbow bent by 90°, tool straight down
     geometry: SrsGeometry
     meshes: tuple[MeshPart, ...]
@@ -106,7 +94,7 @@ def load_robot(
 def make_model(
     name: str,
     joints: tuple[Joint, ...],
-    links: tuple[Link, ...],
+    links: tuple[RobotLink, ...],
     tip_link: str | None,
     meshes: tuple[MeshPart, ...],
 ) -> RobotModel:
@@ -116,29 +104,29 @@ def make_model(
     return RobotModel(name, joints, links, tip, geometry.home(), geometry, meshes)
 
 
-def _walk(robot: yourdfpy.Robot) -> tuple[tuple[Joint, ...], tuple[Link, ...]]:
+def _walk(robot: yourdfpy.Robot) -> tuple[tuple[Joint, ...], tuple[RobotLink, ...]]:
     """Follow the tree from its root; fixed joints are merged into the links' offsets."""
     children: dict[str, list[yourdfpy.Joint]] = {}
     for joint in robot.joints:
         children.setdefault(joint.parent, []).append(joint)
     root = ({link.name for link in robot.links} - {joint.child for joint in robot.joints}).pop()
     joints: list[Joint] = []
-    links = [Link(root, 0, _constant(np.eye(4)))]
+    links = [RobotLink(root, 0, _constant(np.eye(4)))]
     for link in links:  # grows while it is walked
         for found in children.get(link.name, ()):
             origin = link.offset if found.origin is None else link.offset @ found.origin
             if found.type == "fixed":
-                links.append(Link(found.child, link.joint, _constant(origin)))
+                links.append(RobotLink(found.child, link.joint, _constant(origin)))
                 continue
             _check_serial(found, link, joints)
             joints.append(_movable(found, origin))
-            links.append(Link(found.child, len(joints), _constant(np.eye(4))))
+            links.append(RobotLink(found.child, len(joints), _constant(np.eye(4))))
     if len(joints) != 7:
         raise InputError(f"FABRIK here needs seven revolute joints in a row, not {len(joints)}.")
     return tuple(joints), tuple(links)
 
 
-def _check_serial(found: yourdfpy.Joint, link: Link, joints: list[Joint]) -> None:
+def _check_serial(found: yourdfpy.Joint, link: RobotLink, joints: list[Joint]) -> None:
     if found.type not in ("revolute", "continuous"):
         raise InputError(f"Joint {found.name} is {found.type}; only revolute joints can be used.")
     if found.mimic is not None:
@@ -160,7 +148,7 @@ def _movable(found: yourdfpy.Joint, origin: np.ndarray) -> Joint:
     )
 
 
-def _find_tip(links: tuple[Link, ...], name: str | None) -> Link:
+def _find_tip(links: tuple[RobotLink, ...], name: str | None) -> RobotLink:
     behind = {link.name: link for link in links if link.joint == 7}
     if name is None:
         return max(behind.values(), key=lambda link: np.linalg.norm(link.offset[:3, 3]))

@@ -33,7 +33,7 @@ class RigidPart(NamedTuple):
     chord_angle: float
 
 
-class Plan(NamedTuple):
+class ReachPlan(NamedTuple):
     """The fixed links before the first free joint, and the rigid parts from there on."""
 
     fixed: Posture
@@ -41,7 +41,7 @@ class Plan(NamedTuple):
     parts: tuple[RigidPart, ...]
 
 
-def nearest_links(arm: CanonicalArm, target: Vector, last: Angles) -> list[Vector]:
+def nearest_links(arm: CanonicalArm, target: Vector, last: Angles) -> tuple[Vector, Vector, Vector]:
     """Return the directions of upper arm, forearm and tool that bring the tip nearest to `target`.
 
     `target` (m) is out of reach; where it is on the first axis, the arm stays in its plane of
@@ -60,31 +60,35 @@ def nearest_links(arm: CanonicalArm, target: Vector, last: Angles) -> list[Vecto
         postures = (_posture(plans[n], signs, beside, z) for _, n, signs in sorted(candidates))
         posture = next(posture for posture in postures if _allowed(arm, posture))
     c, s = cos(pan), sin(pan)
-    return [(c * sin(angle), s * sin(angle), cos(angle)) for angle in posture]
+    upper, fore, tool = ((c * sin(angle), s * sin(angle), cos(angle)) for angle in posture)
+    return upper, fore, tool
 
 
 @lru_cache(maxsize=8)
-def _plans(arm: CanonicalArm) -> tuple[Plan, ...]:
+def _plans(arm: CanonicalArm) -> tuple[ReachPlan, ...]:
     """Return a plan for every choice of free joints and of ends for the others."""
     lengths = (arm.upper, arm.fore, arm.tool)
-    ends = []
+    ends: list[tuple[float | None, ...]] = []
     for joint in (1, 3, 5):
         smallest, largest = tilt_range(*arm.limits[joint])
         ends.append((None, *sorted({-largest, -smallest, smallest, largest} - {0.0})))
     plans = []
     for choice in product(*ends):
         free = [joint for joint, tilt in enumerate(choice) if tilt is None]
-        fixed = tuple(accumulate(choice[: free[0]] if free else choice))
+        tilts = [0.0 if tilt is None else tilt for tilt in choice]
+        fixed = tuple(accumulate(tilts[: free[0]] if free else tilts))
         parts = []
         for first, after in pairwise([*free, 3]):
-            angles = tuple(accumulate(choice[first + 1 : after], initial=0.0))
+            angles = tuple(accumulate(tilts[first + 1 : after], initial=0.0))
             across, along = _end(lengths[first:after], angles)
             parts.append(RigidPart(angles, hypot(across, along), atan2(across, along)))
-        plans.append(Plan(fixed, _end(lengths, fixed), tuple(parts)))
+        plans.append(ReachPlan(fixed, _end(lengths, fixed), tuple(parts)))
     return tuple(plans)
 
 
-def _distances(plan: Plan, beside: float, above: float) -> Iterator[tuple[float, tuple[int, ...]]]:
+def _distances(
+    plan: ReachPlan, beside: float, above: float
+) -> Iterator[tuple[float, tuple[int, ...]]]:
     """Yield how near the tip gets with the chords pointing to the target (1) or away (−1).
 
     From each free joint the tip has to be on the target's side: turned by π it would be nearer.
@@ -99,7 +103,7 @@ def _distances(plan: Plan, beside: float, above: float) -> Iterator[tuple[float,
             yield abs(distance - tip), signs
 
 
-def _posture(plan: Plan, signs: tuple[int, ...], beside: float, above: float) -> Posture:
+def _posture(plan: ReachPlan, signs: tuple[int, ...], beside: float, above: float) -> Posture:
     aim = atan2(beside - plan.start[0], above - plan.start[1])
     posture = list(plan.fixed)
     for sign, part in zip(signs, plan.parts, strict=True):

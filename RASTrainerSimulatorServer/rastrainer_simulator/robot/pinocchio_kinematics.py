@@ -47,6 +47,6 @@ class PinocchioKinematics:
 
     def jacobian(self, q: Sequence[float]) -> np.ndarray:
         """Return the tip's Jacobian, (6, 7) float: m/rad, then rad/rad, along World's axes."""
-        q = np.asarray(q, dtype=float)
         frame = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-        return pin.computeFrameJacobian(self._pin, self._data, q, self._tip, frame)
+        angles = np.asarray(q, dtype=float)
+        return pin.computeFrameJacobian(self._pin, self._data, angles, self._tip, frame)

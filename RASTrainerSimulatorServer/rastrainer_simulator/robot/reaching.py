@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from math import atan2, dist, inf, remainder
+from collections.abc import Iterator
+from math import atan2, cos, dist, hypot, inf, remainder, sin, sqrt
 from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import TURN, fit, joint_angles, nearest_branch
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, chain
+from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, chain, tilt_range
 from rastrainer_simulator.robot.closure import close
 from rastrainer_simulator.robot.elbow_circle import elbow_circle
 from rastrainer_simulator.robot.elbow_slide import with_least_motion
 from rastrainer_simulator.robot.fabrik_passes import backward, forward, settle
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.nearest_reach import nearest_links
-from rastrainer_simulator.robot.restarts import planar_starts
 from rastrainer_simulator.vectors import Vector, dot
 
 # Passes that change the gap between them by less than this part of it lead nowhere.
@@ -51,7 +51,8 @@ def reach_position(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most:
         passes += used
         if theta is not None:
             return Reached(theta, passes)
-    angles = joint_angles(*nearest_links(arm, goal.position, start.theta), None, start.theta)
+    upper, fore, tool = nearest_links(arm, goal.position, start.theta)
+    angles = joint_angles(upper, fore, tool, None, start.theta)
     theta = nearest_branch(arm, angles, start.theta, False)
     return Reached(theta, passes) if theta else Reached(start.theta, passes, True)
 
@@ -62,7 +63,7 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
     `aim` is as in `reach_position`. Where the limits do not allow it, the roll is given up first,
     then the position.
     """
-    wrist, tool = aim.wrist(arm), goal.tool
+    wrist, tool = aim.wrist(arm), goal.held_tool
     circle = elbow_circle(arm, wrist, start.elbow)
     theta = close(arm, circle, wrist, tool, goal.roll, start.theta, start.farthest)
     if theta is not None:
@@ -78,7 +79,7 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
         theta = close(arm, elbow_circle(arm, wrist, elbow), wrist, tool, None, start.theta)
     if theta is None:
         return Reached(start.theta, passes, True)
-    return Reached(_rolled(arm, theta, goal) if goal.roll else theta, passes)
+    return Reached(_rolled(arm, theta, goal.roll) if goal.roll else theta, passes)
 
 
 def _iterate(
@@ -102,12 +103,47 @@ def _iterate(
     return None, most
 
 
-def _rolled(arm: CanonicalArm, theta: Angles, goal: Goal) -> Angles:
-    """Return θ with the last joint turned as near to the goal's roll as its limits allow."""
+def _rolled(arm: CanonicalArm, theta: Angles, roll: tuple[Vector, Vector]) -> Angles:
+    """Return θ with the last joint turned as near to a roll as its limits allow."""
     axis = chain(theta)[5]
-    x, y = goal.roll
+    x, y = roll
     wanted = atan2(dot(axis, x), dot(axis, y))
     fitted = fit(wanted, theta[6], arm.limits[6])
     if fitted is None:
         fitted = min(arm.limits[6], key=lambda limit: abs(remainder(limit - wanted, TURN)))
     return (*theta[:6], fitted)
+
+
+_TINY = 1e-12
+
+
+def planar_starts(
+    arm: CanonicalArm, target: Vector, last: Angles
+) -> Iterator[tuple[Vector, Vector]]:
+    """Yield wrists and elbows (m) in the plane of the target and the first axis.
+
+    Near the edge of its reach the arm lies almost in that plane, and passes from elsewhere converge
+    slowly.
+    """
+    x, y, z = target
+    beside = hypot(x, y)
+    pan = atan2(y, x) if beside > _TINY else last[0]
+    c, s = cos(pan), sin(pan)
+    largest = tilt_range(*arm.limits[1])[1]
+    for part in (1.0, -1.0, 0.6, -0.6, 0.2, -0.2):
+        r, h = arm.upper * sin(part * largest), arm.upper * cos(part * largest)
+        for wrist_r, wrist_h in _third_corners(arm, beside - r, z - h):
+            along = r + wrist_r
+            yield (c * along, s * along, h + wrist_h), (c * r, s * r, h)
+
+
+def _third_corners(arm: CanonicalArm, r: float, h: float) -> Iterator[tuple[float, float]]:
+    """Yield where the wrist can be, from the elbow, if the target is at (r, h) from it."""
+    square = r * r + h * h
+    if square < _TINY:
+        return
+    along = (square + arm.fore * arm.fore - arm.tool * arm.tool) / (2.0 * square)
+    across = arm.fore * arm.fore / square - along * along
+    if across >= 0.0:
+        for side in (sqrt(across), -sqrt(across)):
+            yield along * r + side * h, along * h - side * r

@@ -33,28 +33,28 @@ def solve_rounded(
     solution = solve(position, direction, rotation, q_start)
     # The tool's axis in the tip's frame.
     axis = kinematics.model.geometry.tip_rotation[2]
-    position = np.asarray(position, dtype=float)
-    direction = None if direction is None else np.asarray(direction) / np.linalg.norm(direction)
-    rotation = None if rotation is None else np.asarray(rotation, dtype=float)
-    aim, pointed, turned = position, direction, rotation
+    goal = np.asarray(position, dtype=float)
+    along = None if direction is None else np.asarray(direction) / np.linalg.norm(direction)
+    turn = None if rotation is None else np.asarray(rotation, dtype=float)
+    aim, pointed, turned = goal, along, turn
     for _ in range(_ROUNDS):
         tip = kinematics.tip(solution.q)
-        miss = position - tip[:3, 3]
+        miss = goal - tip[:3, 3]
         angle = 0.0
-        if direction is not None:
-            angle = _angle_between(tip[:3, :3] @ axis, direction)
-        if rotation is not None:
-            angle = _angle_of(rotation @ tip[:3, :3].T)
+        if along is not None:
+            angle = _angle_between(tip[:3, :3] @ axis, along)
+        if turn is not None:
+            angle = _angle_of(turn @ tip[:3, :3].T)
         met = solution.converged
         off = float(np.linalg.norm(miss))
         solution = solution._replace(position_error_m=off, direction_error_rad=angle)
         if not met or settings.met(off, angle):
             return solution
         aim = aim + miss
-        if direction is not None:
-            pointed = pointed + direction - tip[:3, :3] @ axis
-        if rotation is not None:
-            turned = rotation @ tip[:3, :3].T @ turned
+        if pointed is not None and along is not None:
+            pointed = pointed + along - tip[:3, :3] @ axis
+        if turned is not None and turn is not None:
+            turned = turn @ tip[:3, :3].T @ turned
         solution = solve(aim, pointed, turned, solution.q)
     return solution._replace(converged=False)
 

@@ -14,19 +14,28 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rastrainer.errors import InputError
-
-if TYPE_CHECKING:
-    from rastrainer_simulator.robot.model import Joint
+from rastrainer.units import MM_PER_M
 
 # URDFs often round π/2 to a few digits; the solver corrects what such rounding leaves.
 _MEETING_TOLERANCE = 1e-3
 _ANGLE_TOLERANCE = 2e-3
 _HOME = tuple(math.radians(angle) for angle in (0.0, 30.0, 0.0, 90.0, 0.0, 60.0, 0.0))
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A revolute joint: where it sits on the link before it, and how it may move."""
+
+    name: str
+    origin: np.ndarray  # (4, 4) float: this joint's frame to the movable frame before it, m
+    axis: np.ndarray  # (3,) float: unit vector in this joint's frame
+    lower: float  # rad
+    upper: float  # rad
+    velocity: float  # rad/s
 
 
 @dataclass(frozen=True)
@@ -134,16 +143,17 @@ def _centers(
             raise InputError(
                 f"This is not an S-R-S arm: the axes of joints {first + 1}, {first + 2} and "
                 f"{first + 3} should meet in one point, the {name}; they miss it by "
-                f"{1000.0 * distance:.1f} mm."
+                f"{MM_PER_M * distance:.1f} mm."
             )
         centers.append(center)
         misfits.append(distance)
     beside = float(np.linalg.norm(np.cross(tip - centers[2], axes[6])))
     if beside > _MEETING_TOLERANCE:
         raise InputError(
-            f"The tool tip should lie on the axis of joint 7; it is {1000.0 * beside:.1f} mm off."
+            f"The tool tip should lie on the axis of joint 7; it is {MM_PER_M * beside:.1f} mm off."
         )
-    return (*centers, max(*misfits, beside))
+    shoulder, elbow, wrist = centers
+    return shoulder, elbow, wrist, max(*misfits, beside)
 
 
 def _meeting_point(points: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, float]:

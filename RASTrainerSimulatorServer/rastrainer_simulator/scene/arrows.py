@@ -100,6 +100,7 @@ def _between(
             return arrow
         if best is None or arrow.end > best.end + STEP:
             best = arrow
+    assert best is not None  # There is at least one turn.
     return best
 
 

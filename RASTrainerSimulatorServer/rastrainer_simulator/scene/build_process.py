@@ -14,8 +14,8 @@ import uuid
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.scene.scene_glb import scene_glb
-from rastrainer_simulator.setup import load_setup
 
 
 def main() -> int:

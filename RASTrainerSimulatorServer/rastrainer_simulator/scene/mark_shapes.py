@@ -10,8 +10,7 @@ from vtkmodules.vtkFiltersModeling import vtkAdaptiveSubdivisionFilter
 from vtkmodules.vtkFiltersSources import vtkDiskSource
 from vtkmodules.vtkRenderingFreeType import vtkVectorText
 
-from rastrainer_simulator.scene.shading import triangles_of
-from rastrainer_simulator.views.actors import surface
+from rastrainer_simulator.scene.surfaces import surface, triangles_of
 
 DOT_RADIUS = 4.0
 RIM_RADIUS = 5.2

@@ -21,10 +21,11 @@ class Material:
     @property
     def linear_color(self) -> Color:
         """The color as light, as glTF and physically based shading want it (IEC 61966-2-1)."""
-        return tuple(
+        red, green, blue = (
             value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
             for value in self.color
         )
+        return red, green, blue
 
 
 SKIN = Material("skin", (0.87, 0.67, 0.56), 0.55)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import Link, RobotModel
+from rastrainer_simulator.robot.model import RobotLink, RobotModel
 from rastrainer_simulator.scene.materials import TIP_FREE, painted
 from rastrainer_simulator.scene.nodes import Node, Surface, merged
-from rastrainer_simulator.scene.shading import shaded
+from rastrainer_simulator.scene.surfaces import shaded
 
 TOOL = "tool"
 TIP_MARKER = "tip_marker"
@@ -50,9 +50,9 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
     return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker,))]
 
 
-def _first_links(robot: RobotModel) -> dict[int, Link]:
+def _first_links(robot: RobotModel) -> dict[int, RobotLink]:
     """Return the link whose pose the state tells, for each count of joints before it."""
-    first: dict[int, Link] = {}
+    first: dict[int, RobotLink] = {}
     for link in robot.links:
         first.setdefault(link.joint, link)
     return first

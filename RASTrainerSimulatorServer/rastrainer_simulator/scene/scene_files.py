@@ -3,20 +3,93 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import hashlib
 import json
+import os
 import struct
 import subprocess
+import sys
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.private_folder import python_words
-from rastrainer_simulator.child_process import BELOW_NORMAL, environment_without_secrets
-from rastrainer_simulator.scene.cache_folder import forget_oldest
-from rastrainer_simulator.scene.scene_key import scene_key, setup_digest
-from rastrainer_simulator.setup import SimulationSetup
+from rastrainer.processes.private_folder import python_words
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.ops.child_process import BELOW_NORMAL, environment_without_secrets
+from rastrainer_simulator.robot.model import RobotModel
+
+
+def setup_digest(setup: SimulationSetup) -> bytes:
+    """Return a hash of scenario, robot and the code that makes scenes of them; reads their files.
+
+    A file that cannot be read counts as empty: who builds the scene says what is wrong.
+    """
+    whole = hashlib.sha256(f"{rastrainer.__version__} {setup.scenario_sha256}".encode())
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        whole.update(_digest(path))
+    whole.update(_robot(setup.robot).encode())
+    for part in setup.robot.meshes:
+        if part.kind == "visual":
+            whole.update(_digest(part.path))
+    return whole.digest()
+
+
+def scene_key(digest: bytes, task: str) -> str:
+    """Return the key of one task's scene; "" is that without a task."""
+    return hashlib.sha256(digest + task.encode()).hexdigest()[:32]
+
+
+def _robot(robot: RobotModel) -> str:
+    links = [(link.name, link.joint, link.offset.tolist()) for link in robot.links]
+    parts = [
+        (part.link, part.origin.tolist(), part.scale, part.color, part.replaced)
+        for part in robot.meshes
+        if part.kind == "visual"
+    ]
+    return repr((robot.tip.name, links, parts))
+
+
+def _digest(path: Path) -> bytes:
+    try:
+        return hashlib.sha256(path.read_bytes()).digest()
+    except OSError:
+        return b""
+
+
+KEPT_FILES = 60
+
+
+def cache_folder() -> Path:
+    """Return the user's cache folder for scenes, made if need be; a passing one if it cannot."""
+    folder = _users_caches() / "rastrainer" / "scenes"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / ".writable").touch()
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="rastrainer-scenes-"))
+    return folder
+
+
+def forget_oldest(folder: Path) -> None:
+    """Delete scenes beyond the newest ones, and what a crash left half written."""
+    with contextlib.suppress(OSError):
+        files = [path for path in folder.iterdir() if path.suffix in (".glb", ".partial")]
+        files.sort(key=lambda path: path.stat().st_mtime, reverse=True)
+        for path in files[KEPT_FILES:]:
+            path.unlink(missing_ok=True)
+
+
+def _users_caches() -> Path:
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+
 
 NO_TASK = ""
 _HEADER = struct.Struct("<4sII")

@@ -3,19 +3,121 @@
 from __future__ import annotations
 
 import numpy as np
+import trimesh
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
 
-from rastrainer.head_mesh import HeadMesh, read_head_mesh
-from rastrainer.scenario import Scenario
-from rastrainer.tasks import Task
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.tasks import Task
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.scene.glb import to_glb
-from rastrainer_simulator.scene.head_nodes import head_node
-from rastrainer_simulator.scene.nodes import Node
+from rastrainer_simulator.scene.materials import ARROW, MARK_RIM, NUMBER, SKIN, WAITING, Material
+from rastrainer_simulator.scene.nodes import Node, Surface, merged
 from rastrainer_simulator.scene.robot_nodes import robot_nodes
-from rastrainer_simulator.scene.room_nodes import room_nodes
-from rastrainer_simulator.scene.table_nodes import stand_node, table_node
+from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
+from rastrainer_simulator.scene.skin import Shape
+from rastrainer_simulator.scene.skin_marks import SkinMark, skin_marks
+from rastrainer_simulator.scene.surfaces import shaded
 
-MM_IN_M = 1000.0
+ROOT = "scene"
+WORLD = "world"
+# glTF's y is up, as World's z is; x stays.
+WORLD_TO_GLTF = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
+
+
+def to_glb(nodes: list[Node]) -> bytes:
+    """Return the GLB of nodes that stand in World.
+
+    A node of one surface carries it; one of several has a child for each, named
+    `NODE_MATERIAL`.
+    """
+    scene = trimesh.Scene(base_frame=ROOT)
+    scene.graph.update(frame_from=ROOT, frame_to=WORLD, matrix=WORLD_TO_GLTF)
+    materials: dict[Material, PBRMaterial] = {}
+    for node in nodes:
+        _add(scene, WORLD, node, materials)
+    return scene.export(file_type="glb", include_normals=True)
+
+
+def _add(
+    scene: trimesh.Scene, parent: str, node: Node, materials: dict[Material, PBRMaterial]
+) -> None:
+    pose = np.eye(4) if node.pose is None else node.pose
+    single = node.surfaces[0] if len(node.surfaces) == 1 else None
+    if single is not None:
+        _add_surface(scene, parent, node.name, pose, single, materials)
+    else:
+        scene.graph.update(frame_from=parent, frame_to=node.name, matrix=pose)
+        for surface in node.surfaces:
+            name = f"{node.name}_{surface.material.name}"
+            _add_surface(scene, node.name, name, np.eye(4), surface, materials)
+    for child in node.children:
+        _add(scene, node.name, child, materials)
+
+
+def _add_surface(
+    scene: trimesh.Scene,
+    parent: str,
+    name: str,
+    pose: np.ndarray,
+    surface: Surface,
+    materials: dict[Material, PBRMaterial],
+) -> None:
+    if surface.material not in materials:
+        materials[surface.material] = _material(surface.material)
+    mesh = trimesh.Trimesh(
+        surface.vertices,
+        surface.triangles,
+        vertex_normals=surface.normals,
+        visual=TextureVisuals(material=materials[surface.material]),
+        process=False,
+    )
+    scene.add_geometry(
+        mesh, node_name=name, geom_name=name, parent_node_name=parent, transform=pose
+    )
+
+
+def _material(material: Material) -> PBRMaterial:
+    color = np.array(material.linear_color)
+    # What glows is black to lamps: it has its own color in any light.
+    base, glow = (np.zeros(3), color) if material.glowing else (color, np.zeros(3))
+    return PBRMaterial(
+        name=material.name,
+        baseColorFactor=[*base, 1.0],
+        metallicFactor=material.metallic,
+        roughnessFactor=material.roughness,
+        emissiveFactor=glow,
+    )
+
+
+BASE_CREASE_DEG = 60.0
+"""The rim of the flat base is sharper than this; nothing of a face is."""
+
+
+def head_node(mesh: HeadMesh, task: Task | None) -> Node:
+    """Return the head in its own frame: RAS, but in m; without a task, its skin alone."""
+    skin = shaded(mesh.vertices / MM_PER_M, mesh.triangles, SKIN, BASE_CREASE_DEG)
+    marks = skin_marks(mesh, task.fiducials, task.labels) if task else []
+    rims = Node("rims", merged([_surface(mark.rim, MARK_RIM) for mark in marks]))
+    children = [Node("skin", (skin,)), *([rims] if marks else [])]
+    for mark in marks:
+        children.extend(_mark_nodes(mark))
+    return Node("head", children=tuple(children))
+
+
+def _mark_nodes(mark: SkinMark) -> list[Node]:
+    nodes = [
+        Node(f"fiducial_{mark.label}", (_surface(mark.dot, WAITING),)),
+        Node(f"number_{mark.label}", (_surface(mark.number, NUMBER),)),
+    ]
+    if mark.arrow is not None:
+        nodes.append(Node(f"arrow_{mark.label}", (_surface(mark.arrow, ARROW),)))
+    return nodes
+
+
+def _surface(shape: Shape, material: Material) -> Surface:
+    return Surface(shape.points / MM_PER_M, shape.outward, shape.triangles, material)
 
 
 def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes:
@@ -35,7 +137,7 @@ def scene_nodes(
     Raises:
         InputError: a mesh cannot be read.
     """
-    base = (scenario.head_to_world @ np.append(head.base, 1.0))[:3] / MM_IN_M
+    base = (scenario.head_to_world @ np.append(head.base, 1.0))[:3] / MM_PER_M
     return [
         *robot_nodes(robot),
         head_node(head, task),

@@ -8,8 +8,8 @@ import numpy as np
 from vtkmodules.vtkCommonCore import mutable, vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator, vtkStaticPointLocator
 
-from rastrainer.head_mesh import HeadMesh
-from rastrainer_simulator.views.actors import surface
+from rastrainer.head.mesh import HeadMesh
+from rastrainer_simulator.scene.surfaces import surface
 
 REACH = 25.0
 PATCH_RADIUS = 10.0
@@ -44,7 +44,7 @@ class Skin:
     def outward(self, point: np.ndarray) -> np.ndarray:
         """Return the unit normal (3,) of the skin around a point, its wrinkles smoothed away."""
         near = vtkIdList()
-        self._points.FindPointsWithinRadius(PATCH_RADIUS, point, near)
+        self._points.FindPointsWithinRadius(PATCH_RADIUS, point.tolist(), near)
         around = [near.GetId(index) for index in range(near.GetNumberOfIds())]
         normal = self._normals[around].sum(axis=0) if around else np.asarray(point, dtype=float)
         return normal / np.linalg.norm(normal)
@@ -70,7 +70,10 @@ class Skin:
         part, cell = mutable(0), mutable(0)
         starts, ends = (points + REACH * outward).tolist(), (points - REACH * outward).tolist()
         for row, (start, end) in enumerate(zip(starts, ends, strict=True)):
-            if self._cells.IntersectWithLine(start, end, 1e-6, along, hit, place, part, cell):
+            # VTK's stubs do not know `mutable`, by which Python gets numbers back.
+            if self._cells.IntersectWithLine(  # type: ignore[call-overload]
+                start, end, 1e-6, along, hit, place, part, cell
+            ):
                 placed[row] = tuple(hit)
         return np.array(placed)
 

@@ -7,11 +7,149 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.head_mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh
 from rastrainer_simulator.scene.arrows import LENGTHS, Arrow, arrow_shape, arrows
-from rastrainer_simulator.scene.mark_shapes import Flat, dot, number, rim
-from rastrainer_simulator.scene.number_places import number_places
+from rastrainer_simulator.scene.mark_shapes import RIM_RADIUS, Flat, dot, number, rim
 from rastrainer_simulator.scene.skin import Shape, Skin
+
+DISTANCES = (11.5, 13.0, 15.0, 17.5, 20.5, 24.0)
+ANGLES = np.radians(np.arange(0, 360, 20))
+MARGINS = (2.5, 1.5)
+"""How far a number keeps from everything else, mm: the most that is possible for all."""
+NUMBERS_APART = 3.0
+"""Two numbers keep so many times as far from each other: 5 beside 2 must not read as 52."""
+OWN_SHARE = 0.8
+"""A number's distance to its own dot is at most so much of that to any other: no mistaking."""
+ENOUGH = 16
+"""Places to choose from, after which none farther from the fiducial is looked at."""
+MOST_TRIES = 20_000
+_COLUMNS, _ROWS = 7, 5
+_RELIEF = 0.3
+_ROOM_ENOUGH = 6.0
+
+
+@dataclass(frozen=True)
+class Place:
+    """One place where a number could stand.
+
+    Attributes:
+        middle: (3,) float, on the skin.
+        covers: (k, 3) float, places all over the number's rectangle on the skin.
+        clearance: to arrows and to the rims of all dots.
+        cost: how much worse it is than the best place there could be, mm.
+    """
+
+    middle: np.ndarray
+    covers: np.ndarray
+    clearance: float
+    cost: float
+
+
+def number_places(
+    skin: Skin, points: np.ndarray, sizes: Sequence[np.ndarray], arrows: Sequence[Arrow]
+) -> tuple[list[np.ndarray], bool]:
+    """Return the middle (3,) of each number, and whether all keep at least the least margin.
+
+    `points` (n, 3) float are the fiducials; `sizes` the width and height (2,) of each number, mm.
+    Numbers that cannot all keep the margin stand where each has the most room.
+    """
+    samples = [arrow.samples() for arrow in arrows]
+    obstacles = np.concatenate([points, *(places for places, _ in samples)])
+    radii = np.concatenate([np.full(len(points), RIM_RADIUS), *(widths for _, widths in samples)])
+    choices = [
+        _choices(skin, points, index, size, obstacles, radii) for index, size in enumerate(sizes)
+    ]
+    for margin in MARGINS:
+        chosen = _chosen(choices, margin)
+        if chosen is not None:
+            return [place.middle for place in chosen], True
+    return [_roomiest(places, point) for places, point in zip(choices, points, strict=True)], False
+
+
+def _roomiest(places: list[Place], point: np.ndarray) -> np.ndarray:
+    """Return the middle of the place with the most room; the fiducial itself if there is none."""
+    return max(places, key=lambda place: place.clearance).middle if places else point
+
+
+def _choices(
+    skin: Skin,
+    points: np.ndarray,
+    index: int,
+    size: np.ndarray,
+    obstacles: np.ndarray,
+    radii: np.ndarray,
+) -> list[Place]:
+    """Return places around one fiducial, the best first; as far out as it takes to have enough."""
+    point = points[index]
+    frame = skin.frame(point)
+    others = np.delete(points, index, axis=0)
+    near = np.linalg.norm(obstacles - point, axis=1) < 80.0
+    obstacles, radii = obstacles[near], radii[near]
+    least = size.min() / 2.0 + MARGINS[-1]
+    rectangle = _rectangle(size)
+    around = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)]) @ frame[:2]
+    places: list[Place] = []
+    for distance in DISTANCES:
+        for middle in skin.onto(point + distance * around, frame[2]):
+            own = np.linalg.norm(middle - point)
+            if own > OWN_SHARE * np.linalg.norm(others - middle, axis=1).min(initial=np.inf):
+                continue
+            if _clearance(middle[None], obstacles, radii) < least:
+                continue
+            covers = skin.lay(rectangle, middle)
+            clearance = _clearance(covers, obstacles, radii)
+            relief = float(np.ptp((covers - middle) @ frame[2]))
+            crowded = max(0.0, _ROOM_ENOUGH - clearance)
+            cost = distance - DISTANCES[0] + _RELIEF * relief + crowded
+            places.append(Place(middle, covers, clearance, cost))
+        if sum(place.clearance >= MARGINS[0] for place in places) >= ENOUGH:
+            break
+    return sorted(places, key=lambda place: place.cost)
+
+
+def _rectangle(size: np.ndarray) -> np.ndarray:
+    """Return points (k, 2) all over a rectangle around the origin."""
+    across = np.linspace(-size[0] / 2.0, size[0] / 2.0, _COLUMNS)
+    upward = np.linspace(-size[1] / 2.0, size[1] / 2.0, _ROWS)
+    return np.stack(np.meshgrid(across, upward), axis=-1).reshape(-1, 2)
+
+
+def _clearance(covers: np.ndarray, obstacles: np.ndarray, radii: np.ndarray) -> float:
+    away = covers[:, None] - obstacles[None]
+    return float((np.sqrt(np.einsum("ijk,ijk->ij", away, away)) - radii).min())
+
+
+def _chosen(choices: list[list[Place]], margin: float) -> list[Place] | None:
+    """Choose a place for each number so that all keep the margin; the fewest choices first."""
+    allowed = [[place for place in places if place.clearance >= margin] for places in choices]
+    order = sorted(range(len(choices)), key=lambda index: len(allowed[index]))
+    chosen: dict[int, Place] = {}
+    tries = 0
+
+    def choose(depth: int) -> bool:
+        nonlocal tries
+        if depth == len(order):
+            return True
+        for place in allowed[order[depth]]:
+            tries += 1
+            if tries > MOST_TRIES:
+                return False
+            if all(_apart(place, other) >= NUMBERS_APART * margin for other in chosen.values()):
+                chosen[order[depth]] = place
+                if choose(depth + 1):
+                    return True
+                del chosen[order[depth]]
+        return False
+
+    return [chosen[index] for index in range(len(choices))] if choose(0) else None
+
+
+def _apart(first: Place, second: Place) -> float:
+    """Return the distance of two numbers' rectangles."""
+    if np.linalg.norm(first.middle - second.middle) > 60.0:
+        return np.inf
+    return float(np.linalg.norm(first.covers[:, None] - second.covers[None], axis=2).min())
+
 
 ARROW_LIFT, RIM_LIFT, NUMBER_LIFT, DOT_LIFT = 0.5, 0.5, 0.6, 0.8
 """How far above the skin each lies, mm, so that no wrinkle hides it."""

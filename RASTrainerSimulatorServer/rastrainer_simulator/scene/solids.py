@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer_simulator.scene.materials import Material
 from rastrainer_simulator.scene.nodes import Surface
-from rastrainer_simulator.scene.shading import shaded
+from rastrainer_simulator.scene.surfaces import shaded
 
 ROUND = 40
 _CORNER = 5

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from rastrainer_simulator.vectors import Vector, cross, length, reject, unit
+from rastrainer_simulator.vectors import Vector, cross, length, reject, scale, unit, vector
 
 WORLD_UP: Vector = (0.0, 0.0, 1.0)
 
@@ -28,7 +28,7 @@ class Axes:
     def to_world(self, amounts: tuple[float, float, float]) -> Vector:
         """Return the World vector of so much to the right, forward and up."""
         sideways, ahead, above = amounts
-        return tuple(
+        return vector(
             sideways * r + ahead * f + above * u
             for r, f, u in zip(self.right, self.forward, self.up, strict=True)
         )
@@ -46,6 +46,6 @@ def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
     """
     ahead = reject(unit(view_direction), WORLD_UP)
     if length(ahead) < 1e-3:
-        ahead = reject(view_up if view_direction[2] < 0.0 else tuple(-v for v in view_up), WORLD_UP)
+        ahead = reject(view_up if view_direction[2] < 0.0 else scale(view_up, -1.0), WORLD_UP)
     forward = unit(ahead)
     return Axes(right=cross(forward, WORLD_UP), forward=forward, up=WORLD_UP)

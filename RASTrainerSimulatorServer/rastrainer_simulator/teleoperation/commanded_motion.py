@@ -1,4 +1,4 @@
-"""Motions that a command starts and that go on by themselves: a jog, and a move to a position."""
+"""Motions that a command starts: a jog, and a move to a position."""
 
 from __future__ import annotations
 
@@ -6,7 +6,11 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+from rastrainer.protocol import CommandName
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import Motion
+from rastrainer_simulator.teleoperation.axes import Axes
 from rastrainer_simulator.vectors import (
     ZERO,
     Vector,
@@ -29,7 +33,7 @@ PROGRESS = 1e-5
 """m or rad that count as getting nearer."""
 
 
-class Outcome(str, Enum):
+class MotionOutcome(str, Enum):
     """How a commanded motion ended."""
 
     REACHED = "reached"
@@ -59,7 +63,7 @@ class MoveCommand:
 
 
 class Jogging:
-    """A jog on its way."""
+    """A jog that is being carried out."""
 
     motion = Motion.JOG
     direction = None
@@ -76,14 +80,14 @@ class Jogging:
         self._remaining -= dt
         return scale(accelerated(velocity, self._velocity, acceleration * dt), time)
 
-    def outcome(self, dt: float, tip: Vector, direction: Vector) -> Outcome | None:
-        """Return how the jog has ended, None while it goes on."""
+    def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
+        """Return how the jog has ended, None while it lasts."""
         del tip, direction
-        return Outcome.REACHED if self._remaining <= 1e-3 * dt else None
+        return MotionOutcome.REACHED if self._remaining <= 1e-3 * dt else None
 
 
 class Moving:
-    """A move on its way; it slows down before the target so as to stop on it."""
+    """A move that is being carried out; it brakes so as to stop on the target."""
 
     motion = Motion.MOVE
 
@@ -102,12 +106,12 @@ class Moving:
         step = scale(accelerated(velocity, wanted, acceleration * dt), dt)
         return shortened(remaining, length(step)) if braking_speed < self._speed else step
 
-    def outcome(self, dt: float, tip: Vector, direction: Vector) -> Outcome | None:
-        """Return how the move has ended, None while it goes on."""
+    def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
+        """Return how the move has ended, None while it lasts."""
         remaining = distance(tip, self.goal)
         turn = angle(direction, self.direction) if self.direction else 0.0
         if remaining <= ARRIVED and turn <= ARRIVED:
-            return Outcome.REACHED
+            return MotionOutcome.REACHED
         if remaining + turn < self._nearest - PROGRESS:
             self._nearest = remaining + turn
             self._stalled = 0.0
@@ -115,10 +119,38 @@ class Moving:
             self._stalled += dt
         if self._stalled < STALLED_AFTER:
             return None
-        return Outcome.REACHED if remaining <= NEAR and turn <= ARRIVED else Outcome.BLOCKED
+        return (
+            MotionOutcome.REACHED
+            if remaining <= NEAR and turn <= ARRIVED
+            else MotionOutcome.BLOCKED
+        )
 
 
 CommandedMotion = JogCommand | MoveCommand
+
+
+def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> CommandedMotion:
+    """Return the motion that Jog or MoveTipTo asks for.
+
+    The frame "camera" is right, forward and up as the camera sees them, "tool" the axes of the
+    tool's tip; both as they are when the command arrives.
+    """
+    arguments = command.arguments
+    if command.name == CommandName.JOG:
+        velocity = scale(arguments["velocityMmS"], 1.0 / MM_PER_M)
+        axes = {"camera": camera, "tool": tool}.get(arguments["frame"])
+        velocity = axes.to_world(velocity) if axes else velocity
+        return JogCommand(velocity, arguments["durationS"])
+    return MoveCommand(
+        position=scale(arguments["positionMm"], 1.0 / MM_PER_M),
+        speed=arguments["speedMmS"] / MM_PER_M,
+        direction=_direction(arguments["direction"]),
+    )
+
+
+def _direction(asked: Vector | None) -> Vector | None:
+    """Return a unit vector; one without length asks for nothing."""
+    return None if asked is None or length(asked) < 1e-9 else unit(asked)
 
 
 def started(command: CommandedMotion) -> Jogging | Moving:

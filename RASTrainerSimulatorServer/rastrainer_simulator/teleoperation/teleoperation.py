@@ -1,7 +1,8 @@
-"""From the operator's hands and commands to where the tool's tip shall be after this tick."""
+"""From the operator's sticks and commands to where the tool's tip shall be after this tick."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from rastrainer_simulator.operator_input import OperatorInput
@@ -10,14 +11,43 @@ from rastrainer_simulator.teleoperation.axes import Axes
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
     Jogging,
+    MotionOutcome,
     Moving,
-    Outcome,
     accelerated,
     started,
 )
-from rastrainer_simulator.teleoperation.stick import StickResponse
-from rastrainer_simulator.teleoperation.tool_steering import SteeringSettings, Surface, ToolSteering
-from rastrainer_simulator.vectors import ZERO, Vector, scale
+from rastrainer_simulator.teleoperation.tool_steering import (
+    NearestSurface,
+    SteeringSettings,
+    ToolSteering,
+)
+from rastrainer_simulator.vectors import ZERO, Vector, scale, vector
+
+
+@dataclass(frozen=True)
+class StickResponse:
+    """How a stick's deflection becomes a speed.
+
+    Attributes:
+        dead_zone: share of the stick's travel that counts as released, 0…1. The zone is round, so
+            that a diagonal deflection is not bent toward an axis.
+        exponent: of the response curve; 1 is linear, larger is gentler near the center.
+    """
+
+    dead_zone: float = 0.12
+    exponent: float = 2.0
+
+    def __call__(self, deflection: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the share of the full speed along each axis, its length 0…1.
+
+        Values that are not finite count as released: a broken gamepad must not move the arm.
+        """
+        size = math.hypot(*deflection)
+        if not self.dead_zone < size < math.inf:
+            return (0.0,) * len(deflection)
+        share = min(1.0, (size - self.dead_zone) / (1.0 - self.dead_zone)) ** self.exponent
+        return tuple(value * share / size for value in deflection)
+
 
 STRAIGHT = (0.0, 0.0)
 """The steering stick at rest."""
@@ -58,7 +88,7 @@ class Tip:
 
 
 @dataclass(frozen=True)
-class Wish:
+class MotionRequest:
     """What the operator wants of this tick.
 
     Attributes:
@@ -74,14 +104,14 @@ class Wish:
     displacement: Vector = ZERO
     direction: Vector | None = None
     across: Vector | None = None
-    ended: Outcome | None = None
+    ended: MotionOutcome | None = None
     goal: Vector | None = None
 
 
 class Teleoperation:
     """Turns sticks and commanded motions into the tip's displacement, tick by tick.
 
-    The wish always starts from where the tip is, not from where it should have been: nothing
+    A request always starts from where the tip is, not from where it should have been: nothing
     builds up while the tool is stopped by the head or by a joint's speed limit, and the arm stops
     in the tick in which the stick is released.
     """
@@ -110,29 +140,32 @@ class Teleoperation:
         operator_input: OperatorInput,
         tip: Tip,
         axes: Axes,
-        surface: Surface | None = None,
-    ) -> Wish:
+        surface: NearestSurface | None = None,
+    ) -> MotionRequest:
         """Return what the operator wants of the next `dt` seconds.
 
         The sticks override a commanded motion. `surface` is the head near the tip, for a tool that
         comes down along the surface normal.
         """
         response = self._settings.response
-        push = response(operator_input.translation)
-        turn = response(operator_input.rotation) if self._steering.is_steered else STRAIGHT
+        push = vector(response(operator_input.translation))
+        turn = STRAIGHT
+        if self._steering.is_steered:
+            sideways, ahead = response(operator_input.rotation)
+            turn = (sideways, ahead)
         if push != ZERO or turn != STRAIGHT:
-            ended = Outcome.OVERRIDDEN if self._running else None
+            ended = MotionOutcome.OVERRIDDEN if self._running else None
             self._running = None
             return self._by_stick(dt, push, turn, operator_input.fine, tip, axes, surface, ended)
         if self._running is None:
             self._velocity = ZERO
-            return Wish(Motion.NONE)
+            return MotionRequest(Motion.NONE)
         outcome = self._running.outcome(dt, tip.position, tip.direction)
         if outcome is not None:
             self._running = None
             self._velocity = ZERO
-            return Wish(Motion.NONE, ended=outcome)
-        return self._by_command(dt, tip, axes, surface)
+            return MotionRequest(Motion.NONE, ended=outcome)
+        return self._by_command(self._running, dt, tip, axes, surface)
 
     def _by_stick(
         self,
@@ -142,9 +175,9 @@ class Teleoperation:
         fine: bool,
         tip: Tip,
         axes: Axes,
-        surface: Surface | None,
-        ended: Outcome | None,
-    ) -> Wish:
+        surface: NearestSurface | None,
+        ended: MotionOutcome | None,
+    ) -> MotionRequest:
         settings = self._settings
         fastest = settings.fine_speed if fine else settings.coarse_speed
         wanted = axes.to_world(scale(push, fastest))
@@ -156,12 +189,19 @@ class Teleoperation:
         direction = self._steering.steer(dt, turn, fine, axes, tip.direction, surface)
         return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
 
-    def _by_command(self, dt: float, tip: Tip, axes: Axes, surface: Surface | None) -> Wish:
-        running = self._running
+    def _by_command(
+        self,
+        running: Jogging | Moving,
+        dt: float,
+        tip: Tip,
+        axes: Axes,
+        surface: NearestSurface | None,
+    ) -> MotionRequest:
         displacement = running.displacement(
             dt, tip.position, self._velocity, self._settings.acceleration
         )
         self._velocity = scale(displacement, 1.0 / dt)
+        direction: Vector | None
         if running.direction is not None:
             direction = self._steering.turn_to(tip.direction, running.direction, dt)
         else:
@@ -174,9 +214,9 @@ class Teleoperation:
         displacement: Vector,
         direction: Vector | None,
         tip: Tip,
-        ended: Outcome | None = None,
+        ended: MotionOutcome | None = None,
         goal: Vector | None = None,
-    ) -> Wish:
+    ) -> MotionRequest:
         steering = self._steering
         across = steering.across(direction, tip.direction, tip.across) if direction else None
-        return Wish(motion, displacement, direction, across, ended, goal)
+        return MotionRequest(motion, displacement, direction, across, ended, goal)

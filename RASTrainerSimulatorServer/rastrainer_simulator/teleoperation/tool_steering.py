@@ -70,7 +70,7 @@ class SteeringSettings:
 
 
 @dataclass(frozen=True)
-class Surface:
+class NearestSurface:
     """The head as the tool sees it: clearances (m) and outward normals nearest to it.
 
     `clearance` and `normal` are those of the tip, `shaft_clearance` and `shaft_normal` those of the
@@ -124,7 +124,7 @@ class ToolSteering:
         fine: bool,
         axes: Axes,
         direction: Vector,
-        surface: Surface | None,
+        surface: NearestSurface | None,
     ) -> Vector | None:
         """Return the direction that the tool shall have after this tick, None where it is free.
 
@@ -142,7 +142,7 @@ class ToolSteering:
         self._held = leaned or self._held or direction
         return self._held
 
-    def _leaned(self, dt: float, direction: Vector, surface: Surface) -> Vector | None:
+    def _leaned(self, dt: float, direction: Vector, surface: NearestSurface) -> Vector | None:
         """Return the direction turned toward the normal, None where it may stay."""
         settings = self._settings
         if settings.choice not in (ToolDirection.CLEAR, ToolDirection.NORMAL):

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rastrainer.protocol import FIDUCIAL_COUNT, FINISHED_PHASES, OPEN_PHASES, CommandName, Phase
-from rastrainer_simulator.operator_input import Command
+from rastrainer_simulator.operator_input import OperatorCommand
+from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import TrainingState
-from rastrainer_simulator.texts.texts import Texts
 
 RECORDING_FAILED = "RecordingFailed"
 """By it the control loop takes back what could not be written; clients cannot send it."""
 
 INTERRUPTED = "Interrupted"
-"""By it a trial that a server's end has cut short is taken up; clients cannot send it."""
+"""Pauses a trial that a server's end has cut short; clients cannot send it."""
 
 _AFTER_REGISTRATION = {
     Phase.IDLE: "no trial",
@@ -57,7 +57,7 @@ ENDING_A_TRIAL = (CommandName.SUBMIT_REGISTRATION, CommandName.TRIAL_SCORED)
 NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.GET_TRIAL)
 
 
-def refusal(command: Command, state: TrainingState, texts: Texts) -> str | None:
+def refusal(command: OperatorCommand, state: TrainingState, texts: Texts) -> str | None:
     """Return the sentence that refuses a command in the trial's phase, None where it is right.
 
     A command that names a trial is right for the present trial only.

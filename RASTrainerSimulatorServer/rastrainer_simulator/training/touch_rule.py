@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rastrainer.protocol import TouchRule
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.vectors import Vector, distance
-
-MM = 1000.0
 
 
 @dataclass(frozen=True)
@@ -28,7 +27,7 @@ class TrainingSettings:
 
 
 @dataclass(frozen=True)
-class Moment:
+class TouchMoment:
     """When and where a command is carried out.
 
     Attributes:
@@ -45,7 +44,7 @@ class Moment:
 
 
 def refused_touch(
-    now: Moment,
+    now: TouchMoment,
     next_point: str,
     fiducials: Mapping[str, Vector],
     settings: TrainingSettings,
@@ -65,9 +64,13 @@ def refused_touch(
         label = min(fiducials, key=lambda key: distance(now.tip, fiducials[key]))
         nearest = distance(now.tip, fiducials[label])
         if nearest <= radius:
-            return texts.say("wrong point", point=next_point, label=label, nearest=MM * nearest)
-        return texts.say("too far", point=next_point, distance=MM * away, radius=MM * radius)
+            return texts.say(
+                "wrong point", point=next_point, label=label, nearest=MM_PER_M * nearest
+            )
+        return texts.say(
+            "too far", point=next_point, distance=MM_PER_M * away, radius=MM_PER_M * radius
+        )
     is_above = now.tip_clearance > settings.skin_tolerance
     if settings.touch_rule is TouchRule.ON_SKIN and is_above:
-        return texts.say("above the skin", point=next_point, height=MM * now.tip_clearance)
+        return texts.say("above the skin", point=next_point, height=MM_PER_M * now.tip_clearance)
     return None

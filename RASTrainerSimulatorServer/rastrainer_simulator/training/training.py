@@ -10,30 +10,35 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase
-from rastrainer_simulator.operator_input import Command
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.operator_input import OperatorCommand
+from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import (
     Event,
     EventKind,
     FinalRegistration,
-    Touch,
+    TouchState,
     TrainingState,
     TrialResult,
 )
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED, refusal
-from rastrainer_simulator.training.touch_rule import MM, Moment, TrainingSettings, refused_touch
+from rastrainer_simulator.training.touch_rule import (
+    TouchMoment,
+    TrainingSettings,
+    refused_touch,
+)
 from rastrainer_simulator.training.trial_clock import TrialClock
 from rastrainer_simulator.training.trial_seed import trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, vector
 
 if TYPE_CHECKING:
-    from rastrainer.scenario import Scenario
-    from rastrainer.tasks import Task
+    from rastrainer.scenario.scenario import Scenario
+    from rastrainer.scenario.tasks import Task
 
 
 @dataclass(frozen=True)
-class Reply:
+class TrainingReply:
     """What a command led to."""
 
     ok: bool
@@ -68,7 +73,7 @@ class Training:
         self.truth = self._truth(scenario.head_to_world, None)
         self.state = TrainingState(instruction=self._texts.say("idle"))
         self._history = {0: self.state}
-        self._handlers: dict[str, Callable[[Command, Moment], Reply]] = {
+        self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], TrainingReply]] = {
             CommandName.START_TASK: self._start,
             CommandName.CAPTURE: self._capture,
             CommandName.UNDO: self._undo,
@@ -88,7 +93,9 @@ class Training:
         self.state = replace(self.state, revision=revision)
         self._history = {revision: self.state}
 
-    def take_up(self, revision: int, steps: Iterable[tuple[Command, Moment]]) -> None:
+    def resume_trial(
+        self, revision: int, steps: Iterable[tuple[OperatorCommand, TouchMoment]]
+    ) -> None:
         """Bring the trial of a journal to where it was when the server ended.
 
         `revision` is that before the trial, `steps` what was carried out since. A trial whose time
@@ -104,11 +111,11 @@ class Training:
         """Return whether a command is the trial's business."""
         return command in self._handlers
 
-    def handle(self, command: Command, now: Moment) -> Reply:
+    def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Carry out a command, or refuse it with a sentence that says what would be right."""
         sentence = refusal(command, self.state, self._texts)
         if sentence is not None:
-            return Reply(False, sentence)
+            return TrainingReply(False, sentence)
         return self._handlers[command.name](command, now)
 
     def elapsed(self, sim_time: float) -> float:
@@ -119,19 +126,19 @@ class Training:
             return self._clock.elapsed(sim_time)
         return self.state.touches[-1].elapsed
 
-    def _start(self, command: Command, now: Moment) -> Reply:
+    def _start(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         arguments = command.arguments
         try:
             task = self._scenario.task(arguments["task"])
         except InputError as error:
-            return Reply(False, str(error))
+            return TrainingReply(False, str(error))
         number = self._number
         self._number += 1
         chosen = arguments.get("seed")
         self.trial_seed = trial_seed(self._seed, number) if chosen is None else chosen
         self._task = task
         self.truth = self._truth(self._scenario.perturbed_head_to_world(self.trial_seed), task)
-        places = self.truth.in_world(np.array(list(self.truth.fiducials.values()))) / MM
+        places = self.truth.in_world(np.array(list(self.truth.fiducials.values()))) / MM_PER_M
         self._fiducials = dict(zip(self.truth.fiducials, map(tuple, places.tolist()), strict=True))
         self._clock = TrialClock(now.sim_time)
         idle = TrainingState(revision=self.state.revision)
@@ -146,38 +153,44 @@ class Training:
             revision=self.state.revision,
         )
         event = self._enter(started, "start", now)
-        return Reply(True, data=self._summary(), events=(event,))
+        return TrainingReply(True, data=self._summary(), events=(event,))
 
-    def _capture(self, _command: Command, now: Moment) -> Reply:
+    def _capture(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         state = self.state
-        label = state.next_point
+        label, task = state.next_point, self._task
+        assert label is not None
+        assert task is not None, "the phase allows no touch before a task is chosen"
         sentence = refused_touch(now, label, self._fiducials, self._settings, self._texts)
         place = {
             "label": label,
-            "positionMm": [MM * value for value in now.tip],
-            "clearanceMm": MM * now.tip_clearance,
-            "depthMm": MM * now.depth,
+            "positionMm": [MM_PER_M * value for value in now.tip],
+            "clearanceMm": MM_PER_M * now.tip_clearance,
+            "depthMm": MM_PER_M * now.depth,
         }
         if sentence is not None:
             self.state = replace(state, rejected=state.rejected + 1, instruction=sentence)
             data = {**place, "message": sentence}
-            return Reply(False, sentence, events=(Event(EventKind.REJECTED, now.sim_time, data),))
-        touch = Touch(label, now.tip, now.sim_time, self._clock.elapsed(now.sim_time))
+            return TrainingReply(
+                False, sentence, events=(Event(EventKind.REJECTED, now.sim_time, data),)
+            )
+        touch = TouchState(label, now.tip, now.sim_time, self._clock.elapsed(now.sim_time))
         touches = (*state.touches, touch)
         data = {**place, "kept": len(touches)}
         event = Event(EventKind.TOUCH, now.sim_time, data)
-        if len(touches) == len(self._task.labels):
+        if len(touches) == len(task.labels):
             complete = replace(state, phase=Phase.COMPLETE, touches=touches, next_point=None)
-            return Reply(True, data=data, events=(event, self._enter(complete, "complete", now)))
-        following = self._task.labels[len(touches)]
+            return TrainingReply(
+                True, data=data, events=(event, self._enter(complete, "complete", now))
+            )
+        following = task.labels[len(touches)]
         touched = replace(state, touches=touches, next_point=following)
         self._keep(touched, "touched", label=label)
-        return Reply(True, data={**data, "nextPoint": following}, events=(event,))
+        return TrainingReply(True, data={**data, "nextPoint": following}, events=(event,))
 
-    def _undo(self, _command: Command, now: Moment) -> Reply:
+    def _undo(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         state = self.state
         if not state.touches:
-            return Reply(False, self._texts.say("nothing to undo", point=state.next_point))
+            return TrainingReply(False, self._texts.say("nothing to undo", point=state.next_point))
         label = state.touches[-1].label
         data = {"label": label, "kept": len(state.touches) - 1, "nextPoint": label}
         events = [Event(EventKind.UNDO, now.sim_time, data)]
@@ -192,34 +205,34 @@ class Training:
             self._keep(undone, "undone", label=label)
         else:
             events.append(self._enter(undone, "undone", now, label=label))
-        return Reply(True, data=data, events=tuple(events))
+        return TrainingReply(True, data=data, events=tuple(events))
 
-    def _register(self, _command: Command, now: Moment) -> Reply:
+    def _register(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         event = self._enter(replace(self.state, phase=Phase.REGISTERED), "registered", now)
         data = {**self._summary(), "completionTimeS": self.state.touches[-1].elapsed}
-        return Reply(True, data=data, events=(event,))
+        return TrainingReply(True, data=data, events=(event,))
 
-    def _abort(self, _command: Command, now: Moment) -> Reply:
+    def _abort(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         aborted = self.state
         self._leave()
         idle = TrainingState(revision=aborted.revision)
         self._history = {}
         event = self._enter(idle, "aborted", now, trainee=aborted.trainee)
-        return Reply(True, data={"trialId": aborted.trial_id}, events=(event,))
+        return TrainingReply(True, data={"trialId": aborted.trial_id}, events=(event,))
 
-    def _pause(self, _command: Command, now: Moment) -> Reply:
+    def _pause(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         self._clock.pause(now.sim_time)
-        return Reply(
+        return TrainingReply(
             True, events=(self._enter(replace(self.state, phase=Phase.PAUSED), "paused", now),)
         )
 
-    def _resume(self, _command: Command, now: Moment) -> Reply:
+    def _resume(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         self._clock.resume(now.sim_time)
-        return Reply(
+        return TrainingReply(
             True, events=(self._enter(replace(self.state, phase=Phase.RUNNING), "resumed", now),)
         )
 
-    def _take_registration(self, command: Command, now: Moment) -> Reply:
+    def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Tell the truth in return for a registration, which then cannot be changed any more."""
         arguments, known = command.arguments, self.state.registration
         registration = FinalRegistration(
@@ -228,19 +241,19 @@ class Training:
             expected_tre_mm=arguments["expectedTreMm"],
         )
         if known is not None and known != registration:
-            return Reply(False, self._texts.say("registration is final"))
+            return TrainingReply(False, self._texts.say("registration is final"))
         data = {"trialId": self.state.trial_id, **self._revealed(registration.matrix)}
         if known is not None:
-            return Reply(True, data=data)
+            return TrainingReply(True, data=data)
         final = replace(self.state, registration=registration)
         event = self._enter(final, "registered", now)
-        return Reply(True, data=data, events=(event,))
+        return TrainingReply(True, data=data, events=(event,))
 
-    def _scored(self, command: Command, now: Moment) -> Reply:
+    def _scored(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         arguments, registration = command.arguments, self.state.registration
         data = {"trialId": self.state.trial_id}
         if registration is None:
-            return Reply(False, self._texts.say("no registration"))
+            return TrainingReply(False, self._texts.say("no registration"))
         result = TrialResult(
             registration=registration,
             true_tre_mm=self._revealed(registration.matrix)["trueTreMm"],
@@ -248,7 +261,7 @@ class Training:
             details=arguments["details"],
         )
         if result == self.state.result:
-            return Reply(True, data=data)
+            return TrainingReply(True, data=data)
         scored = replace(self.state, phase=Phase.SCORED, result=result)
         event = self._enter(
             scored,
@@ -258,28 +271,28 @@ class Training:
             fre=registration.fre_mm,
             tre=result.true_tre_mm,
         )
-        return Reply(True, data=data, events=(event,))
+        return TrainingReply(True, data=data, events=(event,))
 
-    def _get_trial(self, _command: Command, _now: Moment) -> Reply:
+    def _get_trial(self, _command: OperatorCommand, _now: TouchMoment) -> TrainingReply:
         state = self.state
         data = self._summary()
         data["touches"] = [
             {
                 "label": touch.label,
-                "positionMm": [MM * value for value in touch.position],
+                "positionMm": [MM_PER_M * value for value in touch.position],
                 "simTime": touch.sim_time,
             }
             for touch in state.touches
         ]
         if state.registration is not None:
             data.update(self._revealed(state.registration.matrix))
-        return Reply(True, data=data)
+        return TrainingReply(True, data=data)
 
-    def _recording_failed(self, command: Command, now: Moment) -> Reply:
+    def _recording_failed(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Go back to the last revision that is on the disk, and pause."""
         kept = self._history.get(command.arguments["revision"])
         if kept is None:
-            return Reply(True)
+            return TrainingReply(True)
         sentence = self._texts.say("not recorded", reason=command.arguments["reason"])
         if kept.phase is Phase.RUNNING:
             self._clock.pause(now.sim_time)
@@ -288,9 +301,9 @@ class Training:
             self._leave()
         back = replace(kept, revision=self.state.revision)
         event = self._enter(back, "not recorded", now, reason=command.arguments["reason"])
-        return Reply(True, message=sentence, events=(event,))
+        return TrainingReply(True, message=sentence, events=(event,))
 
-    def _interrupted(self, _command: Command, now: Moment) -> Reply:
+    def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Pause a trial that runs; one whose points are all touched has no time to stop."""
         if self.state.phase is Phase.COMPLETE:
             event = self._enter(self.state, "interrupted complete", now)
@@ -299,10 +312,10 @@ class Training:
             paused = replace(self.state, phase=Phase.PAUSED)
             kept = len(paused.touches)
             event = self._enter(paused, "interrupted", now, kept=kept)
-        return Reply(True, events=(event,))
+        return TrainingReply(True, events=(event,))
 
-    def _enter(self, state: TrainingState, key: str, now: Moment, **values: object) -> Event:
-        """Take on a state of another phase and return the event that tells of it."""
+    def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
+        """Take on a state of another phase and return the event of it."""
         self._keep(state, key, **values)
         data = {**self._summary(), "instruction": self.state.instruction}
         return Event(EventKind.PHASE, now.sim_time, data)
@@ -312,7 +325,7 @@ class Training:
         words = {
             "trainee": state.trainee,
             "point": state.next_point,
-            "count": len(self._task.labels),
+            "count": len(self._task.labels) if self._task else 0,
             **values,
         }
         revision = state.revision + 1
@@ -338,7 +351,8 @@ class Training:
 
     def _revealed(self, matrix: tuple[float, ...]) -> dict[str, Any]:
         touches = (
-            (touch.label, tuple(MM * v for v in touch.position)) for touch in self.state.touches
+            (touch.label, vector(MM_PER_M * v for v in touch.position))
+            for touch in self.state.touches
         )
         return self.truth.revealed(np.array(matrix, dtype=float).reshape(4, 4), touches)
 

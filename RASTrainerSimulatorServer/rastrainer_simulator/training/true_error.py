@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.registration.target_error import true_errors
+
 
 @dataclass(frozen=True)
 class Truth:
@@ -36,8 +38,7 @@ class Truth:
 
         `world_to_head` is the registration found, (4, 4) float, mm.
         """
-        registered = (world_to_head @ np.append(self.in_world(self.target), 1.0))[:3]
-        return float(np.linalg.norm(registered - self.target))
+        return float(np.linalg.norm(true_errors(world_to_head, self.head_to_world, self.target)))
 
     def touch_errors_mm(
         self, touches: Iterable[tuple[str, tuple[float, float, float]]]

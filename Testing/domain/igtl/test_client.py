@@ -11,8 +11,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client, LinkError
-from rastrainer.igtl.command import Command, CommandReply
-from rastrainer.igtl.content import String, Transform
+from rastrainer.igtl.content import Command, CommandReply, String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
 

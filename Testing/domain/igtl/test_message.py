@@ -8,8 +8,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.checksum import crc64
-from rastrainer.igtl.command import Command, CommandReply
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Command, CommandReply, Status, String, Transform
 from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, Message, pack, read_header, unpack
 from rastrainer.igtl.points import Point, Points
 

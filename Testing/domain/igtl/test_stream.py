@@ -8,8 +8,7 @@ import struct
 import pytest
 
 from rastrainer.igtl.checksum import crc64
-from rastrainer.igtl.command import Command
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Command, Status, String, Transform
 from rastrainer.igtl.message import LARGEST_BODY, Message, pack
 from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.stream import LARGEST_KEPT, MOST_GARBAGE, MessageReader, StreamError

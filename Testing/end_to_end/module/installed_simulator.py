@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from rastrainer.slicer.simulator_package import SimulatorPackage
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from Testing.slicer.made_up_package import write_package
 
 CLI = """
@@ -23,7 +23,7 @@ def main():
     # No screen, no window.
     given = [argument for argument in sys.argv[1:] if argument != "--desktop"]
     options = {options!r} if given[:1] == ["simulator"] else []
-    program = [sys.executable, "-m", "rastrainer_simulator.cli", *given, *options]
+    program = [sys.executable, "-m", "rastrainer_simulator.cli.main", *given, *options]
     os.execv(sys.executable, program)
 
 

@@ -12,9 +12,9 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
-from rastrainer.scenario import load_scenario
-from rastrainer.scripted_trial import say_hello
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.scripted_trial import say_hello
 from Testing.end_to_end.onto_skin import lower_onto_skin
 
 SPEED_MM_S = 400

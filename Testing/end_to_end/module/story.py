@@ -8,7 +8,7 @@ import socket
 from collections.abc import Sequence
 from pathlib import Path
 
-from rastrainer.slicer.connection import CONNECTOR_NAME
+from rastrainer.slicer.link.connection import CONNECTOR_NAME
 from Testing.end_to_end.module.installed_simulator import brought_along, write_program
 from Testing.end_to_end.module.player import Player
 from Testing.running_process import runs
@@ -16,7 +16,7 @@ from Testing.slicer.host.host import Host
 
 TRAINEE = "T-007"
 PLAN_MM = (10.0, 20.0, 30.0)
-FAST = ("--speed", "20", "--no-views", "--no-gamepad")
+FAST = ("--speed", "10", "--no-views", "--no-gamepad")
 
 
 class Story:

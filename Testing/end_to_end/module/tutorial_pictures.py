@@ -11,8 +11,8 @@ import slicer
 from PySide6 import QtGui
 
 import rastrainer
+from rastrainer.slicer.scene.views import jumpTo
 from rastrainer.slicer.settings import PROGRAM
-from rastrainer.slicer.slice_views import jumpTo
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.end_to_end.module.screenshots import DISTANCE_MM, HEAD

@@ -10,8 +10,7 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.collision.capsules import covering_capsules, surface_points
 from rastrainer_simulator.collision.clearance import FAR
 from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.robot_shape import SHAFT_START, robot_shape
-from rastrainer_simulator.collision.tool_capsules import capsules_along
+from rastrainer_simulator.collision.robot_shape import SHAFT_START, capsules_along, robot_shape
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import load_robot
 from Testing.simulator.collision.arms import KINEMATICS, ROBOT

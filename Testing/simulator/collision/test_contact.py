@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.collision.table_clearance import Surroundings
-from rastrainer_simulator.planning.touch_planner import TouchPlanner
+from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, TICK, Driver, at, posture
 from Testing.simulator.collision.heads import ball, box, groove, together
 from Testing.simulator.collision.vtk_distance import vtk_distance
@@ -39,11 +40,11 @@ class DefaultHead:
     def __init__(self, scenario):
         mesh = read_head_mesh(scenario.head_mesh)
         self.to_world = scenario.head_to_world.copy()
-        self.to_world[:3, 3] /= 1000.0
-        self.vertices = transforms.apply(self.to_world, mesh.vertices / 1000.0)
+        self.to_world[:3, 3] /= MM_PER_M
+        self.vertices = transforms.apply(self.to_world, mesh.vertices / MM_PER_M)
         self.triangles = mesh.triangles
         self.normals = mesh.vertex_normals @ self.to_world[:3, :3].T
-        self.collision = Collision(SHAPE, mesh.vertices / 1000.0, mesh.triangles)
+        self.collision = Collision(SHAPE, mesh.vertices / MM_PER_M, mesh.triangles)
         self.collision.set_head_pose(self.to_world)
         self.distance = vtk_distance(self.vertices, mesh.triangles)
 
@@ -98,7 +99,7 @@ def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
 def test_every_fiducial_of_the_default_tasks_can_be_touched_with_the_tip(head, scenario):
     planner = TouchPlanner(ROBOT, head.collision)
     for task in scenario.tasks:
-        fiducials = transforms.apply(head.to_world, np.asarray(task.fiducials) / 1000.0)
+        fiducials = transforms.apply(head.to_world, np.asarray(task.fiducials) / MM_PER_M)
         for fiducial in fiducials[::4]:
             normal = np.array(head.collision.nearest_to_point(tuple(fiducial)).normal)
             touch = planner.touch(fiducial, normal)
@@ -265,9 +266,9 @@ def test_away_from_everything_the_wish_is_followed_to_the_bit():
         wishes.append(displacement)
         return driver.moved.q
 
-    wish = (1e-4, -2e-4, 3e-4)
-    driver.contact.move(driver.moved.q, wish, to_joints)
-    np.testing.assert_allclose(wishes, [wish], rtol=0, atol=1e-15)
+    motion_request = (1e-4, -2e-4, 3e-4)
+    driver.contact.move(driver.moved.q, motion_request, to_joints)
+    np.testing.assert_allclose(wishes, [motion_request], rtol=0, atol=1e-15)
 
 
 def test_the_same_pushes_give_the_same_joints_to_the_last_bit(head):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from rastrainer_simulator.collision.half_spaces import HalfSpace, nearest_inside
+from rastrainer_simulator.collision.sliding import HalfSpace, nearest_inside
 
 
 def half_space(normal, bound):

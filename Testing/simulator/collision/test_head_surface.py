@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.head_surface import HeadSurface
-from rastrainer_simulator.collision.thin_segment import thin_segment
+from rastrainer_simulator.collision.segments import thin_segment
 from Testing.simulator.collision.brute_force import point_to_triangles, segment_to_triangles
 from Testing.simulator.collision.heads import ball, box, bumpy_head, together
 from Testing.simulator.collision.vtk_distance import vtk_distance
@@ -70,7 +71,7 @@ def test_the_sign_is_right_inside_outside_and_at_every_feature(bumpy):
 
 def test_the_sign_is_right_on_the_default_head(scenario):
     mesh = read_head_mesh(scenario.head_mesh)
-    head = mesh.vertices / 1000.0, mesh.triangles
+    head = mesh.vertices / MM_PER_M, mesh.triangles
     points = np.concatenate([around(head[0], 1000, 6), near(*head, 3000, 7)])
     truth = np.array(list(map(vtk_distance(*head), points)))
     np.testing.assert_allclose(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer_simulator.collision.clearance import FAR
-from rastrainer_simulator.collision.lookout import Lookout
+from rastrainer_simulator.collision.distance_bounds import DistanceBounds
 
 COUNT, TICKS = 40, 3000
 
@@ -13,14 +13,14 @@ def walk(rough):
     """A point among others: in each tick its distances, and which of them were looked at."""
     random = np.random.default_rng(26)
     others, point, travelled = random.uniform(-0.3, 0.3, (COUNT, 3)), np.zeros(3), 0.0
-    lookout = Lookout(COUNT)
+    bounds = DistanceBounds(COUNT)
     for _ in range(TICKS):
         step = random.normal(size=3) * 0.002 - 0.0002 * point
         point, travelled = point + step, travelled + np.linalg.norm(step)
         distances = np.linalg.norm(others - point, axis=1)
-        rows = lookout.due(travelled, (lambda found=distances: found - 0.01) if rough else None)
+        rows = bounds.due(travelled, (lambda found=distances: found - 0.01) if rough else None)
         for row in rows:
-            lookout.put_off(row, distances[row], travelled)
+            bounds.put_off(row, distances[row], travelled)
         yield distances, rows
 
 
@@ -39,17 +39,17 @@ def test_what_is_far_is_hardly_ever_looked_at():
 
 
 def test_all_are_due_once_something_else_has_moved():
-    lookout = Lookout(3)
-    for row in lookout.due(0.0):
-        lookout.put_off(row, 9.0, 0.0)
-    assert lookout.due(1.0) == []
-    lookout.forget()
-    assert lookout.due(1.0) == [0, 1, 2]
+    bounds = DistanceBounds(3)
+    for row in bounds.due(0.0):
+        bounds.put_off(row, 9.0, 0.0)
+    assert bounds.due(1.0) == []
+    bounds.forget()
+    assert bounds.due(1.0) == [0, 1, 2]
 
 
 def test_what_two_parts_may_close_in_on_is_due_after_half_the_way():
-    lookout = Lookout(1, closing=2.0)
-    lookout.due(0.0)
-    lookout.put_off(0, FAR + 1.0, 0.0)
-    assert lookout.due(0.499) == []
-    assert lookout.due(0.501) == [0]
+    bounds = DistanceBounds(1, closing=2.0)
+    bounds.due(0.0)
+    bounds.put_off(0, FAR + 1.0, 0.0)
+    assert bounds.due(0.499) == []
+    assert bounds.due(0.501) == [0]

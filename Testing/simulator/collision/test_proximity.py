@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import Proximity
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.clearance import FAR, Clearance, Nearest
 from rastrainer_simulator.collision.proximity import ProximitySettings, next_proximity
 
 FREE, PROXIMITY, CONTACT = Proximity.FREE, Proximity.PROXIMITY, Proximity.CONTACT
-MM = 1e-3
 
 
 def clearance(tip_mm, shaft_mm=1000.0):
     def nearest(distance_mm):
-        return Nearest(distance_mm * MM, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
+        return Nearest(distance_mm / MM_PER_M, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
 
     return Clearance(nearest(tip_mm), nearest(shaft_mm), FAR, "", FAR, (), FAR, "")
 

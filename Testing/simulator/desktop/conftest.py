@@ -8,11 +8,19 @@ import numpy as np
 import pytest
 import trimesh
 
-from rastrainer_simulator.flow.screen import Hint, Item, ItemKind, Menu, Message, Screen, Tone
-from rastrainer_simulator.scene.glb import to_glb
+from rastrainer_simulator.net.views.screen import (
+    Hint,
+    ItemKind,
+    Menu,
+    MenuItem,
+    Screen,
+    ScreenMessage,
+    Tone,
+)
 from rastrainer_simulator.scene.materials import ARROW, SKIN, TIP_FREE, WAITING, WALL
 from rastrainer_simulator.scene.nodes import Node
-from rastrainer_simulator.scene.shading import shaded
+from rastrainer_simulator.scene.scene_glb import to_glb
+from rastrainer_simulator.scene.surfaces import shaded
 
 SIZE = (960, 540)
 BODIES = ("tool", "head")
@@ -70,16 +78,18 @@ MENU = Menu(
     "Experiment",
     ("A paragraph that tells the trainee what there is to be chosen, and why.",),
     items=(
-        Item("trainee", "Your ID", ItemKind.TEXT, "P07", help="Your instructor gives you this."),
-        Item("mode", "Mode", ItemKind.CHOICE, "Desktop"),
-        Item("axis", "Left stick", ItemKind.AXIS, "0.5"),
-        Item("task-1", "Task 1", value="done"),
-        Item("task-2", "Task 2", is_enabled=False, help="Task 1 comes first."),
+        MenuItem(
+            "trainee", "Your ID", ItemKind.TEXT, "P07", help="Your instructor gives you this."
+        ),
+        MenuItem("mode", "Mode", ItemKind.CHOICE, "Desktop"),
+        MenuItem("axis", "Left stick", ItemKind.AXIS, "0.5"),
+        MenuItem("task-1", "Task 1", value="done"),
+        MenuItem("task-2", "Task 2", is_enabled=False, help="Task 1 comes first."),
     ),
     focus="mode",
 )
 SCREEN = Screen(
-    instruction=Message("P07, touch point 2.", Tone.GOOD),
+    instruction=ScreenMessage("P07, touch point 2.", Tone.GOOD),
     status=("Task 1", "1 of 3", "00:12"),
     hints=(Hint("A", "Touch"), Hint("B", "Undo")),
 )

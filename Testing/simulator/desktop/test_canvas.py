@@ -1,8 +1,8 @@
 import numpy as np
 
-from rastrainer_simulator.desktop.canvas import Box, Canvas
-from rastrainer_simulator.desktop.theme import BODY, rgba
-from rastrainer_simulator.desktop.typesetter import Typesetter
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.theme import BODY, rgba
 
 RED, GREEN = rgba(0xFF0000), rgba(0x00FF00, 0.5)
 
@@ -45,7 +45,7 @@ def test_a_frame_is_empty_inside_and_what_is_off_the_canvas_is_left_out():
 
 
 def test_text_stands_on_the_same_line_whatever_its_letters():
-    setter = Typesetter(2.0)
+    setter = Brush(2.0)
     feet = []
     for text in ("x", "xÅ", "xg"):
         letters = setter.line(text, BODY)
@@ -56,7 +56,7 @@ def test_text_stands_on_the_same_line_whatever_its_letters():
 
 
 def test_wrapped_lines_fit_and_lose_no_word():
-    setter = Typesetter(1.0)
+    setter = Brush(1.0)
     text = "Touch fifteen numbered points on the head, one after the other. " + "W" * 60
     lines = setter.wrap(text, BODY, 300)
     assert max(setter.width(line, BODY) for line in lines) <= 300
@@ -64,7 +64,7 @@ def test_wrapped_lines_fit_and_lose_no_word():
 
 
 def test_a_dollar_sign_is_no_formula_and_a_text_too_long_ends_in_an_ellipsis():
-    setter = Typesetter(1.0)
+    setter = Brush(1.0)
     assert setter.width("$x$", BODY) > setter.width("x", BODY)
     fitted = setter.fit("A label that is much too long for its row", BODY, 120)
     assert fitted.endswith("…")

@@ -1,8 +1,8 @@
 import pygame
 import pytest
 
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.desktop.key_codes import CODES
+from rastrainer_simulator.desktop.keyboard import CODES
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 
 # SDL's constants beside the codes of the W3C's table, from both documents.
 BOTH = {

@@ -4,21 +4,20 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.desktop import theme
-from rastrainer_simulator.desktop.panels import strips
+from rastrainer_simulator.desktop.panels import strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.panels.target_arrow import target_arrow
-from rastrainer_simulator.desktop.thumbnail import Thumbnail
-from rastrainer_simulator.flow.screen import Fact, Hint, Item, Menu, Message, Tone
-from Testing.domain.made_up_scenario import png
+from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.net.views.screen import Fact, Hint, Menu, MenuItem, ScreenMessage, Tone
+from Testing.domain.scenario.made_up_scenario import png
 from Testing.simulator.desktop.conftest import MENU
 
 SIZES = [(1280, 720), (1920, 1080), (2560, 1440), (3840, 2160), (1024, 768)]
 LONG = Menu(
     "bindings",
     "Controls",
-    items=tuple(Item(f"row{n}", f"Control {n}", value="ShiftLeft") for n in range(30)),
+    items=tuple(MenuItem(f"row{n}", f"Control {n}", value="ShiftLeft") for n in range(30)),
     focus="row21",
 )
 WORDY = Menu(
@@ -26,7 +25,7 @@ WORDY = Menu(
     "Result of a trainee with a very long identification",
     ("Sentence after sentence tells what came of it. " * 4,) * 2,
     tuple(Fact(f"Figure {n}", f"{n}.25 mm", Tone.GOOD) for n in range(8)),
-    (Item("next", "Next", help="Goes on."), Item("menu", "Menu")),
+    (MenuItem("next", "Next", help="Goes on."), MenuItem("menu", "Menu")),
     "next",
     "controls",
 )
@@ -54,7 +53,7 @@ def test_no_menu_is_larger_than_its_room_and_its_focus_is_always_seen(menu, size
 def test_a_long_text_hides_no_choice(size):
     said = "Take more care at the points 5, 7: without these errors all would be 29 % more exact."
     facts = tuple(Fact(f"Expected error at the target {n}", f"{n}.25 mm") for n in range(7))
-    items = tuple(Item(name, name) for name in ("next", "worst", "replay", "again", "menu"))
+    items = tuple(MenuItem(name, name) for name in ("next", "worst", "replay", "again", "menu"))
     menu = Menu("result", "P07: Task 1", (said,) * 6, facts, items, "next")
     assert len(paint(menu, size).rows) == len(items)
 
@@ -94,7 +93,9 @@ def test_the_smallest_letters_are_readable_from_a_meter():
 def test_long_sentences_and_many_hints_stay_in_their_room(size):
     brush = Brush(theme.scale_of(*size))
     room = size[0] // 2
-    message = Message("A sentence that goes on and on about what is to be done. " * 3, Tone.ERROR)
+    message = ScreenMessage(
+        "A sentence that goes on and on about what is to be done. " * 3, Tone.ERROR
+    )
     hints = [Hint("D-pad up / D-pad down", f"Action {n}") for n in range(7)]
     painted = (
         strips.instruction(message, brush, room),
@@ -108,7 +109,7 @@ def test_long_sentences_and_many_hints_stay_in_their_room(size):
 def test_tones_are_told_by_color():
     brush = Brush(1.0)
     banners = [
-        strips.warning(Message("Text", tone), brush, 900)[5, 40, :3].astype(int)
+        strips.warning(ScreenMessage("Text", tone), brush, 900)[5, 40, :3].astype(int)
         for tone in (Tone.WARNING, Tone.ERROR)
     ]
     assert np.abs(banners[0] - banners[1]).max() > 50
@@ -135,7 +136,10 @@ HEADS = Menu(
     "scenario",
     "Heads",
     ("Which head?",),
-    items=(Item("head mine", "My head", picture="/scenarios/mine.png"), Item("back", "Back")),
+    items=(
+        MenuItem("head mine", "My head", picture="/scenarios/mine.png"),
+        MenuItem("back", "Back"),
+    ),
     focus="head mine",
 )
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.desktop.flight import FLIGHT_S, Viewpoint
+from rastrainer_simulator.desktop.camera import TRANSITION_S, Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, SceneNews
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.desktop.quality import Quality, first_quality
-from rastrainer_simulator.desktop.still import Still, keep_still
+from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
+from rastrainer_simulator.net.views.screen import Screen
 from Testing.read_png import read_png
 from Testing.simulator.desktop.conftest import (
     BODIES,
@@ -33,7 +34,7 @@ def inbox(glb):
     inbox = Inbox()
     inbox.bodies = BODIES
     views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
-    inbox.scene = SceneNews(read_parts(glb, BODIES), views, FIDUCIALS)
+    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
     return inbox
 
 
@@ -127,6 +128,14 @@ def test_the_inset_shows_the_other_camera_in_a_white_frame_and_gives_way_to_a_me
     assert len(found(without[: SIZE[1] // 3], ((250, 250, 250), (255, 255, 255)))) < 200
 
 
+def test_a_menu_that_is_opened_again_is_shown_again(show):
+    focused = ((30, 115, 231), (32, 117, 233))
+    first = len(found(show(Screen(menu=MENU)), focused))
+    without = len(found(show(Screen()), focused))
+    again = len(found(show(Screen(menu=MENU)), focused))
+    assert again == first > 1000 > without
+
+
 def test_nothing_is_drawn_twice_while_nothing_changes(show, picture, inbox):
     show(next=None)
     assert not picture.is_due(1e5)
@@ -151,11 +160,11 @@ def test_the_camera_flies_and_arrives(show, picture, inbox):
     show()
     inbox.take_state(state_text(camera="far"))
     distances = []
-    for now in (3e5, 3e5 + FLIGHT_S / 2, 3e5 + FLIGHT_S):
+    for now in (3e5, 3e5 + TRANSITION_S / 2, 3e5 + TRANSITION_S):
         picture.is_due(now)
-        distances.append(-picture.stage.main.GetActiveCamera().GetPosition()[1])
+        distances.append(-picture.viewports.main.GetActiveCamera().GetPosition()[1])
     np.testing.assert_allclose(distances, [0.8, 1.6, 2.4], atol=1e-6)
-    assert not picture.stage.is_moving(3e5 + FLIGHT_S)
+    assert not picture.viewports.is_moving(3e5 + TRANSITION_S)
 
 
 def test_a_lost_connection_is_told(show, picture, gl_window, inbox):
@@ -171,7 +180,7 @@ def test_a_lost_connection_is_told(show, picture, gl_window, inbox):
 def test_a_kept_picture_shows_the_same_in_the_best_light(show, inbox, tmp_path):
     plain = show()
     path = tmp_path / "pictures" / "kept.png"
-    asyncio.run(keep_still(Still.of(inbox, path, SIZE, Quality.HIGH)))
+    asyncio.run(save_screenshot(Screenshot.of(inbox, path, SIZE, Quality.HIGH)))
     best = read_png(path).astype(int)
     assert np.abs(best - plain).mean() > 3
     tips = [found(main_view(pixels), BLUE).mean(axis=0) for pixels in (plain, best)]
@@ -181,9 +190,9 @@ def test_a_kept_picture_shows_the_same_in_the_best_light(show, inbox, tmp_path):
 def test_a_picture_that_cannot_be_kept_is_told_in_one_sentence(show, inbox, tmp_path):
     show()
     (tmp_path / "file").touch()
-    still = Still.of(inbox, tmp_path / "file" / "kept.png", SIZE, Quality.LOW)
+    still = Screenshot.of(inbox, tmp_path / "file" / "kept.png", SIZE, Quality.LOW)
     with pytest.raises(InputError, match=r"^The folder .*file cannot be made: .*\.$"):
-        asyncio.run(keep_still(still))
+        asyncio.run(save_screenshot(still))
 
 
 @pytest.mark.parametrize(

@@ -11,12 +11,12 @@ import time
 
 import pytest
 
-from rastrainer_simulator.cli import main
-from rastrainer_simulator.control_loop import ControlLoop
-from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.view_server.operator_desk import Feedback, Hello
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.views.presenter import Feedback, Hello
 from Testing.end_to_end.heard import times_heard
-from Testing.simulator.view_server.served import ServedViews
+from Testing.simulator.net.views.served import ServedViews
 
 PATIENCE_S = 60.0
 PLAYED = ("touch", "proximity", "contact", "error", "finish", "undo", "touch")
@@ -31,7 +31,14 @@ class Window:
         self.frames = folder / "frames.jsonl"
         self.process = subprocess.Popen(
             [
-                *(sys.executable, "-m", "rastrainer_simulator.cli", "window", "--connect", url),
+                *(
+                    sys.executable,
+                    "-m",
+                    "rastrainer_simulator.cli.main",
+                    "window",
+                    "--connect",
+                    url,
+                ),
                 *("--size", "640x360", "--frame-log", str(self.frames)),
                 *("--log-folder", str(folder / "logs")),
             ],
@@ -71,7 +78,7 @@ def session(loop_thread, control_loop, tmp_path_factory):
     window = Window(served.url, key, folder)
     try:
         window.wait_for_picture()
-        joined = [call for call in served.desk.calls if call[0] == "view_joined"]
+        joined = [call for call in served.presenter.calls if call[0] == "view_joined"]
         for number, name in enumerate(PLAYED, start=1):
             served.tell(Feedback(number, name, name, 0.8))
             time.sleep(PAUSE_S)
@@ -90,7 +97,7 @@ def session(loop_thread, control_loop, tmp_path_factory):
 
 def _wait_for_join(served):
     give_up = time.monotonic() + PATIENCE_S
-    while not (found := [call for call in served.desk.calls if call[0] == "view_joined"]):
+    while not (found := [call for call in served.presenter.calls if call[0] == "view_joined"]):
         assert time.monotonic() < give_up
         time.sleep(0.02)
     return found
@@ -134,7 +141,7 @@ def test_wrong_arguments_end_with_one_sentence_and_status_2(
 
 def test_without_a_display_the_window_ends_with_one_sentence_which_its_log_keeps(tmp_path):
     environment = {**os.environ, "RASTRAINER_VIEW_KEY": "k" * 40, "SDL_VIDEODRIVER": "none-such"}
-    command = [sys.executable, "-m", "rastrainer_simulator.cli", "window"]
+    command = [sys.executable, "-m", "rastrainer_simulator.cli.main", "window"]
     command += ["--log-folder", str(tmp_path)]
     done = subprocess.run(
         command, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False

@@ -1,4 +1,4 @@
-"""A desk at a control loop that ticks as fast as it can."""
+"""A presenter at a control loop that ticks as fast as it can."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from concurrent.futures import Future
 
 import pytest
 
-from rastrainer_simulator.control_loop import ControlLoop
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.flow.desk import Desk
-from rastrainer_simulator.flow.preferences import Preferences
-from rastrainer_simulator.flow.running_desk import RunningDesk
-from rastrainer_simulator.flow.session import Surroundings
-from rastrainer_simulator.operator_input import Command, OperatorInput
-from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.running_presenter import RunningPresenter
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.flow.session.session import FlowServices
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.state import Answer
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.flow.trainee import Keys, Pad, Trainee
 
 
 class Outside:
-    """What the desk is told of the process around it."""
+    """What the presenter is told of the process around it."""
 
     def __init__(self, folder):
         self.has_slicer = False
@@ -28,13 +28,13 @@ class Outside:
         self.settings = []
         self.scenarios = []
         self.loads = []
-        self.surroundings = Surroundings(
+        self.services = FlowServices(
             config=folder / "config",
             records=folder / "records",
             use_settings=self._use,
             list_scenarios=self._list,
             use_scenario=self._load,
-            is_slicer_there=lambda: self.has_slicer,
+            is_slicer_connected=lambda: self.has_slicer,
             quit=lambda: setattr(self, "has_quit", True),
         )
 
@@ -61,8 +61,8 @@ def shared(setup):
 
 def put_back(simulation):
     """End whatever trial another test has left."""
-    start = Command("StartTask", {"task": "task-1", "trainee": "nobody", "mode": "desktop"})
-    commands = (Command("Abort"), start, Command("Abort"))
+    start = OperatorCommand("StartTask", {"task": "task-1", "trainee": "nobody", "mode": "desktop"})
+    commands = (OperatorCommand("Abort"), start, OperatorCommand("Abort"))
     simulation.step(0.004, OperatorInput(commands=commands))
 
 
@@ -79,16 +79,16 @@ def loop(shared, tmp_path):
 
 
 @pytest.fixture
-def desk(loop, outside):
-    desk = Desk(loop, outside.surroundings, DEFAULT_BINDINGS, Preferences())
-    yield desk
-    desk.close()
+def presenter(loop, outside):
+    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+    yield presenter
+    presenter.close()
 
 
 @pytest.fixture
-def trainee(loop, desk):
+def trainee(loop, presenter):
     """Return a trainee with a keyboard, at the start menu."""
-    trainee = Trainee(loop, desk, Keys)
+    trainee = Trainee(loop, presenter, Keys)
     trainee.until_menu("start")
     yield trainee
     trainee.close()
@@ -96,8 +96,8 @@ def trainee(loop, desk):
 
 @pytest.fixture
 def running(loop, outside):
-    """Return a desk with SDL's gamepads."""
-    running = RunningDesk(loop, outside.surroundings, has_gamepad=True)
+    """Return a presenter with SDL's gamepads."""
+    running = RunningPresenter(loop, outside.services, has_gamepad=True)
     yield running
     running.close()
 
@@ -113,7 +113,7 @@ def pilot(loop, running, felt):
     """Return a trainee with a gamepad, at the start menu."""
     gamepad = VirtualGamepad(lambda *strengths: felt.append(strengths))
     gamepad.plug_in()
-    pilot = Trainee(loop, running.desk, lambda it: Pad(it, gamepad), running.advance)
+    pilot = Trainee(loop, running.presenter, lambda it: Pad(it, gamepad), running.advance)
     pilot.until_menu("start")
     yield pilot
     pilot.close()

@@ -7,11 +7,10 @@ import json
 import numpy as np
 import pytest
 
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.controls.bindings_file import FILE_NAME, read_bindings
-from rastrainer_simulator.controls.control_name import ControlName
-from rastrainer_simulator.flow.running_desk import RunningDesk
-from rastrainer_simulator.view_server.operator_desk import Hello
+from rastrainer_simulator.flow.running_presenter import RunningPresenter
+from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.net.views.presenter import Hello
 from Testing.simulator.flow.trainee import Keys
 
 
@@ -31,11 +30,11 @@ def test_unplugging_stops_the_robot_at_once_and_says_so_and_the_trial_goes_on(pi
     pilot.step(30)
     assert np.array_equal(tip(pilot), stopped)
     assert pilot.state.training.phase == "running"
-    assert "unplugged: the robot stands still" in pilot.desk.screen.warnings[0].text
-    assert pilot.desk.control.holder == ""
+    assert "unplugged: the robot stands still" in pilot.presenter.screen.warnings[0].text
+    assert pilot.presenter.control.holder == ""
     pilot.hands.plugged.plug_in()
     pilot.step(20)
-    assert pilot.desk.screen.warnings == ()
+    assert pilot.presenter.screen.warnings == ()
     pilot.hands.push(0.6, 0.0, 0.0, False)
     pilot.step(20)
     assert np.linalg.norm(tip(pilot) - stopped) > 0.002
@@ -66,16 +65,16 @@ def test_another_operator_takes_the_control_only_after_a_rest_and_by_the_menu(tr
     trainee.step(2)
     other.tap("touch")
     other.tap("menu")
-    assert trainee.desk.control.view == 1
+    assert trainee.presenter.control.view == 1
     assert trainee.state.training.rejected == 0
     assert trainee.state.training.phase == "running"
-    assert "The keyboard holds the control" in trainee.desk.screen.warnings[0].text
+    assert "The keyboard is in control" in trainee.presenter.screen.warnings[0].text
     trainee.hands.push(0.0, 0.0, 0.0, False)
     trainee.step(300)
     other.tap("touch")
-    assert trainee.desk.control.view == 1
+    assert trainee.presenter.control.view == 1
     other.tap("menu")
-    assert trainee.desk.control.view == 2
+    assert trainee.presenter.control.view == 2
     trainee.until_menu("trial")
     trainee.hands.tap("accept")
     trainee.step(5)
@@ -85,80 +84,80 @@ def test_another_operator_takes_the_control_only_after_a_rest_and_by_the_menu(tr
 def test_the_keyboard_and_the_gamepad_of_one_seat_share_the_control(pilot):
     keys = Keys(pilot, view=1)
     pilot.tap("down")
-    assert pilot.desk.control.holder == "gamepad"
+    assert pilot.presenter.control.holder == "gamepad"
     keys.tap("down")
-    assert pilot.desk.control.holder == "keyboard"
+    assert pilot.presenter.control.holder == "keyboard"
     pilot.tap("down")
-    assert pilot.desk.control.holder == "gamepad"
+    assert pilot.presenter.control.holder == "gamepad"
 
 
 def test_a_view_that_leaves_lets_the_arm_stand_still_and_gives_the_control_up(trainee):
     trainee.start("task-1")
     trainee.hands.push(1.0, 0.0, 0.0, False)
     trainee.step(20)
-    trainee.desk.view_left(1)
+    trainee.presenter.view_left(1)
     trainee.step()
     still = tip(trainee)
     trainee.step(20)
     assert np.array_equal(tip(trainee), still)
-    assert trainee.desk.control.holder == ""
+    assert trainee.presenter.control.holder == ""
 
 
 def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
     trainee.start("task-1")
-    trainee.desk.on_visibility(1, False)
+    trainee.presenter.on_visibility(1, False)
     trainee.until_menu("trial")
-    assert trainee.desk.control.holder == ""
+    assert trainee.presenter.control.holder == ""
     Keys(trainee, view=2, kind="page").tap("accept")
-    assert trainee.desk.control.view == 2
+    assert trainee.presenter.control.view == 2
     trainee.until_menu(None)
 
 
 @pytest.mark.parametrize(
     ("lose", "why"),
     [
-        (lambda desk: desk.view_left(1), "was closed or lost"),
-        (lambda desk: desk.on_visibility(1, False), "out of sight"),
-        (lambda desk: desk.on_silence(1), "the picture stood still"),
+        (lambda presenter: presenter.view_left(1), "was closed or lost"),
+        (lambda presenter: presenter.on_visibility(1, False), "out of sight"),
+        (lambda presenter: presenter.on_silence(1), "the picture stood still"),
     ],
 )
 def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_goes_on(trainee, lose, why):
     trainee.start("task-1")
-    lose(trainee.desk)
+    lose(trainee.presenter)
     trainee.until_menu("trial")
-    assert why in trainee.desk.screen.warnings[0].text
+    assert why in trainee.presenter.screen.warnings[0].text
     trainee.submit("Resume")
     trainee.until_menu(None)
     trainee.submit("Pause")
     trainee.until_menu("trial")
-    assert trainee.desk.screen.warnings == ()
+    assert trainee.presenter.screen.warnings == ()
 
 
 def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(trainee):
-    trainee.desk.view_left(1)
-    desk = trainee.desk
-    desk.view_joined(5, Hello("headset", "Quest 3", 90.0))
-    desk.on_press(5, "touch")
+    trainee.presenter.view_left(1)
+    presenter = trainee.presenter
+    presenter.view_joined(5, Hello("headset", "Quest 3", 90.0))
+    presenter.on_press(5, "touch")
     trainee.until_menu("introduction")
-    desk.on_press(5, "undo")
+    presenter.on_press(5, "undo")
     trainee.until_menu("start")
     trainee.start("task-1")
-    desk.on_sticks(5, (0.9, 0.0, 0.0), (0.0, 0.0), False)
+    presenter.on_sticks(5, (0.9, 0.0, 0.0), (0.0, 0.0), False)
     trainee.step(10)
-    desk.on_visibility(5, False)
+    presenter.on_visibility(5, False)
     trainee.until_menu("trial")
 
 
 def test_a_headset_that_came_back_as_another_view_is_the_one_that_is_worn(trainee):
-    desk = trainee.desk
+    presenter = trainee.presenter
     for view in (5, 6):
-        desk.view_joined(view, Hello("headset", "Quest 3", 90.0))
-        desk.on_silence(5)
+        presenter.view_joined(view, Hello("headset", "Quest 3", 90.0))
+        presenter.on_silence(5)
     trainee.start("task-1")
-    desk.view_left(5)
+    presenter.view_left(5)
     trainee.step(20)
     assert trainee.menu is None
-    desk.on_visibility(6, False)
+    presenter.on_visibility(6, False)
     trainee.until_menu("trial")
 
 
@@ -170,12 +169,12 @@ def test_a_control_is_given_a_free_key_and_keeps_it(trainee, outside):
     trainee.until_menu("bindings")
     trainee.step(20)
     assert trainee.item("touch").value == "T"
-    assert trainee.desk.screen.warnings[0].text == "Touch is now T."
-    saved = read_bindings(outside.surroundings.config / FILE_NAME)
+    assert trainee.presenter.screen.warnings[0].text == "Touch is now T."
+    saved = read_bindings(outside.services.config / BINDINGS_FILE)
     assert saved.keyboard[ControlName.TOUCH] == ("KeyT",)
     trainee.choose("defaults")
     trainee.step()
-    assert read_bindings(outside.surroundings.config / FILE_NAME) == DEFAULT_BINDINGS
+    assert read_bindings(outside.services.config / BINDINGS_FILE) == DEFAULT_BINDINGS
 
 
 @pytest.mark.parametrize("answer", ["exchange", "cancel"])
@@ -198,7 +197,7 @@ def test_nobody_pressing_anything_leaves_the_bindings_as_they_were(trainee):
     trainee.choose("undo")
     trainee.until_menu("listen")
     trainee.until_menu("bindings")
-    assert trainee.desk.controls.bindings == DEFAULT_BINDINGS
+    assert trainee.presenter.controls.bindings == DEFAULT_BINDINGS
 
 
 def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):
@@ -220,16 +219,16 @@ def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):
 
 
 def test_hostile_settings_files_are_told_and_the_defaults_used(loop, outside):
-    folder = outside.surroundings.config
+    folder = outside.services.config
     folder.mkdir()
-    (folder / FILE_NAME).write_text(json.dumps({"formatVersion": 1, "keyboard": {"touch": []}}))
+    (folder / BINDINGS_FILE).write_text(json.dumps({"formatVersion": 1, "keyboard": {"touch": []}}))
     (folder / "preferences.json").write_text("[" * 100_000)
-    running = RunningDesk(loop, outside.surroundings, has_gamepad=False)
+    running = RunningPresenter(loop, outside.services, has_gamepad=False)
     running.advance(0.01)
-    warnings = [message.text for message in running.desk.screen.warnings]
+    warnings = [message.text for message in running.presenter.screen.warnings]
     assert len(warnings) == 2
     assert all(text.endswith("The defaults are used.") for text in warnings)
-    assert running.desk.controls.bindings == DEFAULT_BINDINGS
+    assert running.presenter.controls.bindings == DEFAULT_BINDINGS
     running.close()
 
 

@@ -9,9 +9,14 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import TouchRule
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.flow.feedback import SENSATIONS, Happening, happening
-from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.net.views.feedback_event import (
+    FEEDBACK_EFFECTS,
+    FeedbackEvent,
+    feedback_event,
+)
 from rastrainer_simulator.state import Event, EventKind
 
 
@@ -24,21 +29,21 @@ def shared(setup):
     return Simulation(replace(setup, settings=replace(setup.settings, training=training)), 3)
 
 
-def happenings_of(loop):
+def feedback_events_of(loop):
     """Return a list that fills with what the loop's events mean."""
     heard = []
-    loop.subscribe(lambda result: heard.extend(filter(None, map(happening, result.events))))
+    loop.subscribe(lambda result: heard.extend(filter(None, map(feedback_event, result.events))))
     return heard
 
 
 def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(pilot, felt):
-    expected = happenings_of(pilot.loop)
+    expected = feedback_events_of(pilot.loop)
     # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
-    pilot.desk.subscribe(lambda _news: pilot.desk.rumble(0.0, 0.0))
+    pilot.presenter.subscribe(lambda _news: pilot.presenter.rumble(0.0, 0.0))
     pilot.start("task-1")
     truth = pilot.loop.truth
-    center = truth.in_world(truth.target) / 1000.0
-    top = truth.in_world(truth.fiducials["1"]) / 1000.0
+    center = truth.in_world(truth.target) / MM_PER_M
+    top = truth.in_world(truth.fiducials["1"]) / MM_PER_M
     outward = (top - center) / np.linalg.norm(top - center)
     pilot.steer_to(top + 0.06 * outward, 0.02)
     pilot.steer_to(top - 0.02 * outward, 0.001)
@@ -64,16 +69,16 @@ def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(
     assert counted["undo"] == counted["finish"] == 1
     assert counted["proximity-in"] == counted["proximity-out"] >= 1
     assert counted["contact"] == counted["contact-out"] >= 1
-    strengths = [SENSATIONS[each].rumble for each in expected]
+    strengths = [FEEDBACK_EFFECTS[each].rumble for each in expected]
     assert [low for low, _ in felt if low > 0.0] == pytest.approx(strengths, abs=1e-4)
     numbers = [feedback.number for feedback in pilot.watcher.feedbacks]
     assert numbers == list(range(1, len(numbers) + 1))
 
 
 def test_every_sound_that_is_named_comes_with_rastrainer():
-    sounds = {sensation.sound for sensation in SENSATIONS.values()} - {""}
+    sounds = {effect.sound for effect in FEEDBACK_EFFECTS.values()} - {""}
     assert sounds == {path.stem for path in asset_path("sounds").glob("*.wav")}
-    assert set(SENSATIONS) == set(Happening)
+    assert set(FEEDBACK_EFFECTS) == set(FeedbackEvent)
 
 
 def test_muted_sounds_have_no_volume(trainee):
@@ -92,12 +97,12 @@ def test_muted_sounds_have_no_volume(trainee):
 @pytest.mark.parametrize(
     ("kind", "data", "meant"),
     [
-        (EventKind.REJECTED, {}, Happening.ERROR),
-        (EventKind.PROXIMITY, {"from": "free", "to": "contact"}, Happening.CONTACT),
-        (EventKind.PROXIMITY, {"from": "contact", "to": "free"}, Happening.PROXIMITY_OUT),
+        (EventKind.REJECTED, {}, FeedbackEvent.ERROR),
+        (EventKind.PROXIMITY, {"from": "free", "to": "contact"}, FeedbackEvent.CONTACT),
+        (EventKind.PROXIMITY, {"from": "contact", "to": "free"}, FeedbackEvent.PROXIMITY_OUT),
         (EventKind.PHASE, {"phase": "paused"}, None),
         (EventKind.CAMERA, {"camera": "far"}, None),
     ],
 )
 def test_what_an_event_means(kind, data, meant):
-    assert happening(Event(kind, 0.0, data)) is meant
+    assert feedback_event(Event(kind, 0.0, data)) is meant

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import CommandName, Phase, check_arguments
-from rastrainer_simulator.control_loop import ControlLoop
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.flow.desk import Desk
-from rastrainer_simulator.flow.preferences import Preferences
-from rastrainer_simulator.record.interrupted_trial import find_interrupted
+from rastrainer_simulator.core.interrupted_trial import find_interrupted
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.loop.control_loop import ControlLoop
 from Testing.simulator.flow.conftest import put_back
 from Testing.simulator.flow.trainee import Keys, Trainee
 
 SENTENCES = {
-    "en": "P07, this trial was interrupted; 0 of 15 points are kept. Go on with point 1 when you "
-    "are ready, or abort it.",
+    "en": "P07, this trial was interrupted; 0 of 15 points are kept. Continue with point 1 when "
+    "you are ready, or abort it.",
     "de": "P07, dieser Versuch wurde unterbrochen; 0 von 15 Punkten sind gesichert. Mach mit Punkt "
     "1 weiter, wenn du bereit bist, oder brich ihn ab.",
 }
@@ -42,14 +42,14 @@ def language(request):
 def back(shared, records, outside, language):
     """A trainee at the restarted simulator."""
     reading, interrupted = find_interrupted(records)
-    shared.take_up(interrupted)
+    shared.resume_trial(interrupted)
     with ControlLoop(shared, records, speed=None, interrupted=reading) as loop:
         preferences = Preferences(language=language)
-        desk = Desk(loop, outside.surroundings, DEFAULT_BINDINGS, preferences)
-        trainee = Trainee(loop, desk, Keys)
+        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+        trainee = Trainee(loop, presenter, Keys)
         yield trainee
         trainee.close()
-        desk.close()
+        presenter.close()
 
 
 def journal(records):
@@ -59,11 +59,11 @@ def journal(records):
 
 def test_the_menu_tells_what_is_kept_and_going_on_leads_to_the_next_point(back, records, language):
     back.until_menu("trial")
-    assert SENTENCES[language] in [warning.text for warning in back.desk.screen.warnings]
+    assert SENTENCES[language] in [warning.text for warning in back.presenter.screen.warnings]
     back.choose("resume")
     back.until_menu(None)
     assert back.state.training.phase is Phase.RUNNING
-    assert "1" in back.desk.screen.instruction.text
+    assert "1" in back.presenter.screen.instruction.text
     assert journal(records).of_kind("continued")
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.flow.preferences import (
+from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.flow.session.preferences import (
     OF_THE_SIMULATION,
     OPTIONS,
     Preferences,
     read_preferences,
     write_preferences,
 )
-from rastrainer_simulator.settings import SimulationSettings
 from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rastrainer.journal.journal_line import NO_LINE, encode_line
-from rastrainer_simulator.flow.progress import DoneTasks
+from rastrainer.journal.journal_file import NO_LINE, encode_line
+from rastrainer_simulator.flow.session.progress import DoneTasks
 
 HEAD = "colin27"
 ORDER = ("trial-run", "task-1", "task-2")

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 
-from rastrainer.experiment.study_step import StudyStep
-from rastrainer_simulator.control_loop import ControlLoop
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.flow.desk import Desk
-from rastrainer_simulator.flow.preferences import Preferences
-from rastrainer_simulator.flow.screen import screen_to_json
-from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.view_server.operator_desk import Hello
+from rastrainer.journal.replay_track import read_track
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.views.presenter import Hello
+from rastrainer_simulator.net.views.screen import screen_to_json
+from rastrainer_simulator.replay import recorded_trial
 from Testing.simulator.flow.conftest import Outside
 from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
 from Testing.simulator.flow.trainee import STEP_S, Keys, Trainee
@@ -27,29 +31,29 @@ class Place(Trainee):
     """A trainee with a keyboard, who plays trials in which every touch counts.
 
     Attributes:
-        outside: what the desk is told of the process around it.
+        outside: what the presenter is told of the process around it.
         shown: the states that the views were told.
     """
 
-    def __init__(self, loop, desk, outside):
+    def __init__(self, loop, presenter, outside):
         self.outside, self.shown = outside, []
-        desk.projector.subscribe(lambda result: self.shown.append(result.state))
-        super().__init__(loop, desk, Keys)
+        presenter.shown.subscribe(lambda result: self.shown.append(result.state))
+        super().__init__(loop, presenter, Keys)
 
     @property
     def journal(self):
-        records = self.outside.surroundings.records
+        records = self.outside.services.records
         (path,) = records.glob(f"*_{self.state.training.trial_id}.journal")
         return path
 
     @property
     def replay(self):
-        return self.desk.projector.latest
+        return self.presenter.shown.latest
 
     @property
     def seconds(self):
-        """Where in the film it is, as the trainee reads it."""
-        minutes, seconds = self.desk.screen.status[0].split(" / ")[0].split(":")
+        """Where in the trial it is, as the trainee reads it."""
+        minutes, seconds = self.presenter.screen.status[0].split(" / ")[0].split(":")
         return 60 * int(minutes) + int(seconds)
 
     def play_and_be_scored(self):
@@ -75,7 +79,7 @@ class Place(Trainee):
     def pad(self, *buttons):
         """Press buttons of a gamepad that the page's browser reads."""
         for held in (buttons, ()):
-            self.desk.on_pad(PAGE, [], [float(number in held) for number in range(17)])
+            self.presenter.on_pad(PAGE, [], [float(number in held) for number in range(17)])
             self.step()
 
 
@@ -83,15 +87,15 @@ class Place(Trainee):
 def place(anywhere, tmp_path_factory):
     """A place at which a trial has been scored."""
     outside = Outside(tmp_path_factory.mktemp("replay"))
-    records = outside.surroundings.records
+    records = outside.services.records
     with ControlLoop(Simulation(anywhere, 3), records, speed=None) as loop:
-        desk = Desk(loop, outside.surroundings, DEFAULT_BINDINGS, Preferences())
-        place = Place(loop, desk, outside)
+        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+        place = Place(loop, presenter, outside)
         place.until_menu("start")
         place.play_and_be_scored()
         yield place
         place.close()
-        desk.close()
+        presenter.close()
 
 
 @pytest.fixture
@@ -109,7 +113,7 @@ def test_the_trial_is_shown_again_to_the_views_while_the_arm_stands(result):
     result.show_again()
     result.shown.clear()
     result.until(lambda: len(result.replay.training.touches) == 3, "the third touch")
-    assert result.desk.screen.instruction.text == "Task 1 of P07, shown again"
+    assert result.presenter.screen.instruction.text == "Task 1 of P07, shown again"
     tips = {tuple(state.tool_tip_to_world[:3, 3]) for state in result.shown}
     assert len(tips) > 50
     assert {state.training.phase for state in result.shown} == {"running"}
@@ -129,13 +133,13 @@ def test_what_was_heard_and_felt_is_heard_and_felt_again(result):
 
 def test_the_worst_touch_is_shown_at_half_speed_up_to_the_touch(result):
     result.show_again("worst")
-    words = result.desk.screen.instruction.text.split()
+    words = result.presenter.screen.instruction.text.split()
     assert (words[0], words[2:]) == ("Point", ["the", "worst", "touch,", "at", "half", "speed"])
     before = result.replay.sim_time
     result.step(50)
     frame_s = 1.0 / 60.0
     assert result.replay.sim_time - before == pytest.approx(25 * STEP_S, abs=frame_s)
-    result.until(lambda: "Paused" in result.desk.screen.status, "the end")
+    result.until(lambda: "Paused" in result.presenter.screen.status, "the end")
     assert result.replay.training.touches[-1].label == words[1].strip(",")
 
 
@@ -151,13 +155,13 @@ def test_it_is_played_and_sought_by_the_keys_of_the_replay_command(result):
     stands = result.replay.tick
     result.step(50)
     assert result.replay.tick == stands
-    assert "Paused" in result.desk.screen.status
+    assert "Paused" in result.presenter.screen.status
     camera = result.replay.camera
     result.hands.key("KeyC")
     assert {camera, result.replay.camera} == {"close-up", "far"}
     result.hands.key("KeyT")
     result.step(20)
-    assert "the worst touch" in result.desk.screen.instruction.text
+    assert "the worst touch" in result.presenter.screen.instruction.text
     result.hands.key("KeyM")
     result.until_menu("result")
 
@@ -174,52 +178,52 @@ def test_sticks_and_touches_do_nothing_to_the_arm_meanwhile(result):
 
 
 def test_only_who_holds_the_control_steers_until_another_takes_it_over(result):
-    desk = result.desk
-    desk.view_joined(PAGE, Hello("page"))
+    presenter = result.presenter
+    presenter.view_joined(PAGE, Hello("page"))
     result.show_again()
     result.pad(A)
     result.step(20)
-    assert "Paused" not in desk.screen.status
-    assert "holds the control" in desk.screen.warnings[-1].text
+    assert "Paused" not in presenter.screen.status
+    assert "is in control" in presenter.screen.warnings[-1].text
     result.step(300)
     result.pad(START)
     result.pad(A)
     result.step(20)
-    assert "Paused" in desk.screen.status
+    assert "Paused" in presenter.screen.status
     result.pad(X)
     result.step(20)
-    assert "the worst touch" in desk.screen.instruction.text
+    assert "the worst touch" in presenter.screen.instruction.text
     result.pad(B)
     result.until_menu("result")
-    desk.view_left(PAGE)
+    presenter.view_left(PAGE)
 
 
 def test_a_headset_steps_through_it_by_stick_and_leaves_by_the_button_that_goes_back(result):
-    desk = result.desk
-    desk.view_left(1)
-    desk.view_joined(PAGE, Hello("headset"))
-    desk.on_item(PAGE, "replay")
+    presenter = result.presenter
+    presenter.view_left(1)
+    presenter.view_joined(PAGE, Hello("headset"))
+    presenter.on_item(PAGE, "replay")
     result.until_menu(None)
-    assert screen_to_json(desk.screen)["is_stepped"]
+    assert screen_to_json(presenter.screen)["is_stepped"]
     for control, seconds in (("right", 5), ("left", 0)):
-        desk.on_press(PAGE, control)
+        presenter.on_press(PAGE, control)
         result.step(20)
         assert result.seconds == seconds
-    desk.on_press(PAGE, "up")
+    presenter.on_press(PAGE, "up")
     result.step(20)
-    assert "the worst touch" in desk.screen.instruction.text
-    assert ("Stick up", "Worst touch") in [(h.control, h.action) for h in desk.screen.hints]
-    desk.on_visibility(PAGE, False)
+    assert "the worst touch" in presenter.screen.instruction.text
+    assert ("Stick up", "Worst touch") in [(h.control, h.action) for h in presenter.screen.hints]
+    presenter.on_visibility(PAGE, False)
     result.step(20)
-    assert "Paused" in desk.screen.status
-    desk.on_press(PAGE, "undo")
+    assert "Paused" in presenter.screen.status
+    presenter.on_press(PAGE, "undo")
     result.until_menu("result")
-    desk.view_left(PAGE)
-    desk.view_joined(1, Hello("desktop"))
+    presenter.view_left(PAGE)
+    presenter.view_joined(1, Hello("desktop"))
 
 
 def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(result):
-    study = result.outside.surroundings.study
+    study = result.outside.services.study
     study.take(StudyStep("P07", "break", 4, 9, minutes=5.0))
     result.step(20)
     assert result.menu.facts[0].value == "81 / 100"
@@ -246,21 +250,28 @@ def test_a_trial_that_slicer_starts_ends_it_and_is_what_the_views_show(place):
     before = place.state.training.trial_id
     assert place.submit("StartTask", task="task-2", trainee="T-99").ok
     told = "T-99, touch point 1."
-    place.until(lambda: place.desk.screen.instruction.text == told, "the trial's screen")
+    place.until(lambda: place.presenter.screen.instruction.text == told, "the trial's screen")
     assert place.replay is place.loop.latest
     assert place.state.training.trial_id != before
     place.submit("Abort")
     place.until_menu("experiment")
 
 
-def test_until_the_film_is_made_its_progress_is_shown_and_one_can_go_back(place):
+def test_until_the_trial_is_loaded_the_views_say_so_and_one_can_go_back(place, monkeypatch):
+    may_load = threading.Event()
+
+    def read(path, rest):
+        may_load.wait(30)
+        return read_track(path, rest)
+
+    monkeypatch.setattr(recorded_trial, "read_track", read)
     place.play_and_be_scored()
     place.choose("replay")
     place.until_menu("replay")
-    assert place.menu.title == "Your trial is simulated again"
-    assert place.menu.facts[0].value.endswith(" %")
+    assert place.menu.title == "Your trial is being loaded"
     place.tap("accept")
     place.until_menu("result")
+    may_load.set()
     place.submit("StartTask", task="task-1", trainee="P07")
     place.submit("Abort")
     place.until_menu("experiment")
@@ -268,8 +279,8 @@ def test_until_the_film_is_made_its_progress_is_shown_and_one_can_go_back(place)
 
 def test_a_trial_whose_journal_has_gone_is_told_of_in_one_sentence(place):
     place.play_and_be_scored()
-    place.journal.rename(place.outside.surroundings.config.with_name("elsewhere"))
+    place.journal.rename(place.outside.services.config.with_name("elsewhere"))
     place.choose("replay")
     place.step(20)
     assert place.menu.name == "result"
-    assert "its journal is not in the folder" in place.desk.screen.warnings[-1].text
+    assert "its journal is not in the folder" in place.presenter.screen.warnings[-1].text

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.flow.screen import Tone
-from rastrainer_simulator.texts.german import GERMAN
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.ops.texts.german import GERMAN
+from rastrainer_simulator.ops.texts.texts import Texts
+from Testing.simulator.flow.conftest import Outside, put_back
+from Testing.simulator.flow.trainee import Keys, Trainee
 
 REGISTRATION = {
     "matrix": (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
@@ -21,11 +27,15 @@ GENERAL = {
 }
 
 
-@pytest.fixture
-def result_of(trainee):
-    """Play a trial, have it scored with these details, and return the menu of the result."""
-
-    def show(score=95.0, **details):
+@pytest.fixture(scope="module")
+def registered(shared, tmp_path_factory):
+    """Return a trainee who waits for the score of a trial that was played."""
+    folder = tmp_path_factory.mktemp("played")
+    put_back(shared)
+    with ControlLoop(shared, folder / "records", speed=None) as loop:
+        presenter = FlowPresenter(loop, Outside(folder).services, DEFAULT_BINDINGS, Preferences())
+        trainee = Trainee(loop, presenter, Keys)
+        trainee.until_menu("start")
         trainee.start("task-1")
         trainee.play("task-1")
         trainee.tap("touch")
@@ -34,9 +44,23 @@ def result_of(trainee):
         trainee.until_menu("waiting")
         trial = trainee.state.training.trial_id
         assert trainee.submit("SubmitRegistration", trialId=trial, **REGISTRATION).ok
-        assert trainee.submit("TrialScored", trialId=trial, score=score, details=details).ok
-        trainee.until_menu("result")
-        return trainee.menu
+        yield trainee
+        trainee.close()
+        presenter.close()
+
+
+@pytest.fixture
+def result_of(registered):
+    """Have the trial scored, again, with these details, and return the menu of the result."""
+
+    def show(score=95.0, **details):
+        trial = registered.state.training.trial_id
+        assert registered.submit("TrialScored", trialId=trial, score=score, details=details).ok
+        told = lambda: registered.state.training.result  # noqa: E731
+        registered.until(lambda: told() is not None and told().details == details, "the score")
+        registered.until_menu("result")
+        registered.step(100)
+        return registered.menu
 
     return show
 

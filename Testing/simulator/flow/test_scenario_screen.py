@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.scenario_library import ListedScenario
+from rastrainer.scenario.library import ListedScenario
 from rastrainer_simulator.state import Answer
 
 
@@ -25,7 +25,7 @@ def at_heads(heads, trainee):  # noqa: ARG001
         trainee.until_menu(menu)
         trainee.choose(item)
     trainee.until_menu("experiment")
-    trainee.desk.on_text(1, "trainee", "P07")
+    trainee.presenter.on_text(1, "trainee", "P07")
     trainee.step()
     assert trainee.item("scenario").value == "Colin27 head"
     trainee.choose("scenario")
@@ -62,8 +62,8 @@ def test_a_head_that_is_refused_leaves_everything_and_says_why(at_heads, heads):
     at_heads.choose("head mine")
     at_heads.step()
     heads.loads[0][1].set_result(Answer(0, False, "A trial is open."))
-    at_heads.until(lambda: at_heads.desk.screen.warnings, "the reason")
-    assert [warning.text for warning in at_heads.desk.screen.warnings] == ["A trial is open."]
+    at_heads.until(lambda: at_heads.presenter.screen.warnings, "the reason")
+    assert [warning.text for warning in at_heads.presenter.screen.warnings] == ["A trial is open."]
     assert at_heads.menu.name == "scenario"
 
 

@@ -6,16 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.experiment.step_answers import StepAnswers
-from rastrainer.experiment.study_step import StudyStep
-from rastrainer_simulator.flow.study_guide import ANSWERED, MOST_TRAINEES, StudyGuide
+from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
+from rastrainer_simulator.flow.session.study_steps import ANSWERED, MOST_TRAINEES, StudySteps
 
 TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
 
 
 @pytest.fixture
 def guide(outside):
-    return outside.surroundings.study
+    return outside.services.study
 
 
 @pytest.fixture
@@ -27,7 +26,7 @@ def menu(trainee):
     trainee.until_menu("controls")
     trainee.choose("next")
     trainee.until_menu("experiment")
-    trainee.desk.on_text(1, "trainee", "P07")
+    trainee.presenter.on_text(1, "trainee", "P07")
     trainee.step()
     return trainee
 
@@ -111,7 +110,7 @@ def test_the_trial_run_lasts_for_what_is_left_of_the_studys_minutes(menu, guide)
     menu.choose("trial-run")
     menu.until_menu(None)
     # Time goes on while the disk keeps the start.
-    assert menu.desk.screen.status[2].startswith(("02:00", "01:5"))
+    assert menu.presenter.screen.status[2].startswith(("02:00", "01:5"))
 
 
 def test_the_trial_run_is_over_when_the_studys_minutes_are_though_slicer_went_on_before(
@@ -122,7 +121,7 @@ def test_the_trial_run_is_over_when_the_studys_minutes_are_though_slicer_went_on
     menu.until_menu(None)
     guide.take(TASK_2)
     menu.until_menu("practice")
-    assert "end the trial run to go on with the study" in menu.menu.paragraphs[0]
+    assert "end the trial run to continue the study" in menu.menu.paragraphs[0]
     menu.choose("finish")
     menu.until_menu("experiment")
     assert enabled(menu) == ["task-2"]
@@ -152,11 +151,11 @@ def test_a_questionnaire_is_answered_line_by_line_and_handed_over_only_when_all_
     for number in range(1, 10):
         mark(form, number, "right", "right")
     assert not form.item("keep").is_enabled
-    assert guide.untaken_answers() == ()
+    assert guide.unacknowledged_answers() == ()
     mark(form, 10, "left", "left", "left")
     form.choose("keep")
     form.until_menu("experiment")
-    (answers,) = guide.untaken_answers()
+    (answers,) = guide.unacknowledged_answers()
     assert answers == StepAnswers("P07", 5, "sus", (2,) * 9 + (3,))
     assert form.menu.paragraphs == (
         "Your answers to SUS are on their way to 3D Slicer, which will say what comes next.",
@@ -173,7 +172,7 @@ def test_a_questionnaire_is_answered_line_by_line_and_handed_over_only_when_all_
 def test_the_line_of_performance_says_that_its_ends_are_its_own(
     menu, guide, language, performance, effort
 ):
-    session = menu.desk._session
+    session = menu.presenter._session
     session.prefer(replace(session.preferences, language=language))
     tell(menu, guide, replace(SUS, questionnaire="nasa-tlx"))
     menu.choose("answer")
@@ -185,10 +184,10 @@ def test_answers_wait_until_slicer_goes_on_and_are_forgotten_then(guide):
     guide.take(SUS)
     guide.answer("P07", [3] * 10)
     guide.take(SUS)
-    assert [answers.number for answers in guide.untaken_answers()] == [5]
+    assert [answers.number for answers in guide.unacknowledged_answers()] == [5]
     assert guide.step_of("P07").kind == ANSWERED
     guide.take(TASK_2)
-    assert (guide.untaken_answers(), guide.step_of("P07")) == ((), TASK_2)
+    assert (guide.unacknowledged_answers(), guide.step_of("P07")) == ((), TASK_2)
 
 
 def test_a_form_closes_when_the_study_goes_on_without_it(form, guide):
@@ -201,12 +200,12 @@ def test_a_questionnaire_that_this_version_does_not_know_is_said(menu, guide):
     tell(menu, guide, replace(SUS, questionnaire="dance"))
     menu.choose("answer")
     menu.step(20)
-    assert any("There is no questionnaire" in w.text for w in menu.desk.screen.warnings)
+    assert any("There is no questionnaire" in w.text for w in menu.presenter.screen.warnings)
 
 
 def test_a_break_is_counted_down_from_what_was_over_when_it_was_told():
     now = [100.0]
-    guide = StudyGuide(lambda: now[0])
+    guide = StudySteps(lambda: now[0])
     guide.take(StudyStep("P07", "break", 4, 9, minutes=10.0, over=4.0))
     now[0] += 59.0
     assert guide.break_left_s("P07") == 301.0
@@ -226,7 +225,7 @@ def test_a_trial_that_was_asked_for_is_not_begun_twice_before_slicer_says_what_f
 
 
 def test_the_guide_forgets_the_oldest_news_and_keeps_no_more_than_it_may():
-    guide = StudyGuide()
+    guide = StudySteps()
     for number in range(MOST_TRAINEES + 5):
         guide.take(StudyStep(f"P{number}", "all-done", 1, 1))
     assert guide.step_of("P4") is None

@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from rastrainer_simulator.flow.way import Way, direction_words
+from rastrainer_simulator.flow.path_arc import PathArc, direction_words
 from rastrainer_simulator.teleoperation.axes import ROBOT_AXES
 
-WAY = Way(center=(0.5, 0.0, 0.2), start=(0.6, 0.0, 0.2), end=(0.5, 0.1, 0.2))
+WAY = PathArc(center=(0.5, 0.0, 0.2), start=(0.6, 0.0, 0.2), end=(0.5, 0.1, 0.2))
 
 
 def around(angle_deg, height=0.0, lift=1.0):
@@ -37,7 +37,7 @@ def test_before_the_start_and_past_the_end_the_nearer_one_counts():
 
 
 def test_a_way_of_no_length_is_a_point():
-    way = Way(WAY.center, WAY.start, WAY.start)
+    way = PathArc(WAY.center, WAY.start, WAY.start)
     assert way.beside(around(40)) == pytest.approx(0.1 * math.radians(40))
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.feedback.wording import say
-from rastrainer.journal.journal_reader import Integrity, read_journal
-from rastrainer_simulator.flow.screen import Tone
-from rastrainer_simulator.record.replay import replay
+from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.trial.wording import say
+from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.replay.resimulation import replay
 
 ABOVE = say("touch above", depth=1.25)
 REGISTRATION = {

@@ -1,4 +1,4 @@
-"""A trainee at a desk: presses keys, reads the screen, and steers the tool by the sticks."""
+"""A trainee at a presenter: presses keys, reads the screen, and steers the tool by the sticks."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Protocol
 import numpy as np
 
 from rastrainer.protocol import Phase, Proximity, check_arguments
-from rastrainer_simulator.flow.screen import Screen
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
+from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.teleoperation.axes import camera_axes
 from rastrainer_simulator.vectors import dot
-from rastrainer_simulator.view_server.operator_desk import Control, Feedback, Hello
 
 PATIENCE_S = 40.0
 TICKS_A_STEP = 2
 STEP_S = 0.004 * TICKS_A_STEP
 MOST_STEPS = 2000
-MM = 1000.0
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 LIFT_M = 0.035
@@ -37,12 +37,12 @@ class Hands(Protocol):
 
 
 class Watcher:
-    """Keeps everything that a desk tells."""
+    """Keeps everything that a presenter tells."""
 
-    def __init__(self, desk):
+    def __init__(self, presenter):
         self.screens, self.feedbacks, self.controls = [], [], []
         kept = {Screen: self.screens, Feedback: self.feedbacks, Control: self.controls}
-        desk.subscribe(lambda news: kept[type(news)].append(news))
+        presenter.subscribe(lambda news: kept[type(news)].append(news))
 
     @property
     def kinds(self):
@@ -78,14 +78,14 @@ class Trainee:
 
     Args:
         loop: a control loop that ticks as fast as it can.
-        desk: its desk.
+        presenter: its presenter.
         make_hands: gives what the trainee works with.
-        advance: lets the desk, and what belongs to it, go on for some seconds.
+        advance: lets the presenter, and what belongs to it, go on for some seconds.
     """
 
-    def __init__(self, loop, desk, make_hands, advance: Callable[[float], None] | None = None):
-        self.loop, self.desk, self._advance = loop, desk, advance or desk.advance
-        self.watcher = Watcher(desk)
+    def __init__(self, loop, presenter, make_hands, advance: Callable[[float], None] | None = None):
+        self.loop, self.presenter, self._advance = loop, presenter, advance or presenter.advance
+        self.watcher = Watcher(presenter)
         self._lock_step = LockStep(loop)
         self.hands: Hands = make_hands(self)
 
@@ -94,14 +94,14 @@ class Trainee:
 
     @property
     def menu(self):
-        return self.desk.screen.menu
+        return self.presenter.screen.menu
 
     @property
     def state(self):
         return self.loop.latest
 
     def step(self, count: int = 1) -> None:
-        """Let the desk go on for `count` steps, and the loop with it."""
+        """Let the presenter go on for `count` steps, and the loop with it."""
         for _ in range(count):
             self._advance(STEP_S)
             self._lock_step.ticks(TICKS_A_STEP)
@@ -116,7 +116,7 @@ class Trainee:
             if steps > MOST_STEPS:
                 # What must be on the disk before it is told takes the disk's own time.
                 time.sleep(0.005)
-                assert time.monotonic() < give_up, f"no {what}; the screen: {self.desk.screen}"
+                assert time.monotonic() < give_up, f"no {what}; the screen: {self.presenter.screen}"
 
     def until_menu(self, name: str | None) -> None:
         """Step until a menu of that name is open, or none."""
@@ -203,15 +203,15 @@ class Trainee:
     def play(self, task: str) -> None:
         """Touch all points of the trial that runs, as the head stands in it."""
         truth = self.loop.truth
-        center = truth.in_world(truth.target) / MM
+        center = truth.in_world(truth.target) / MM_PER_M
         for label in [str(number) for number in range(1, 16)]:
-            self.touch(truth.in_world(truth.fiducials[label]) / MM, center)
+            self.touch(truth.in_world(truth.fiducials[label]) / MM_PER_M, center)
         assert self.state.training.phase is Phase.COMPLETE, task
         self.step(2)
 
 
 class Keys:
-    """A keyboard: what it types goes to the desk as a view sends it."""
+    """A keyboard: what it types goes to the presenter as a view sends it."""
 
     CODES: Mapping[str, str] = {
         "accept": "Enter",
@@ -231,16 +231,16 @@ class Keys:
     def __init__(self, trainee: Trainee, view: int = 1, kind: str = "desktop"):
         self._trainee, self._view = trainee, view
         self._held: set[str] = set()
-        trainee.desk.view_joined(view, Hello(kind))
+        trainee.presenter.view_joined(view, Hello(kind))
 
     def tap(self, control: str) -> None:
         self.key(self.CODES[control])
 
     def key(self, code: str, text: str = "") -> None:
-        desk = self._trainee.desk
-        desk.on_key(self._view, code, True, text)
+        presenter = self._trainee.presenter
+        presenter.on_key(self._view, code, True, text)
         self._trainee.step()
-        desk.on_key(self._view, code, False, "")
+        presenter.on_key(self._view, code, False, "")
         self._trainee.step()
 
     def type(self, text: str) -> None:
@@ -255,9 +255,9 @@ class Keys:
             if abs(value) > 0.5 * longest > 0.0:
                 wanted.add(above if value > 0.0 else below)
         for code in self._held - wanted:
-            self._trainee.desk.on_key(self._view, code, False, "")
+            self._trainee.presenter.on_key(self._view, code, False, "")
         for code in wanted - self._held:
-            self._trainee.desk.on_key(self._view, code, True, "")
+            self._trainee.presenter.on_key(self._view, code, True, "")
         self._held = wanted
 
 

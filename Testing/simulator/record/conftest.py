@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.core.simulation import Simulation
 
 
 @pytest.fixture(scope="module")

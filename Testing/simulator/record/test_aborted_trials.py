@@ -8,17 +8,17 @@ import shutil
 
 import pytest
 
-from rastrainer.aborted_trial import AbortedTrial
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import KEPT_AFTER_S, CommandName, Phase
-from rastrainer.trial_record import TrialRecord
-from rastrainer_simulator.control_loop import ControlLoop
-from rastrainer_simulator.record.interrupted_trial import find_interrupted
-from rastrainer_simulator.record.left_trial import left_trial
-from rastrainer_simulator.record.replay import replay
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.interrupted_trial import find_interrupted
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.record.aborted_archive import left_trial
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
-from rastrainer_simulator.simulation import Simulation
+from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.record.test_interrupted_trial import Server, cut
 
 
@@ -242,7 +242,7 @@ def test_a_journal_left_at_any_byte_tells_every_touch_that_is_whole(simulation, 
         record = left_trial(read_journal(path))
         assert (record is None) == (found is None)
         if found is not None:
-            simulation.take_up(found[1])
+            simulation.resume_trial(found[1])
             touches = simulation.state.training.touches
             assert [point.label for point in record.points] == [each.label for each in touches]
             archive = TrialArchive(folder)

@@ -3,14 +3,13 @@
 import pytest
 
 from rastrainer.protocol import CommandName
-from rastrainer.revealed_truth import RevealedTruth
-from rastrainer.scoring import LONG_PAUSE_S
-from rastrainer.scripted_trainee import Skill
-from rastrainer.trial_analysis import analyze_trial
-from rastrainer_simulator.operator_input import HANDS_OFF, Command, OperatorInput
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.scoring import LONG_PAUSE_S
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.virtual_trial import play_virtual_trial
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
 
 DT = 0.02
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)
@@ -18,7 +17,8 @@ WAIT_S = LONG_PAUSE_S + 5.0
 
 
 PAUSE, RESUME = (
-    OperatorInput(commands=(Command(name, {}),)) for name in (CommandName.PAUSE, CommandName.RESUME)
+    OperatorInput(commands=(OperatorCommand(name, {}),))
+    for name in (CommandName.PAUSE, CommandName.RESUME)
 )
 IDLE = [HANDS_OFF] * round(WAIT_S / DT)
 ROUND_TRIP = [

@@ -8,15 +8,15 @@ from types import SimpleNamespace
 
 import pytest
 
-from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import CommandName, Phase, check_arguments
-from rastrainer.study import Study
-from rastrainer.trial_record import TrialRecord
-from rastrainer_simulator.control_loop import ControlLoop
-from rastrainer_simulator.record import stamps
-from rastrainer_simulator.record.interrupted_trial import find_interrupted
-from rastrainer_simulator.record.replay import replay
+from rastrainer.study.database.study import Study
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.interrupted_trial import find_interrupted
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.ops import stamps
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.replay.resimulation import replay
 
 PATIENCE_S = 30.0
 

@@ -10,12 +10,12 @@ PLAY_THE_FIRST_TRIAL = """
 import json, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from rastrainer.scripted_trainee import Skill
+from rastrainer_simulator.virtual.scripted_trainee import Skill
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
-from rastrainer_simulator.setup import load_setup
-from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.virtual_trial import play_virtual_trial
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=3)
 with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(1) as writer:

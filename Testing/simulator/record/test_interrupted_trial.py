@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
-from rastrainer.trial_record import TrialRecord
-from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer.trial.record import TrialRecord
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
+from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.record.interrupted_trial import InterruptedTrial, find_interrupted
-from rastrainer_simulator.record.replay import replay
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.replay.resimulation import replay
 
 PATIENCE_S = 30.0
 
@@ -32,7 +33,7 @@ class Server:
         reading = None
         if found is not None:
             reading, interrupted = found
-            simulation.take_up(interrupted)
+            simulation.resume_trial(interrupted)
         self.loop = ControlLoop(simulation, folder, speed=None, interrupted=reading)
         self.folder = folder
         self.taken_up = self.loop.latest
@@ -149,7 +150,7 @@ def test_a_journal_cut_at_any_byte_is_taken_up_with_every_touch_that_is_whole(si
             assert found is None
             continue
         kept = [touch.label for touch in Recording.of(entries).trajectory().touches]
-        simulation.take_up(found[1])
+        simulation.resume_trial(found[1])
         training = simulation.state.training
         assert training.phase is Phase.PAUSED
         assert [touch.label for touch in training.touches] == kept
@@ -219,7 +220,7 @@ def test_a_trial_interrupted_while_the_tool_is_pressed_in_goes_on_unpressed_and_
             server.move((0.0, 0.0, -0.6), 10)
         # Until a sample tells what the stick has pressed before it was let go.
         server.move((0.0, 0.0, 0.0), 20)
-        pressed_mm = 1000.0 * server.loop.latest.depth
+        pressed_mm = MM_PER_M * server.loop.latest.depth
     with Server(simulation, tmp_path) as server:
         assert server.taken_up.proximity is Proximity.CONTACT
         assert server.taken_up.depth == 0.0

@@ -12,8 +12,13 @@ import sys
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
-from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.journal.journal_file import (
+    FORMAT,
+    FORMAT_VERSION,
+    LINES_A_REST,
+    Integrity,
+    read_journal,
+)
 from rastrainer_simulator.record.journal import Journal, RecordError
 
 HEADER = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, "trialId": "T"}
@@ -238,3 +243,13 @@ for i in range(100_000):
         touched = [entry["i"] for entry in reading.entries if entry["kind"] == "touch"]
         assert reading.integrity is Integrity.CUT_SHORT
         assert touched[:acknowledged] == list(range(9, last + 1, 10))
+
+
+def test_a_reader_rests_every_few_lines_and_reads_the_same(tmp_path):
+    path, rests = tmp_path / "long.journal", []
+    samples = [{"kind": "sample", "i": i} for i in range(1000)]
+    Journal(path).write([TRIAL[0], *samples, TRIAL[-1]], sync=False)
+    reading = read_journal(path, lambda: rests.append(None))
+    assert len(rests) == 1002 // LINES_A_REST
+    assert reading == read_journal(path)
+    assert reading.integrity is Integrity.INTACT

@@ -12,11 +12,11 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName
-from rastrainer_simulator import server
-from rastrainer_simulator.cli import main
-from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.records_folder import RecordsFolder
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.server import server
 from Testing.forked_child import in_child
 
 PATIENCE_S = 30.0
@@ -111,12 +111,12 @@ def kept_beside_a_server_that_touches_until_it_leaves(path, size, config):
 
     def tell(words):
         said.append(words)
-        if words.startswith("goes on"):
+        if words.startswith("resumes"):
             signal.raise_signal(signal.SIGTERM)
 
     options = server.ServerOptions(path.parent, 1, port=0, has_views=False, config=config)
     asyncio.run(server.SimulatorServer(options).run(tell))
-    return next(words for words in said if words.startswith("goes on"))
+    return next(words for words in said if words.startswith("resumes"))
 
 
 def test_a_simulator_goes_on_with_all_that_another_one_touched_until_it_left(simulation, tmp_path):

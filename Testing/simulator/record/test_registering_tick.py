@@ -5,9 +5,9 @@ from dataclasses import replace
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName, check_arguments
-from rastrainer_simulator.operator_input import Command, OperatorInput
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.simulation import Simulation
 from rastrainer_simulator.state import Event, EventKind
 
 DT = 0.004
@@ -18,7 +18,7 @@ def test_a_contact_in_the_tick_of_register_counts_in_the_record_as_in_the_journa
     simulation = Simulation(anywhere, 3)
 
     def step(name, **arguments):
-        command = Command(name, check_arguments(name, arguments))
+        command = OperatorCommand(name, check_arguments(name, arguments))
         given = OperatorInput(commands=(command,))
         before = simulation.state
         return before, given, simulation.step(DT, given)

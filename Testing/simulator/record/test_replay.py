@@ -7,14 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, check_arguments
-from rastrainer_simulator.cli import main
-from rastrainer_simulator.control_loop import ControlLoop
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX
-from rastrainer_simulator.simulation import Simulation
 
 CHAIN = ("n", "previous", "sha256")
 
@@ -30,7 +31,7 @@ def recorded(setup, tmp_path_factory) -> Path:
 
         do(CommandName.SET_CAMERA, camera="far")
         do(CommandName.START_TASK, task="task-2", trainee="P07", mode="hmd")
-        x, y, z = (1000.0 * loop.latest.tool_tip_to_world[:3, 3]).tolist()
+        x, y, z = (MM_PER_M * loop.latest.tool_tip_to_world[:3, 3]).tolist()
         do(CommandName.JOG, velocityMmS=[0, -80, 0], frame="camera", durationS=0.2)
         do(CommandName.MOVE_TIP_TO, positionMm=[x, y, z - 20.0], direction=[0, 0.1, -1])
         do(CommandName.CAPTURE)
@@ -61,12 +62,12 @@ def forged(recorded: Path, tmp_path: Path, change) -> Path:
 def test_an_untouched_journal_is_intact_and_replays_to_the_last_bit(recorded, capsys):
     assert main(["verify", str(recorded)]) == 0
     assert "intact" in capsys.readouterr().out
-    assert main(["replay", str(recorded)]) == 0
+    assert main(["replay", str(recorded), "--verify"]) == 0
     assert "equal to the last bit" in capsys.readouterr().out
 
 
 def test_the_report_as_json_tells_what_was_compared_and_the_metrics_of_measure(recorded, capsys):
-    assert main(["replay", str(recorded), "--json"]) == 0
+    assert main(["replay", str(recorded), "--verify", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["identical"] is True
     assert report["compared"]["sample"] >= 10
@@ -99,7 +100,7 @@ def test_cut_short_altered_and_foreign_files_are_told_apart_by_sentence_and_stat
 def test_a_journal_that_was_cut_short_replays_as_far_as_it_goes(recorded, tmp_path):
     cut = tmp_path / "cut"
     cut.write_bytes(recorded.read_bytes()[:-3000])
-    assert main(["replay", str(cut)]) == 0
+    assert main(["replay", str(cut), "--verify"]) == 0
 
 
 def test_a_journal_that_was_cut_between_the_lines_of_one_tick_replays_up_to_there(
@@ -110,7 +111,7 @@ def test_a_journal_that_was_cut_between_the_lines_of_one_tick_replays_up_to_ther
     shared = next(n for n in range(20, len(ticks)) if ticks[n] == ticks[n - 1])
     cut = tmp_path / "cut"
     cut.write_bytes(b"".join(lines[:shared]) + lines[shared][:10])
-    assert main(["replay", str(cut)]) == 0
+    assert main(["replay", str(cut), "--verify"]) == 0
 
 
 def moved_sample(entries):
@@ -131,7 +132,7 @@ def missing_event(entries):
 def test_a_forgery_under_right_hashes_is_found_by_the_replay(recorded, tmp_path, change, capsys):
     path = forged(recorded, tmp_path, change)
     assert main(["verify", str(path)]) == 0
-    assert main(["replay", str(path)]) == 1
+    assert main(["replay", str(path), "--verify"]) == 1
     assert "line" in capsys.readouterr().out
 
 
@@ -164,7 +165,7 @@ def set_in(kind, **values):
 )
 def test_a_hostile_journal_ends_with_one_sentence_and_status_2(recorded, tmp_path, change, capsys):
     path = forged(recorded, tmp_path, change)
-    assert main(["replay", str(path)]) == 2
+    assert main(["replay", str(path), "--verify"]) == 2
     said = capsys.readouterr().err
     assert said.startswith("rastrainer: ")
     assert "Traceback" not in said

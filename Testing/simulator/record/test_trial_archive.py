@@ -10,12 +10,11 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.finite_json import DEEPEST
-from rastrainer.journal.journal_line import FORMAT, FORMAT_VERSION
-from rastrainer.journal.journal_reader import Integrity, read_journal
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, Integrity, read_journal
 from rastrainer.protocol import CommandName, check_arguments, decode_json_object
-from rastrainer.trial_record import TouchedPoint, TrialRecord
+from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.record.stamps import stamp
 from rastrainer_simulator.record.trial_archive import (
     SUFFIX,
     ArchivedTrial,

@@ -8,17 +8,17 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.scripted_trainee import Skill
-from rastrainer.trial_record import TrialRecord
-from rastrainer_simulator.cli import main
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record import unmeasured_record
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
-from rastrainer_simulator.simulation import Simulation
-from rastrainer_simulator.virtual_trial import play_virtual_trial
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
 
 DT = 0.02
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04)

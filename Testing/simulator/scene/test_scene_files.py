@@ -9,9 +9,15 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.scene import scene_files as scene_files_module
-from rastrainer_simulator.scene.cache_folder import KEPT_FILES, cache_folder, forget_oldest
-from rastrainer_simulator.scene.scene_files import SceneFiles, read_scene
-from rastrainer_simulator.scene.scene_key import scene_key, setup_digest
+from rastrainer_simulator.scene.scene_files import (
+    KEPT_FILES,
+    SceneFiles,
+    cache_folder,
+    forget_oldest,
+    read_scene,
+    scene_key,
+    setup_digest,
+)
 from Testing.simulator.scene.glb_reader import Glb
 
 
@@ -114,8 +120,8 @@ def test_a_cache_that_cannot_be_written_is_replaced_for_the_time_being(tmp_path,
 
 IMPORTS = """
 import sys
-import rastrainer_simulator.server
-import rastrainer_simulator.view_server.open_views
+import rastrainer_simulator.server.server
+import rastrainer_simulator.net.views.open_views
 unwanted = [name for name in sys.modules if name.startswith(("vtk", "trimesh"))]
 assert not unwanted, unwanted
 """

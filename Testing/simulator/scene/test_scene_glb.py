@@ -6,7 +6,8 @@ import trimesh
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the importer makes actors)
 from vtkmodules.vtkIOImport import vtkGLTFImporter
 
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.units import MM_PER_M
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.scene.materials import Material
@@ -60,7 +61,7 @@ def test_without_a_task_the_head_is_bare(setup):
 def test_the_skin_is_the_scenarios_head_in_meters(glb, scenario):
     head = read_head_mesh(scenario.head_mesh)
     vertices = glb.vertices("skin")
-    assert vertices[: len(head.vertices)] == pytest.approx(head.vertices / 1000, abs=1e-6)
+    assert vertices[: len(head.vertices)] == pytest.approx(head.vertices / MM_PER_M, abs=1e-6)
     # Those at the base's sharp rim are there twice: each side of it has a normal of its own.
     assert np.isin(vertices[len(head.vertices) :], vertices[: len(head.vertices)]).all()
     assert len(vertices) < 1.05 * len(head.vertices)
@@ -69,7 +70,7 @@ def test_the_skin_is_the_scenarios_head_in_meters(glb, scenario):
 def test_fiducials_lie_around_their_places_on_the_skin(glb, scenario):
     task = scenario.task("task-3")
     for label, place in zip(task.labels, task.fiducials, strict=True):
-        disk = glb.vertices(f"fiducial_{label}") * 1000
+        disk = glb.vertices(f"fiducial_{label}") * MM_PER_M
         assert disk.mean(axis=0) == pytest.approx(place, abs=1.5)
 
 
@@ -99,7 +100,10 @@ def test_the_tools_tip_is_its_origin(glb):
 
 
 def test_the_table_top_is_the_plane_on_which_the_robot_stands(glb, scenario):
-    center, size = scenario.furniture.table_center / 1000, scenario.furniture.table_size / 1000
+    center, size = (
+        scenario.furniture.table_center / MM_PER_M,
+        scenario.furniture.table_size / MM_PER_M,
+    )
     table = glb.vertices("table")
     assert table[:, :2].min(axis=0) == pytest.approx(center - size[:2] / 2, abs=1e-6)
     assert table[:, :2].max(axis=0) == pytest.approx(center + size[:2] / 2, abs=1e-6)
@@ -115,7 +119,7 @@ def test_the_stand_reaches_from_the_table_to_the_head_in_every_trial(glb, scenar
     assert stand[:, 2].max() <= 0.0
     for seed in range(50):
         pose = scenario.perturbed_head_to_world(seed)
-        top = (pose[:3, :3] @ head.base + pose[:3, 3])[2] / 1000
+        top = (pose[:3, :3] @ head.base + pose[:3, 3])[2] / MM_PER_M
         assert -0.04 < top + stand[:, 2].min() < 0.0, "its end is hidden in the table top"
 
 

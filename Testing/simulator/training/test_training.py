@@ -9,12 +9,13 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase, TouchRule, check_arguments
-from rastrainer_simulator.operator_input import Command
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.operator_input import OperatorCommand
+from rastrainer_simulator.ops.texts.english import ENGLISH
+from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import EventKind
-from rastrainer_simulator.texts.english import ENGLISH
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, REFUSALS
-from rastrainer_simulator.training.touch_rule import Moment, TrainingSettings
+from rastrainer_simulator.training.touch_rule import TouchMoment, TrainingSettings
 from rastrainer_simulator.training.training import Training
 
 ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())
@@ -35,18 +36,18 @@ class Trial:
         self.now = 10.0
 
     def do(self, name, tip=(0.0, 0.0, 0.0), above_mm=0.0, **arguments):
-        command = Command(name, arguments)
+        command = OperatorCommand(name, arguments)
         if name in NAMING_A_TRIAL:
             trial_id = self.state.trial_id
-            command = Command(name, {"trialId": trial_id, **arguments})
-        return self.training.handle(command, Moment(self.now, tip, above_mm / 1000.0))
+            command = OperatorCommand(name, {"trialId": trial_id, **arguments})
+        return self.training.handle(command, TouchMoment(self.now, tip, above_mm / MM_PER_M))
 
     def start(self, task="task-1", **others):
         return self.do(CommandName.START_TASK, task=task, trainee="P01", mode="desktop", **others)
 
     def fiducial(self, label):
         point = self.training.truth.fiducials[label]
-        return tuple(self.training.truth.in_world(point) / 1000.0)
+        return tuple(self.training.truth.in_world(point) / MM_PER_M)
 
     def touch(self, count=1):
         for _ in range(count):
@@ -141,7 +142,7 @@ def test_a_touch_keeps_where_the_tip_was_and_when(scenario):
     reply = trial.do(CommandName.CAPTURE, tip)
     touch = trial.state.touches[0]
     assert (touch.position, touch.sim_time, touch.elapsed) == (tip, 12.5, 2.5)
-    assert reply.data["positionMm"] == [1000.0 * v for v in tip]
+    assert reply.data["positionMm"] == [MM_PER_M * v for v in tip]
     assert [event.kind for event in reply.events] == [EventKind.TOUCH]
 
 
@@ -150,7 +151,7 @@ def test_a_touch_counts_within_the_acceptance_radius(scenario, away_mm, counts):
     trial = Trial(scenario, settings=TrainingSettings(acceptance_radius=0.010))
     trial.start()
     x, y, z = trial.fiducial("1")
-    assert trial.do(CommandName.CAPTURE, (x + away_mm / 1000.0, y, z)).ok is counts
+    assert trial.do(CommandName.CAPTURE, (x + away_mm / MM_PER_M, y, z)).ok is counts
 
 
 @pytest.mark.parametrize(("above_mm", "counts"), [(-1.0, True), (0.49, True), (0.51, False)])

@@ -15,15 +15,19 @@ SAGITTAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 """Rows of a slice run to the back, its columns down, and slices from the left to the right."""
 
 
-def depth_mm(ras):
-    """Return how deep places (n, 3) are below the skin, mm, roughly; negative outside."""
+def depth_mm(ras, size=1.0):
+    """Return how deep places (n, 3) are below the skin, mm, roughly; negative outside.
+
+    `size` is that of the head: with 0.5, half as wide, long and high as usual.
+    """
+    ras = ras / size
     radius = np.linalg.norm(ras / SEMI_AXES, axis=1)
     gradient = np.linalg.norm(ras / SEMI_AXES**2, axis=1) / np.maximum(radius, 1e-9)
     egg = (1.0 - radius) / np.maximum(gradient, 1e-9)
     neck = 45.0 - np.hypot(ras[:, 0], ras[:, 1] + 10.0)
     neck = np.where(ras[:, 2] < 0, neck, -50.0)
     nose = 12.0 - np.linalg.norm(ras - NOSE, axis=1)
-    return np.maximum(np.maximum(egg, neck), nose)
+    return size * np.maximum(np.maximum(egg, neck), nose)
 
 
 def phantom(
@@ -34,14 +38,16 @@ def phantom(
     noise=0.0,
     axes=None,
     shape=None,
+    size=1.0,
 ):
     """Return a head as a volume with partial volume at the skin.
 
     It is turned in the scanner about S, or stored along `axes`, the columns of (3, 3). As many
-    voxels as the head needs are there, or those of `shape`.
+    voxels as the head needs are there, or those of `shape`. A head of half the `size`, with half
+    the air around it, takes a fifth of the time to be found; scalp and skull are as thick as ever.
     """
     spacing = np.array(spacing, dtype=float)
-    low, high = np.array([-78.0, -92.0, lowest]), np.array([78.0, 98.0, 82.0])
+    low, high = size * np.array([-78.0, -92.0, lowest]), size * np.array([78.0, 98.0, 82.0])
     c, s = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
     extent = high - low if axes is None else np.abs(axes).T @ (high - low)
     axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) if axes is None else axes
@@ -52,7 +58,7 @@ def phantom(
     matrix[:3, 3] = middle - matrix[:3, :3] @ ((shape - 1) / 2.0)
     ijk = np.indices(shape).reshape(3, -1).T
     ras = ijk @ matrix[:3, :3].T + matrix[:3, 3]
-    depth = depth_mm(ras)
+    depth = depth_mm(ras, size)
     share = np.clip(depth + 0.5, 0.0, 1.0)
     kind = np.full(len(depth), values["scalp"])
     kind[depth > SCALP_MM] = values["bone"]

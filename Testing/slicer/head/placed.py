@@ -20,8 +20,11 @@ def add_volume(scene, volume, name):
     return node
 
 
-def fiducials():
-    """Return fifteen places on the phantom's skin, (15, 3) float, RAS mm, ring by ring."""
+def fiducials(size=1.0):
+    """Return fifteen places on the phantom's skin, (15, 3) float, RAS mm, ring by ring.
+
+    `size` is that of `phantom`.
+    """
     directions = []
     for count, polar_deg in ROWS:
         around = np.radians(np.linspace(0.0, 360.0, count, endpoint=False) - 90.0)
@@ -29,7 +32,7 @@ def fiducials():
         ring = [np.cos(around) * np.sin(polar), np.sin(around) * np.sin(polar)]
         directions.append(np.stack([*ring, np.full(count, np.cos(polar))], axis=1))
     directions = np.concatenate(directions)
-    return directions / np.linalg.norm(directions / SEMI_AXES, axis=1, keepdims=True)
+    return directions / np.linalg.norm(directions / (size * SEMI_AXES), axis=1, keepdims=True)
 
 
 def add_transform(scene, shift):

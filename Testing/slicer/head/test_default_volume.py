@@ -7,8 +7,8 @@ import pytest
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from rastrainer.head_mesh import read_head_mesh
-from rastrainer.scenario import load_scenario
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.head.volume import read_volume
 from rastrainer_simulator.assets import asset_path
 

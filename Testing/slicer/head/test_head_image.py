@@ -4,14 +4,17 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer.head_volume import KEPT_MM
-from rastrainer.nrrd import MOST_FILE_BYTES, write_nrrd
+from rastrainer.files.nrrd import MOST_FILE_BYTES, write_nrrd
+from rastrainer.head.volume import KEPT_MM
 from rastrainer.slicer.head.extraction import find_head, skin_of
 from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.head_draft import make_draft
-from rastrainer.slicer.head.head_image import HOUNSFIELD, image_of
+from rastrainer.slicer.head.images_and_skull import HOUNSFIELD, image_of
 from rastrainer.slicer.head.volume import Volume, read_volume
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
+
+SIZE = 0.5
+"""Of the phantom's head: the images of a small one say the same, and sooner."""
 
 
 def images(scan):
@@ -24,14 +27,14 @@ def depths(volume):
     """How deep below the skin of the phantom each voxel is, (i, j, k), mm."""
     indices = np.indices(volume.values.shape).reshape(3, -1).T
     places = indices @ volume.ijk_to_ras[:3, :3].T + volume.ijk_to_ras[:3, 3]
-    return depth_mm(places).reshape(volume.values.shape)
+    return depth_mm(places, SIZE).reshape(volume.values.shape)
 
 
 @pytest.mark.parametrize(
     "scan",
     [
-        phantom(spacing=(2.0, 2.0, 2.0)),
-        phantom(spacing=(1.5, 2.0, 3.0), axes=DOUBLE_OBLIQUE),
+        phantom(spacing=(2.0, 2.0, 2.0), size=SIZE),
+        phantom(spacing=(1.5, 2.0, 3.0), axes=DOUBLE_OBLIQUE, size=SIZE),
     ],
     ids=["RAS", "oblique"],
 )
@@ -49,7 +52,7 @@ def test_mri_lies_on_a_grid_of_1_mm_where_the_head_is(scan):
 
 
 def test_mri_whose_values_are_bytes_keeps_them():
-    scan = phantom()
+    scan = phantom(size=SIZE)
     scan = Volume(np.rint(scan.values), scan.ijk_to_ras)
     made, told, _head = images(scan)
     assert told == "Images: MRI, 1 mm, its own values, 0 to 255."
@@ -57,7 +60,7 @@ def test_mri_whose_values_are_bytes_keeps_them():
 
 
 def test_ct_keeps_its_hounsfield_units_within_their_usual_range():
-    scan = phantom({**CT, "bone": 9000.0}, spacing=(2.0, 2.0, 2.0), lowest=-20.0)
+    scan = phantom({**CT, "bone": 9000.0}, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE)
     made, told, _head = images(scan)
     assert made.values.dtype == np.int16
     assert made.values.max() == HOUNSFIELD[1]
@@ -68,7 +71,7 @@ def test_ct_keeps_its_hounsfield_units_within_their_usual_range():
 
 
 def test_what_is_far_from_the_head_is_air():
-    scan = phantom(noise=2.0)
+    scan = phantom(noise=2.0, size=SIZE)
     scan.values[2:8, 2:8, 20:90] = 60.0
     made, _told, head = images(scan)
     far = depths(made) < -KEPT_MM - 3.0
@@ -80,7 +83,7 @@ def test_what_is_far_from_the_head_is_air():
 
 
 def test_slicer_reads_the_file_as_it_was_written(tmp_path):
-    made, _told, _head = images(phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0))
+    made, _told, _head = images(phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE))
     path = tmp_path / "volume.nrrd"
     write_nrrd(path, made.values, made.ijk_to_ras)
     assert path.stat().st_size < MOST_FILE_BYTES / 2
@@ -95,7 +98,7 @@ def test_slicer_reads_the_file_as_it_was_written(tmp_path):
 
 
 def test_the_draft_has_the_images_unless_they_are_not_wanted():
-    scan = phantom(spacing=(3.0, 3.0, 3.0))
+    scan = phantom(spacing=(3.0, 3.0, 3.0), size=0.75)
     draft, _warnings = make_draft(scan, has_skull=False)
     assert draft.volume is not None
     assert "Images: MRI, 1 mm" in draft.method

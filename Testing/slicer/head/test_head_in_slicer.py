@@ -5,7 +5,7 @@ import pytest
 import slicer
 from vtk.util.numpy_support import vtk_to_numpy
 
-from rastrainer.head_mesh import read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer_simulator.assets import asset_path
 
 HEAD = asset_path("scenarios", "colin27", "head.ply")

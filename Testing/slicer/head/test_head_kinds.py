@@ -9,21 +9,23 @@ from rastrainer.slicer.head.head_draft import make_draft
 from rastrainer.slicer.head.volume import Volume
 from Testing.slicer.head.phantoms import CT, NOSE, SCALP_MM, depth_mm, phantom
 
-BASE = -12.0
+BASE = -30.0
+SIZE = 0.75
 SETTINGS = HeadSettings(base_mm=BASE)
 
 
 @pytest.fixture(scope="module")
 def ct_draft():
     """A CT on a table, turned in the scanner, with thick slices."""
-    return make_draft(phantom(CT, spacing=(1.2, 1.2, 2.0), turn_deg=9.0, noise=15.0), SETTINGS)
+    scan = phantom(CT, spacing=(1.2, 1.2, 2.0), turn_deg=9.0, noise=15.0, size=SIZE)
+    return make_draft(scan, SETTINGS)
 
 
-def errors_mm(mesh):
+def errors_mm(mesh, size=1.0):
     """Distances of vertices to the skin, away from the base and the nose, (n,)."""
     away = mesh.vertices[mesh.vertices[:, 2] > BASE + 4]
-    nose = np.linalg.norm(away - NOSE, axis=1) < 20
-    return np.abs(depth_mm(away[~nose]))
+    nose = np.linalg.norm(away - size * NOSE, axis=1) < 20 * size
+    return np.abs(depth_mm(away[~nose], size))
 
 
 def is_one_closed_body(mesh):
@@ -34,7 +36,7 @@ def test_the_skin_of_a_ct_is_found(ct_draft):
     draft, warnings = ct_draft
     assert not warnings
     assert is_one_closed_body(draft.head)
-    errors = errors_mm(draft.head)
+    errors = errors_mm(draft.head, SIZE)
     assert errors.mean() < 0.5
     assert np.percentile(errors, 95) < 1.0
 
@@ -43,7 +45,7 @@ def test_the_skull_of_a_ct_is_its_bone(ct_draft):
     draft, _ = ct_draft
     assert not draft.is_skull_approximate
     upper = draft.skull.vertices[draft.skull.vertices[:, 2] > 0]
-    depth = depth_mm(upper)
+    depth = depth_mm(upper, SIZE)
     outer = depth[depth < SCALP_MM + 3]
     assert len(outer) > 1000
     assert abs(np.median(outer) - SCALP_MM) < 0.7

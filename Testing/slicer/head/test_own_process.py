@@ -24,7 +24,7 @@ def ignore(_step, _share):
 
 
 def test_the_head_is_the_one_that_is_made_here():
-    scan = phantom(spacing=(3.0, 3.0, 3.0))
+    scan = phantom(spacing=(3.0, 3.0, 3.0), size=0.75)
     told = []
     body, skin, warnings = in_own_process(
         PYTHON, FIND_SKIN, lambda *step: told.append(step), scan, None

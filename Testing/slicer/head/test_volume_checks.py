@@ -31,7 +31,7 @@ def test_a_broken_volume_is_refused_with_a_sentence(name):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("name", HEADLESS)
+@pytest.mark.parametrize("name", [pytest.param("noise", marks=pytest.mark.soak), "a block"])
 def test_a_volume_without_a_head_is_refused_with_a_sentence(name):
     none, sentence = HEADLESS[name]
     with pytest.raises(InputError, match=sentence):

@@ -14,8 +14,8 @@ from typing import Any
 import slicer
 from PySide6 import QtCore, QtGui, QtTest, QtWidgets
 
-from rastrainer.slicer.headless_command import HeadlessCommand
-from rastrainer.slicer.headless_connector import HeadlessConnector
+from rastrainer_headless.command import HeadlessCommand
+from rastrainer_headless.connector import HeadlessConnector
 from Testing.slicer.host import appearance, event_loop, pictures
 from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application

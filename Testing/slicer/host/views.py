@@ -48,13 +48,17 @@ SLICE_COLORS = {
 
 
 class View:
-    """A render window without a screen, and the managers that fill it."""
+    """A render window without a screen, and the managers that fill it.
+
+    The window that can draw is opened for the first picture: that takes a tenth of a second, and
+    most tests want none.
+    """
 
     def __init__(self, factory: Any, managers: tuple[str, ...], logic: Any, node: Any) -> None:
         self.node = node
         self.renderer = vtk.vtkRenderer()
-        self.window = vtk.vtkRenderWindow()
-        self.window.SetOffScreenRendering(1)
+        self.window = vtk.vtkGenericOpenGLRenderWindow()
+        self.window.SetReadyForRendering(False)
         self.window.AddRenderer(self.renderer)
         self._interactor = vtk.vtkGenericRenderWindowInteractor()
         self._interactor.SetRenderWindow(self.window)
@@ -67,6 +71,7 @@ class View:
 
     def picture(self, width: int, height: int) -> QtGui.QImage:
         """Return what the view shows."""
+        self._open_window()
         self.window.SetSize(width, height)
         # The labels of markups find their places in the second one.
         self.window.Render()
@@ -79,6 +84,15 @@ class View:
         rows = np.ascontiguousarray(colors.reshape(height, width, -1)[::-1, :, :3])
         image = QtGui.QImage(rows.data, width, height, 3 * width, QtGui.QImage.Format.Format_RGB888)
         return image.copy()
+
+    def _open_window(self) -> None:
+        if not isinstance(self.window, vtk.vtkGenericOpenGLRenderWindow):
+            return
+        self.window.RemoveRenderer(self.renderer)
+        self.window = vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(1)
+        self.window.AddRenderer(self.renderer)
+        self._interactor.SetRenderWindow(self.window)
 
     def legends(self, scene: Any) -> list[tuple[str, float]]:
         """Return the title of each color legend that is drawn, and its share of the view."""
@@ -186,6 +200,7 @@ class SliceView(View):
 
     def picture(self, width: int, height: int) -> QtGui.QImage:
         """Return what the view shows: the slice, as large as fits, and what lies in it."""
+        self._open_window()
         # Markups place their labels by the window's size.
         self.window.SetSize(width, height)
         self.logic.ResizeSliceNode(width, height)

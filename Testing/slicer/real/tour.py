@@ -26,6 +26,7 @@ def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, required=True, help="folder of the pictures")
     parser.add_argument("--program", default="", help="a rastrainer that is installed elsewhere")
+    parser.add_argument("--only", nargs="+", default=(), help="names of steps; all if left out")
     parser.add_argument("--window", action="store_true", help="open the trainee's window, too")
     # Slicer hands on the dashes that separate its own arguments from those of the script.
     arguments = parser.parse_args([word for word in words if word != "--"])
@@ -41,6 +42,8 @@ def main(words: list[str]) -> int:
     record = Record(arguments.output, tour.panel)
     try:
         for name, step in STEPS:
+            if arguments.only and name not in arguments.only:
+                continue
             if not record.do(name, lambda step=step: step(tour)) and step in NEEDED:
                 break
     finally:

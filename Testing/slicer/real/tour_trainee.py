@@ -33,7 +33,7 @@ def main() -> int:
     sys.path.insert(0, str(arguments.logic))
 
     from rastrainer.igtl.client import Client
-    from rastrainer.scripted_trial import say_hello
+    from rastrainer_simulator.virtual.scripted_trial import say_hello
 
     with Client(port=arguments.port) as client:
         say_hello(client, "tour")
@@ -50,8 +50,8 @@ def main() -> int:
 def _places(folder: Path, records: Path) -> list[tuple[Any, Any]]:
     """Return each fiducial with the outward direction there: (3,) float, World, mm."""
     from rastrainer import transforms
-    from rastrainer.fiducial_normals import fiducial_normals
-    from rastrainer.scenario import load_scenario
+    from rastrainer.scenario.fiducial_normals import fiducial_normals
+    from rastrainer.scenario.scenario import load_scenario
 
     journal = max(records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
     with journal.open(encoding="utf-8") as lines:

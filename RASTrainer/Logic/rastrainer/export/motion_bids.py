@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections import defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +17,11 @@ import numpy as np
 
 import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.files import make_empty_folder, write_text
-from rastrainer.motion.signals import resample
+from rastrainer.files.writing import make_empty_folder, write_text
+from rastrainer.motion.path_metrics import resample
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import RATE_HZ
-from rastrainer.report.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData, TrialRow
 
 BIDS_VERSION = "1.10.0"
 TRACKING = "tooltip"
@@ -184,7 +184,7 @@ def _write_dataset(folder: Path, data: StudyData, labels: Mapping[str, str]) -> 
     )
 
 
-def _tsv(rows: list[tuple[str, ...]]) -> str:
+def _tsv(rows: Sequence[tuple[str, ...]]) -> str:
     return "".join("\t".join(cell.replace("\t", " ") for cell in row) + "\n" for row in rows)
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import csv_text
-from rastrainer.files import write_text
-from rastrainer.markups import write_markups
-from rastrainer.point_list import PointList
-from rastrainer.registration import RIGID
-from rastrainer.study_values import StoredTrial
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.files.writing import write_text
+from rastrainer.registration.registration import RIGID
+from rastrainer.study.database.values import StoredTrial
 
 _TO_LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
 

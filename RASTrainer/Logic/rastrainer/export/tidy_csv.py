@@ -8,14 +8,14 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.experiment.study_progress import QuestionnaireAnswers
-from rastrainer.files import write_text
-from rastrainer.questionnaires.catalog import find_questionnaire
-from rastrainer.registration import RIGID
-from rastrainer.report.study_data import StudyData, TrialRow, trial_rows
-from rastrainer.study import Study
-from rastrainer.study_aborted import AbortedTrials, StoredAborted
-from rastrainer.study_values import StoredTrial
+from rastrainer.files.writing import write_text
+from rastrainer.registration.registration import RIGID
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
+from rastrainer.study.questionnaires.catalog import find_questionnaire
+from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
 
 FIRST_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "started_utc"),

@@ -6,12 +6,12 @@ import json
 import uuid
 from typing import Any
 
-from rastrainer.aborted_trial import AbortedTrial
-from rastrainer.experiment.study_progress import QuestionnaireAnswers
-from rastrainer.experiment.study_protocol import pass_mark_of
-from rastrainer.report.outcomes import mode_title, task_title
-from rastrainer.report.study_data import StudyData, TrialRow
-from rastrainer.scoring import passes
+from rastrainer.study.outcomes import mode_title, task_title
+from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
+from rastrainer.study.protocol.study_protocol import pass_mark_of
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.scoring import passes
 
 VERSION = "1.0.0"
 """That of the data model, which every xAPI 1.0.x shares; a provider must not name a later patch."""
@@ -82,7 +82,7 @@ def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
 
 
 def _aborted(record: AbortedTrial, home_page: str) -> dict[str, Any]:
-    """Return the statement that a trial was begun and not finished."""
+    """Return the statement that a trial was started and not finished."""
     result: dict[str, Any] = {
         "completion": False,
         "duration": f"PT{record.elapsed_s:.2f}S",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 _POLYNOMIAL = 0x42F0E1EBA9EA3693
 _MASK = 0xFFFFFFFFFFFFFFFF
 
@@ -24,6 +26,7 @@ def plain_crc64(data: bytes) -> int:
     return value
 
 
+crc64: Callable[[bytes], int]
 try:
     from fastcrc.crc64 import ecma_182 as crc64
 except ImportError:  # Slicer's Python has no fastcrc, and no user should have to install it there.

@@ -1,4 +1,4 @@
-"""A plain client: one connection, one receiving thread, commands that wait for their answer."""
+"""A simple client: one connection, one receiving thread, commands that wait for their answer."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.igtl.command import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply
+from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, Device, decode_json_object
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName, decode_json_object
 
 _PIECE_BYTES = 64 * 1024
 
@@ -88,7 +88,7 @@ class Client:
 
     def close(self) -> None:
         """Close the connection and wait for the receiving thread."""
-        with contextlib.suppress(OSError):  # The other side may have been faster.
+        with contextlib.suppress(OSError):  # The peer may have closed it first.
             self._socket.shutdown(socket.SHUT_RDWR)
         if threading.current_thread() is not self._thread:
             self._thread.join()
@@ -120,7 +120,7 @@ class Client:
         self._waiting[number] = answer
         try:
             body = json.dumps(dict(arguments or {}), allow_nan=False)
-            self.send(Message(Device.COMMAND, Command(number, name, body)))
+            self.send(Message(DeviceName.COMMAND, Command(number, name, body)))
             if not self._is_open and not answer.done():
                 raise LinkError("The connection is lost.")
             return answer.result(timeout)
@@ -174,7 +174,7 @@ class Client:
         if type(message.content) is CommandReply:
             answer = self._waiting.pop(message.content.command_id, None)
             if answer is not None:
-                _resolve(answer, message)
+                _resolve(answer, message.content, message.metadata)
             return
         with self._news:
             self.latest[message.device] = message
@@ -183,12 +183,12 @@ class Client:
             self._on_message(message)
 
 
-def _resolve(answer: Future[Reply], message: Message) -> None:
-    """Give the waiting thread what an answer says; its body is the other side's, so checked."""
+def _resolve(answer: Future[Reply], content: CommandReply, metadata: Mapping[str, str]) -> None:
+    """Give the answer to the waiting thread; its body comes from the peer, and is checked."""
     try:
-        data = decode_json_object(message.content.body)
+        data = decode_json_object(content.body)
     except InputError:
         answer.set_exception(LinkError("An answer's body must be a JSON object."))
         return
-    is_success = message.metadata.get(STATUS_KEY) == SUCCESS
-    answer.set_result(Reply(is_success, message.metadata.get(ERROR_KEY, ""), data))
+    is_success = metadata.get(STATUS_KEY) == SUCCESS
+    answer.set_result(Reply(is_success, metadata.get(ERROR_KEY, ""), data))

@@ -15,20 +15,19 @@ from typing import TypeAlias
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.checksum import crc64
-from rastrainer.igtl.command import STATUS_KEY, Command, CommandReply
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import STATUS_KEY, Command, CommandReply, Status, String, Transform
 from rastrainer.igtl.points import Points
 from rastrainer.igtl.wire import decode_text, encode_text, pack_name, unpack_name
 
 Content: TypeAlias = Transform | String | Points | Status | Command | CommandReply
 
-CONTENTS: Mapping[str, type] = {
+CONTENTS: Mapping[str, type[Content]] = {
     kind.TYPE: kind for kind in (Transform, String, Points, Status, Command, CommandReply)
 }
 """Every type that is sent or understood."""
 
 LARGEST_BODY = 16 * 2**20
-"""Bytes; a message that claims more is not waited for."""
+"""Bytes; a message that claims more is refused."""
 
 MOST_METADATA = 256
 """Entries in the metadata of one message."""
@@ -112,7 +111,7 @@ def _pack_body(message: Message) -> bytes:
     if message.version != 2:
         raise InputError("The header version must be 1 or 2.")
     if type(message.content) is CommandReply and STATUS_KEY not in message.metadata:
-        raise InputError("An answer must tell in its metadata whether the command succeeded.")
+        raise InputError("An answer must say in its metadata whether the command succeeded.")
     if not (content or message.metadata):
         raise InputError("An empty list must be sent with metadata.")
     index, entries = _pack_metadata(message.metadata)
@@ -123,7 +122,7 @@ def _pack_body(message: Message) -> bytes:
 def _pack_metadata(metadata: Mapping[str, str]) -> tuple[bytes, bytes]:
     if len(metadata) > MOST_METADATA:
         raise InputError(f"A message must have at most {MOST_METADATA} metadata entries.")
-    index, entries = [_COUNT.pack(len(metadata))], []
+    index, entries = [_COUNT.pack(len(metadata))], list[bytes]()
     for key, value in metadata.items():
         key_bytes = pack_name(key, 255, "A metadata key")
         if not key_bytes:
@@ -134,7 +133,7 @@ def _pack_metadata(metadata: Mapping[str, str]) -> tuple[bytes, bytes]:
     return b"".join(index), b"".join(entries)
 
 
-def read_header(data: bytes) -> Header | None:
+def read_header(data: bytes | bytearray) -> Header | None:
     """Return the header that the first 58 bytes of `data` hold, or None where they hold none."""
     version, kind, device, seconds, fraction, size, checksum = _HEADER.unpack_from(data)
     if version not in (1, 2) or not _TYPE_FIELD.fullmatch(kind):
@@ -145,7 +144,7 @@ def read_header(data: bytes) -> Header | None:
 
 
 def unpack(header: Header, body: bytes, keep_bytes: bool = False) -> Message:
-    """Return the message of a header and the body that belongs to it; its checksum is not asked.
+    """Return the message of a header and the body that belongs to it; its checksum is not checked.
 
     `keep_bytes` keeps texts that are not UTF-8, as `decode_text` says.
 

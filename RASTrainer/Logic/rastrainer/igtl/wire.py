@@ -53,7 +53,7 @@ def encode_text(text: str) -> tuple[int, bytes]:
 def decode_text(data: bytes, keep_bytes: bool = False) -> str:
     """Return the text that `data` holds in UTF-8, without the NULs that some peers append.
 
-    The announced encoding is not asked: Slicer announces ASCII for UTF-8. With `keep_bytes` each
+    The announced encoding is ignored: Slicer announces ASCII for UTF-8. With `keep_bytes` each
     byte that is not UTF-8 becomes a lone surrogate, from which it can be had back.
 
     Raises:

@@ -1,17 +1,17 @@
-"""The journals in a folder: which trainee's they are, and how they are read or erased."""
+"""The journals in a folder: whose they are, which is the newest, how they are read or erased."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Collection, Iterator
+import re
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
-from rastrainer.journal.file_lock import lock
-from rastrainer.journal.journal_line import FIRST_BYTES, LONGEST_LINE
-from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.folder_lock import lock
+from rastrainer.journal.journal_file import FIRST_BYTES, LONGEST_LINE, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
 
@@ -35,11 +35,16 @@ def journals_of(folder: Path, trial_id: str) -> list[Path]:
     return sorted(folder.glob(f"*_{trial_id}{SUFFIX}"))
 
 
-def read_trajectory(folder: Path, trial_id: str) -> Trajectory | None:
-    """Return the trajectory of a trial; None where the folder has no usable journal of it."""
+def read_trajectory(
+    folder: Path, trial_id: str, rest: Callable[[], None] = lambda: None
+) -> Trajectory | None:
+    """Return the trajectory of a trial; None where the folder has no usable journal of it.
+
+    `rest` is as of `read_journal`.
+    """
     for path in journals_of(folder, trial_id):
         with contextlib.suppress(InputError):
-            return Recording.of(read_journal(path).entries).trajectory()
+            return Recording.of(read_journal(path, rest).entries).trajectory()
     return None
 
 
@@ -50,12 +55,12 @@ def erase_journals(
 
     Args:
         folder: Of the journals.
-        trainee: Pseudonym; a journal's first line tells it.
+        trainee: Pseudonym; a journal's first line holds it.
         trial_ids: UUIDs of the trainee's trials; where the first line is damaged the file's name
-            tells the trial.
+            identifies the trial.
 
     Returns:
-        The paths that were deleted, and those of files named as journals that tell neither.
+        The paths that were deleted, and those of files named as journals that name neither.
 
     Raises:
         InputError: there is no such folder, a journal cannot be deleted, or one is being written.
@@ -92,7 +97,7 @@ def _begins_as_journal(path: Path) -> bool:
 
 
 def _trainee_of(path: Path) -> str | None:
-    """Return whose a journal is; the first line tells, whatever became of the others."""
+    """Return the trainee that the first line names, whatever became of the others."""
     with contextlib.suppress(OSError, ValueError, AttributeError), path.open("rb") as file:
         trainee = decode_finite_json(file.readline(LONGEST_LINE).decode("ascii")).get("trainee")
         return trainee if isinstance(trainee, str) else None
@@ -115,3 +120,26 @@ def _overwrite(descriptor: int) -> None:
     while rest > 0:
         rest -= os.write(descriptor, _ZEROS[: min(rest, len(_ZEROS))])
     os.fsync(descriptor)
+
+
+_REACH = 512
+_NUMBER = re.compile(rb'"kind":"header","format":"[a-z-]+","version":\d+,"number":(\d+),')
+
+
+def newest_journal(folder: Path) -> Path | None:
+    """Return the journal of the trial that was begun last; None where there is no journal.
+
+    A clock that was set back gives a later trial an earlier name. So the trials of a folder are
+    numbered; those that a version before the numbers has written are older, and in the order of
+    their names.
+    """
+    paths = folder.glob(f"*{SUFFIX}")
+    return max(paths, key=lambda path: (number_of(path), path.name), default=None)
+
+
+def number_of(path: Path) -> int:
+    """Return the number in a journal's header; 0 where there is none."""
+    with contextlib.suppress(OSError), path.open("rb") as file:
+        found = _NUMBER.search(file.read(_REACH))
+        return int(found[1]) if found else 0
+    return 0

@@ -6,7 +6,7 @@ import math
 from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 from rastrainer.protocol import Phase, Proximity
 
 _COLUMNS = 6
+_T = TypeVar("_T", bound="Recording")
 
 
 class Recording:
@@ -29,7 +30,7 @@ class Recording:
         self._paused_s = 0.0
         self._paused_since: float | None = None
         # A row a sample: time in s, tip, clearance and depth in mm. Half an hour is 4 MB as plain
-        # numbers; depth is not a number where the journal does not tell it.
+        # numbers; depth is not a number where the journal does not record it.
         self._samples = array("d")
         self._touches: list[Touch] = []
         self._refused: list[Touch] = []
@@ -42,7 +43,7 @@ class Recording:
         self._shortest_path: float | None = None
 
     @classmethod
-    def of(cls, entries: Iterable[Mapping[str, Any]]) -> Recording:
+    def of(cls: type[_T], entries: Iterable[Mapping[str, Any]]) -> _T:
         """Return the recording of entries.
 
         Raises:
@@ -115,7 +116,7 @@ class Recording:
     def _header(self, entry: Mapping[str, Any]) -> None:
         self._tick_s = entry["tickS"]
         self._start_s = entry["simTime"] - self._tick_s
-        # Absent where the scenario does not tell, and in journals of before it was told.
+        # Absent where the scenario does not give it, and in older journals.
         self._shortest_path = entry.get("shortestPathMm")
 
     def _touch(self, entry: Mapping[str, Any]) -> None:
@@ -144,7 +145,7 @@ class Recording:
         elif entry["phase"] == Phase.RUNNING.value and self._paused_since is not None:
             self._paused_s += now - self._paused_since
             self._paused_since = None
-        # What the disk refused was taken back: the phase tells from which fiducial on.
+        # What could not be written was undone: the phase says from which fiducial on.
         labels = [touch.label for touch in self._touches]
         if entry.get("nextPoint") in labels:
             del self._touches[labels.index(entry["nextPoint"]) :]
@@ -169,7 +170,7 @@ class Recording:
         self._state = state
 
     def _press(self, entry: Mapping[str, Any]) -> None:
-        """Take note of the depth that an entry tells, which older journals do not."""
+        """Take note of the depth in an entry, which older journals do not record."""
         if self._state is Proximity.CONTACT:
             self._contact_depth = max(self._contact_depth, entry.get("depthMm", 0.0))
 

@@ -1,36 +1,64 @@
-"""A trial to be looked at again: its trajectory, and the arm's posture at each sample."""
+"""A trial to be looked at again: its trajectory, the arm's postures, and what happened."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
-from rastrainer.journal.journal_reader import read_journal
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
+
+EVENTS = frozenset(
+    {
+        "phase",
+        "touch",
+        "undo",
+        "rejected",
+        "proximity",
+        "camera",
+        "plan",
+        "registered",
+        "aborted",
+    }
+)
+"""Kinds of entries that change what is seen besides the arm."""
+
+
+class RecordedEvent(NamedTuple):
+    """An entry of one of the kinds in `EVENTS`, and when it was seen in the trial's time, s."""
+
+    time_s: float
+    entry: Mapping[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
 class ReplayTrack:
-    """What a journal shows of a trial.
+    """What a journal shows of a trial. Its times are the trial's: a pause takes none.
 
     Attributes:
+        header: the journal's first entry.
         trajectory: the tool's tip, clearance and touches over the trial's time.
         q: (n, 7) float, joint angles in rad, a row a sample of the trajectory.
+        events: in their order.
     """
 
+    header: Mapping[str, Any]
     trajectory: Trajectory
     q: np.ndarray
+    events: tuple[RecordedEvent, ...]
 
 
-def find_track(records: Path, trial_id: str) -> ReplayTrack:
-    """Return the track of a trial whose journal lies in a folder.
+def find_track(
+    records: Path, trial_id: str, rest: Callable[[], None] = lambda: None
+) -> ReplayTrack:
+    """Return the track of a trial whose journal lies in a folder; `rest` as of `read_journal`.
 
     Raises:
         InputError: there is none, or it holds no movement.
@@ -41,28 +69,38 @@ def find_track(records: Path, trial_id: str) -> ReplayTrack:
             f"The journal of this trial is not in {records}: it can be shown again only on the "
             "computer whose simulator has recorded it."
         )
-    return read_track(paths[0])
+    return read_track(paths[0], rest)
 
 
-def read_track(path: Path) -> ReplayTrack:
-    """Return the track of a journal, as far as it is whole.
+def read_track(path: Path, rest: Callable[[], None] = lambda: None) -> ReplayTrack:
+    """Return the track of a journal, as far as it is whole; `rest` as of `read_journal`.
 
     Raises:
         InputError: the file is no journal, or holds no movement.
     """
-    recording = _PostureRecording.of(read_journal(path).entries)
-    trajectory, q = recording.trajectory(), np.array(recording.postures, dtype=float)
+    reading = read_journal(path, rest)
+    recording = _ReplayRecording.of(reading.entries)
+    trajectory, q = recording.trajectory(), np.array(recording.postures, dtype=np.float64)
     if len(q) < 2 or q.shape != (len(trajectory.times_s), 7):
         raise InputError(f"{path} holds no movement that could be shown again.")
-    return ReplayTrack(trajectory, q)
+    return ReplayTrack(reading.header, trajectory, q, tuple(recording.events))
 
 
-class _PostureRecording(Recording):
-    """Keeps the joint angles beside each sample that counts."""
+class _ReplayRecording(Recording):
+    """Keeps the joint angles beside each sample that counts, and the events."""
 
     def __init__(self) -> None:
         super().__init__()
         self.postures: list[list[float]] = []
+        self.events: list[RecordedEvent] = []
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        super().add(entry)
+        if entry["kind"] in EVENTS:
+            seen_s = entry["simTime"] if self._paused_since is None else self._paused_since
+            # What comes in the tick in which a trial is paused is not earlier than what was before.
+            before_s = self.events[-1].time_s if self.events else 0.0
+            self.events.append(RecordedEvent(max(before_s, self._trial_time(seen_s)), entry))
 
     def _add_sample(self, entry: Mapping[str, Any]) -> bool:
         counts = super()._add_sample(entry)

@@ -5,9 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rastrainer.motion.contact_metrics import INTENDED_MM
-from rastrainer.motion.path_metrics import IDLE_DURATION_S, IDLE_SPEED_MM_S
-from rastrainer.motion.signals import CUTOFF_HZ
-from rastrainer.motion.smoothness import SPARC_CUTOFF_HZ, SPARC_PAD_LEVEL, SPARC_THRESHOLD
+from rastrainer.motion.path_metrics import (
+    CUTOFF_HZ,
+    IDLE_DURATION_S,
+    IDLE_SPEED_MM_S,
+    SPARC_CUTOFF_HZ,
+    SPARC_PAD_LEVEL,
+    SPARC_THRESHOLD,
+)
 from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.motion.trial_motion import ACCEPTANCE_MM, DWELL_RADIUS_MM, RATE_HZ
 

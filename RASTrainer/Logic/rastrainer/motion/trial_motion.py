@@ -14,9 +14,16 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.motion.contact_metrics import pressing_depth, unintended_contact
-from rastrainer.motion.path_metrics import idle_time, path_efficiency, path_length
-from rastrainer.motion.signals import low_pass, resample, speeds
-from rastrainer.motion.smoothness import log_dimensionless_jerk, sparc
+from rastrainer.motion.path_metrics import (
+    idle_time,
+    log_dimensionless_jerk,
+    low_pass,
+    path_efficiency,
+    path_length,
+    resample,
+    sparc,
+    speeds,
+)
 from rastrainer.motion.throughput import effective_throughput
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 
@@ -87,19 +94,20 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
 
 
 def _is_meant(contact: Interval, trajectory: Trajectory) -> bool:
-    """Tell whether a contact began near the fiducial that was touched next or last."""
+    """Return whether a contact began near the fiducial that was touched next or last."""
     if not len(trajectory.times_s):
         return False
-    row = min(np.searchsorted(trajectory.times_s, contact.start_s), len(trajectory.times_s) - 1)
+    start = int(np.searchsorted(trajectory.times_s, contact.start_s))
+    row = min(start, len(trajectory.times_s) - 1)
     following = int(np.searchsorted(trajectory.touch_times_s, contact.start_s))
     neighbors = trajectory.touches[max(following - 1, 0) : following + 1]
-    distances = [np.linalg.norm(trajectory.tip_mm[row] - t.position_mm) for t in neighbors]
+    distances = [float(np.linalg.norm(trajectory.tip_mm[row] - t.position_mm)) for t in neighbors]
     return min(distances, default=np.inf) <= ACCEPTANCE_MM
 
 
 def _is_wrong(touch: Touch, trajectory: Trajectory) -> bool:
     distances = {
-        label: np.linalg.norm(np.asarray(position) - touch.position_mm)
+        label: float(np.linalg.norm(np.asarray(position) - touch.position_mm))
         for label, position in trajectory.fiducials_mm.items()
     }
     nearest = min(distances, key=distances.__getitem__)

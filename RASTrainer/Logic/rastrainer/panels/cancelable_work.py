@@ -1,4 +1,4 @@
-"""Work that takes a while: the window stays alive meanwhile, and its user may break it off."""
+"""Work that takes a while: the window stays responsive, and its user may cancel it."""
 
 from __future__ import annotations
 
@@ -25,41 +25,41 @@ class CancelableWork:
     """
 
     def __init__(
-        self, tell: Callable[[str], None], show: Progress, showUsable: Callable[[], None]
+        self, showSentence: Callable[[str], None], show: Progress, showUsable: Callable[[], None]
     ) -> None:
         """Prepare for work.
 
         Args:
-            tell: shows a sentence; an empty one where the work has failed.
+            showSentence: shows a sentence, an empty one where the work has failed.
             show: shows a step's name and the share of the work done.
             showUsable: called when work begins and ends.
         """
         self.isUnderWay = False
         self._isCanceled = False
-        self._tell, self._show, self._showUsable = tell, show, showUsable
+        self._showSentence, self._show, self._showUsable = showSentence, show, showUsable
 
     def run(self, work: Callable[[Progress], T]) -> T | None:
         """Return what the work returns, None where the user has canceled it.
 
         Args:
-            work: is given what it tells its progress, which raises to cancel it.
+            work: is given what it reports its progress to, which raises to cancel it.
         """
         self.isUnderWay, self._isCanceled = True, False
         self._showUsable()
         try:
             return work(self._progress)
         except _CanceledError:
-            self._tell(_("Canceled; nothing has changed."))
+            self._showSentence(_("Canceled; nothing has changed."))
             return None
         except BaseException:
-            self._tell("")
+            self._showSentence("")
             raise
         finally:
             self.isUnderWay = False
             self._showUsable()
 
     def cancel(self) -> None:
-        """Break off what is under way, as soon as it tells its progress."""
+        """Cancel what is under way, as soon as it reports its progress."""
         self._isCanceled = True
 
     def _progress(self, step: str, share: float) -> None:

@@ -4,17 +4,87 @@ from __future__ import annotations
 
 from typing import Any
 
+import qt
 import slicer
 
+from rastrainer.head.pose import WIDEST, Perturbation
+from rastrainer.panels.application import fitThreeDViews
 from rastrainer.panels.cancelable_work import CancelableWork
-from rastrainer.panels.fitted_views import fitThreeDViews
-from rastrainer.panels.setup_form import SetUpForm
+from rastrainer.panels.sample_data import downloadSample
 from rastrainer.panels.widgets import setSentence, setUsable
-from rastrainer.scenario import Scenario
-from rastrainer.slicer.sample_download import downloadSample
-from rastrainer.slicer.scenario_maker import ScenarioWishes
-from rastrainer.slicer.session import Session
+from rastrainer.protocol import WORLD_LIMIT_MM
+from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Scenario
+from rastrainer.scenario.setup import SetUp
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
 from rastrainer.slicer.translation import _
+
+NARROWEST = 60
+_USUAL = SetUp()
+_MOVED = _USUAL.perturbation
+_PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
+_ROWS = (
+    (_("Head's middle, mm:"), "head", _PLACE, _USUAL.head_center),
+    (_("Head's turn, °:"), "yaw", (-180.0, 180.0), (_USUAL.head_yaw_deg,)),
+    (
+        _("Shift in a trial, ± mm:"),
+        "shift",
+        (0.0, WIDEST.translation_mm),
+        (_MOVED.translation_mm,),
+    ),
+    (_("Turn in a trial, ± °:"), "turn", (0.0, WIDEST.yaw_deg), (_MOVED.yaw_deg,)),
+    (_("Tilt in a trial, ± °:"), "tilt", (0.0, WIDEST.tilt_deg), (_MOVED.tilt_deg,)),
+    (_("Table's middle, mm:"), "table", _PLACE, _USUAL.table_center),
+    (_("Table's size, mm:"), "size", _EXTENT, _USUAL.table_size),
+    (_("Stand's diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),
+    (_("Robot's base, mm:"), "base", _PLACE, _USUAL.robot_base),
+)
+"""Label, name, lowest and highest, usual values; places are in the table's frame."""
+
+
+class SetUpForm:
+    """The spin boxes of a set-up, in rows of a form; they are called `head0SpinBox` and so on."""
+
+    def __init__(self, parent: Any) -> None:
+        """Fill a widget that has no layout yet."""
+        layout = qt.QFormLayout(parent)
+        self._boxes: dict[str, list[Any]] = {}
+        for label, name, limits, usual in _ROWS:
+            row = qt.QWidget()
+            across = qt.QHBoxLayout(row)
+            across.setContentsMargins(0, 0, 0, 0)
+            self._boxes[name] = [
+                _spinBox(f"{name}{place}SpinBox", limits, value)
+                for place, value in enumerate(usual)
+            ]
+            for box in self._boxes[name]:
+                across.addWidget(box)
+            layout.addRow(label, row)
+
+    def setUp(self) -> SetUp:
+        """Return the set-up that is chosen."""
+        values = {name: tuple(box.value for box in boxes) for name, boxes in self._boxes.items()}
+        return SetUp(
+            head_center=values["head"],
+            head_yaw_deg=values["yaw"][0],
+            perturbation=Perturbation(*values["shift"], *values["turn"], *values["tilt"]),
+            table_center=values["table"],
+            table_size=values["size"],
+            stand_diameter=values["stand"][0],
+            robot_base=values["base"],
+        )
+
+
+def _spinBox(name: str, limits: tuple[float, float], value: float) -> Any:
+    box = qt.QDoubleSpinBox()
+    box.objectName = name
+    box.minimum, box.maximum = limits
+    box.decimals = 1
+    # Three stand in a row: they are not to be as wide as the widest number they could show.
+    box.minimumWidth = NARROWEST
+    box.value = value
+    return box
+
 
 SAMPLE = "MRBrainTumor1"
 
@@ -22,7 +92,7 @@ SAMPLE = "MRBrainTumor1"
 class NewScenarioPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
         self._maker = session.scenarioMaker
@@ -38,15 +108,15 @@ class NewScenarioPanel:
         self._showUsable()
 
     def close(self) -> None:
-        """Break off what is under way."""
+        """Cancel what is under way."""
         self._work.cancel()
 
     def loadSampleData(self) -> None:
         """Download an MRI through Slicer's Sample Data, and choose it."""
-        with slicer.util.tryWithErrorDisplay(_("There is no sample."), waitCursor=True):
+        with slicer.util.tryWithErrorDisplay(_("The sample could not be loaded."), waitCursor=True):
             logic = slicer.util.getModuleLogic("SampleData")
             volume = self._work.run(
-                lambda tell: downloadSample(slicer.mrmlScene, logic, SAMPLE, tell)
+                lambda report: downloadSample(slicer.mrmlScene, logic, SAMPLE, report)
             )
             if volume is None:
                 return
@@ -65,44 +135,48 @@ class NewScenarioPanel:
     def preview(self) -> None:
         """Show the head that is found, to accept it or to change it."""
         with slicer.util.tryWithErrorDisplay(_("No head could be shown.")):
-            warnings = self._work.run(lambda tell: self._maker.preview(*self._wanted(), tell))
+            warnings = self._work.run(lambda report: self._maker.preview(*self._wanted(), report))
             if warnings is not None:
-                told = _(
+                text = _(
                     "This head is found. Change the threshold or the cut and find it again, or "
                     "change its segment in the Segment Editor; then make the scenario."
                 )
-                self._tell(" ".join([told, *warnings]))
+                self._tell(" ".join([text, *warnings]))
                 fitThreeDViews()
 
     def check(self) -> None:
-        """Tell at once whether set-up, plan and fiducials can be used."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario could not be made so.")):
+        """Report at once whether set-up, plan and fiducials can be used."""
+        with slicer.util.tryWithErrorDisplay(
+            _("The scenario could not be made with these choices.")
+        ):
             own = self._ui.programPathLineEdit.currentPath
-            warnings = self._work.run(lambda tell: self._maker.check(*self._wanted(), tell, own))
+            warnings = self._work.run(
+                lambda report: self._maker.check(*self._wanted(), report, own)
+            )
             if warnings is not None:
-                told = _("Set-up, plan and fiducials can be used.")
-                self._tell(" ".join([told, *warnings]))
+                text = _("Set-up, plan and fiducials can be used.")
+                self._tell(" ".join([text, *warnings]))
 
     def makeOrCancel(self) -> None:
-        """Make the scenario and go on with it, or break off."""
+        """Make the scenario and use it, or cancel."""
         if self._work.isUnderWay:
             self._work.cancel()
             return
         with slicer.util.tryWithErrorDisplay(_("The scenario was not made.")):
             own = self._ui.programPathLineEdit.currentPath
-            made = self._work.run(lambda tell: self._maker.make(*self._wanted(), tell, own))
+            made = self._work.run(lambda report: self._maker.make(*self._wanted(), report, own))
             if made is not None:
-                self._goOn(*made)
+                self._useScenario(*made)
 
-    def _goOn(self, scenario: Scenario, warnings: list[str]) -> None:
+    def _useScenario(self, scenario: Scenario, warnings: list[str]) -> None:
         """Choose the new scenario, show it, and have the simulator take it."""
         self._session.scenarioMade.emit(scenario.name)
-        told = _("{title} is made and chosen above.").format(title=scenario.title)
-        self._tell(" ".join([told, *warnings]))
+        text = _("{title} is made and chosen above.").format(title=scenario.title)
+        self._tell(" ".join([text, *warnings]))
 
-    def _wanted(self) -> tuple[Any, ScenarioWishes]:
+    def _wanted(self) -> tuple[Any, NewScenarioOptions]:
         ui = self._ui
-        return ui.scanComboBox.currentNode(), ScenarioWishes(
+        return ui.scanComboBox.currentNode(), NewScenarioOptions(
             title=ui.titleLineEdit.text,
             source=ui.sourceLineEdit.text,
             license=ui.licenseLineEdit.text,
@@ -143,7 +217,7 @@ class NewScenarioPanel:
         setUsable(
             ui.checkScenarioButton,
             hasVolume and not isAtWork,
-            _("Say what is wrong with set-up, plan and fiducials on this head; make nothing."),
+            _("Report what is wrong with set-up, plan and fiducials on this head; make nothing."),
             reason if not hasVolume else _("A head is being looked for."),
         )
         ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not isAtWork

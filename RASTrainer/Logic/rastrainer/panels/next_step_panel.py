@@ -10,14 +10,38 @@ import qt
 
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import buttonTitle, shortName
-from rastrainer.panels.section_folding import SectionFolding
 from rastrainer.panels.widgets import LINK_COLORS, setLight, setSentence, setText, setUsable
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.next_step import Action, NextStep, Section, Situation, nextStep
-from rastrainer.slicer.session import Session
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
 from rastrainer.slicer.translation import _
-from rastrainer.trial_analysis import TrialAnalysis
+from rastrainer.trial.analysis import TrialAnalysis
+
+
+class SectionFolding:
+    """Folds and opens whenever the work goes on to another section, and leaves all alone between.
+
+    So what the user opens or folds by hand stays so until then. The sections of which no step is
+    the next, such as Scenario and Plan, are the user's alone.
+    """
+
+    def __init__(self, ui: Any) -> None:
+        self._sections = {each: getattr(ui, f"{each.value}CollapsibleButton") for each in Section}
+        self._present: Section | None = None
+
+    def follow(self, section: Section) -> None:
+        """Open the section of the present step; fold the others where it is another one."""
+        if section is self._present:
+            return
+        self._present = section
+        for each, button in self._sections.items():
+            button.collapsed = each is not section
+
+    def open(self, section: Section) -> None:
+        """Open a section, which may have been folded by hand."""
+        self._sections[section].collapsed = False
+
 
 SHORTCUT = "Ctrl+Return"
 THIS_COMPUTER = ("", "127.0.0.1", "localhost", "::1")
@@ -38,14 +62,14 @@ class NextStepPanel:
     """Leads through a session: it draws what `nextStep` says, and lets the sections do it."""
 
     def __init__(
-        self, ui: Any, session: Session, actions: Mapping[Action, Callable[[], None]]
+        self, ui: Any, session: ModuleSession, actions: Mapping[NextAction, Callable[[], None]]
     ) -> None:
         """`actions` does what belongs to a section: all but waiting and looking at something."""
         self._ui = ui
         self._session = session
         self._actions = actions
         self._folding = SectionFolding(ui)
-        self._seen: Situation | None = None
+        self._seen: WorkflowState | None = None
         self._step: NextStep | None = None
         self._trainee = ""
         self._hasTrainees = self._hasPracticed = False
@@ -72,21 +96,21 @@ class NextStepPanel:
         self._lookUp()
 
     def close(self) -> None:
-        """Listen to the session no more."""
+        """Stop listening to the session."""
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
     def do(self) -> None:
         """Do what comes next."""
-        action = self._step.action
+        action = NextAction.WAIT if self._step is None else self._step.action
         if action in self._actions:
             self._actions[action]()
-        elif action is Action.CHOOSE_TRAINEE:
+        elif action is NextAction.CHOOSE_TRAINEE:
             self._folding.open(Section.TRAINEES)
             self._ui.traineeComboBox.showPopup()
-        elif action is Action.ANSWER:
+        elif action is NextAction.ANSWER:
             self._folding.open(Section.STUDY)
-        elif action is Action.SHOW_RESULT:
+        elif action is NextAction.SHOW_RESULT:
             self._hasNewResult, self._isResultShown = False, True
         self.showState()
 
@@ -97,10 +121,10 @@ class NextStepPanel:
             self._seen, self._step = now, nextStep(now)
             self._show(now, self._step)
 
-    def _situation(self) -> Situation:
+    def _situation(self) -> WorkflowState:
         session, ui = self._session, self._ui
         simulator, trial, study = session.simulator, session.training.progress, self._studyStep
-        return Situation(
+        return WorkflowState(
             link=session.link.status,
             program=simulator.program.state,
             programSentence=simulator.program.sentence,
@@ -123,7 +147,7 @@ class NextStepPanel:
             studySentence=self._repeatSentence or ("" if study is None else study.sentence),
         )
 
-    def _show(self, now: Situation, step: NextStep) -> None:
+    def _show(self, now: WorkflowState, step: NextStep) -> None:
         ui = self._ui
         setLight(ui.linkLight, LINK_COLORS[now.link.state])
         setText(ui.linkText, WORDS[now.link.state])
@@ -136,7 +160,7 @@ class NextStepPanel:
         ui.nextStepButton.text = buttonTitle(step.title)
         # A new text takes the shortcut away.
         ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
-        isPossible = step.action is not Action.WAIT
+        isPossible = step.action is not NextAction.WAIT
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
         setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
         setSentence(ui.nextStepText, step.sentence)

@@ -11,16 +11,16 @@ from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.next_step_panel import NextStepPanel
 from rastrainer.panels.plan_panel import PlanPanel
 from rastrainer.panels.registration_panel import RegistrationPanel
-from rastrainer.panels.running_simulator_panel import RunningSimulatorPanel
 from rastrainer.panels.scenario_panel import ScenarioPanel
 from rastrainer.panels.score_panel import ScorePanel
 from rastrainer.panels.setup_panel import SetupPanel
-from rastrainer.panels.simulator_panel import SimulatorPanel
+from rastrainer.panels.simulator_panel import RunningSimulatorPanel, SimulatorPanel
 from rastrainer.panels.study_panel import StudyPanel
 from rastrainer.panels.trainees_panel import TraineesPanel
 from rastrainer.panels.training_panel import TrainingPanel
-from rastrainer.slicer.next_step import Action
-from rastrainer.slicer.session import Session
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.next_step import NextAction
+from rastrainer.slicer.main_turn import mainTurn
 
 SECTIONS = (
     SetupPanel,
@@ -51,43 +51,44 @@ class PanelStack:
     """
 
     def __init__(
-        self, container: Any, resourcePath: Callable[[str], str], session: Session
+        self, container: Any, resourcePath: Callable[[str], str], session: ModuleSession
     ) -> None:
         layout = container.layout()
         names = [kind.__name__ for kind in PANELS]
-        widgets = [slicer.util.loadUI(resourcePath(f"UI/{name}.ui")) for name in names]
+        widgets = [slicer.util.loadUI(resourcePath(f"UI/RASTrainer{name}.ui")) for name in names]
         for place, widget in enumerate(widgets):
             layout.insertWidget(place, widget)
             # Nodes can be chosen only from a scene.
             widget.setMRMLScene(slicer.mrmlScene)
         self.ui = slicer.util.childWidgetVariables(container)
-        sections = {kind: kind(self.ui, session) for kind in SECTIONS}
+        sections: dict[type, Any] = {kind: kind(self.ui, session) for kind in SECTIONS}
         line = NextStepPanel(self.ui, session, _actions(sections))
         self._panels = [*sections.values(), line]
 
     def showState(self) -> None:
         """Show what changes without a word: the scene, and time."""
-        for panel in self._panels:
-            if hasattr(panel, "showState"):
-                panel.showState()
+        with mainTurn():
+            for panel in self._panels:
+                if hasattr(panel, "showState"):
+                    panel.showState()
 
     def close(self) -> None:
-        """Listen to nothing more."""
+        """Stop listening."""
         for panel in self._panels:
             panel.close()
 
 
-def _actions(sections: Mapping[type, Any]) -> dict[Action, Callable[[], None]]:
+def _actions(sections: Mapping[type, Any]) -> dict[NextAction, Callable[[], None]]:
     """Return what the line at the top lets the sections do."""
     return {
-        Action.START_SIMULATOR: sections[SimulatorPanel].startAndConnect,
-        Action.CONNECT: sections[SimulatorPanel].toggleConnection,
-        Action.CONNECT_TO_RUNNING: sections[RunningSimulatorPanel].connectToIt,
-        Action.CREATE_TRAINEE: sections[TraineesPanel].createTrainee,
-        Action.START_STUDY_STEP: sections[StudyPanel].startStep,
-        Action.EXPLAIN_REPEAT: sections[StudyPanel].explainRepeat,
-        Action.START_TRIAL_RUN: sections[TrainingPanel].startTrialRun,
-        Action.START_TASK: sections[TrainingPanel].startTask,
-        Action.PAUSE: sections[TrainingPanel].pauseOrResume,
-        Action.RESUME: sections[TrainingPanel].pauseOrResume,
+        NextAction.START_SIMULATOR: sections[SimulatorPanel].startAndConnect,
+        NextAction.CONNECT: sections[SimulatorPanel].toggleConnection,
+        NextAction.CONNECT_TO_RUNNING: sections[RunningSimulatorPanel].connectToIt,
+        NextAction.CREATE_TRAINEE: sections[TraineesPanel].createTrainee,
+        NextAction.START_STUDY_STEP: sections[StudyPanel].startStep,
+        NextAction.EXPLAIN_REPEAT: sections[StudyPanel].explainRepeat,
+        NextAction.START_TRIAL_RUN: sections[TrainingPanel].startTrialRun,
+        NextAction.START_TASK: sections[TrainingPanel].startTask,
+        NextAction.PAUSE: sections[TrainingPanel].pauseOrResume,
+        NextAction.RESUME: sections[TrainingPanel].pauseOrResume,
     }

@@ -21,26 +21,25 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.placing import startPlacing
-from rastrainer.slicer.plan_desk import Plan, targetsOf
-from rastrainer.slicer.plan_points import whyNotRemoved
-from rastrainer.slicer.registration_input import snapshot
-from rastrainer.slicer.session import Session
+from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.plan_logic import PlanOnImages, targetsOf
+from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
+from rastrainer.slicer.scene.registration_input import snapshot
 from rastrainer.slicer.translation import _
-from rastrainer.target_error import INTERVAL_NOTE
 
 
 class PlanPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
-        self._desk = session.plan
+        self._logic = session.plan
         self._offered: tuple = ()
         self._seen: tuple = ()
-        self._known: tuple[Plan | None, str] = (None, "")
+        self._known: tuple[PlanOnImages | None, str] = (None, "")
         self._keeping = CancelableWork(
             lambda _sentence: None, lambda _step, _share: None, self.showState
         )
@@ -49,11 +48,11 @@ class PlanPanel:
         ui.removePlanPointButton.connect("clicked()", self.removePoint)
         ui.undoPlanButton.connect("clicked()", self.undo)
         ui.sendPlanButton.connect("clicked()", self.send)
-        ui.keepPlanButton.connect("clicked()", self.keepOrCancel)
+        ui.keepPlanButton.connect("clicked()", self.saveOrCancel)
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
         ui.planTargetComboBox.connect("activated(int)", self.showState)
         self._listening = (
-            (self._desk.changed, self.showState),
+            (self._logic.changed, self.showState),
             (session.registration.changed, self.showState),
             (session.link.statusChanged, self.showState),
         )
@@ -62,7 +61,7 @@ class PlanPanel:
         self.showState()
 
     def close(self) -> None:
-        """Break off what is under way, and listen to the session no more."""
+        """Cancel what is under way, and stop listening to the session."""
         self._keeping.cancel()
         for signal, slot in self._listening:
             signal.disconnect(slot)
@@ -70,44 +69,44 @@ class PlanPanel:
     def placeTarget(self) -> None:
         """Let the next click in a view place a target, beside those that are placed."""
         with slicer.util.tryWithErrorDisplay(_("No target can be placed.")):
-            self._place(self._desk.points.newTarget())
+            self._place(self._logic.points.newTarget())
 
     def placeTrajectory(self) -> None:
         """Let the next two clicks place a trajectory, from its entry to the target."""
         with slicer.util.tryWithErrorDisplay(_("No trajectory can be placed.")):
-            self._place(self._desk.points.newTrajectory())
+            self._place(self._logic.points.newTrajectory())
 
     def removePoint(self) -> None:
         """Remove the chosen target, or the last point of a trajectory."""
         with slicer.util.tryWithErrorDisplay(_("The point was not removed.")):
-            self._desk.points.remove(self._ui.planComboBox.currentNode(), self._row())
+            self._logic.points.remove(self._ui.planComboBox.currentNode(), self._row())
             self.showState()
 
     def undo(self) -> None:
         """Take the last placing or removal back."""
         with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
-            self._desk.points.undo()
+            self._logic.points.undo()
             self.showState()
 
     def send(self) -> None:
         """Show the plan in the simulator and ask whether the robot can carry it out."""
         with slicer.util.tryWithErrorDisplay(_("The plan was not sent.")):
-            self._desk.send(self._ui.planComboBox.currentNode(), self._row())
+            self._logic.send(self._ui.planComboBox.currentNode(), self._row())
 
-    def keepOrCancel(self) -> None:
-        """Copy the scenario chosen above with this plan and go on with the copy, or break off."""
+    def saveOrCancel(self) -> None:
+        """Copy the scenario chosen above with this plan and use the copy, or cancel."""
         if self._keeping.isUnderWay:
             self._keeping.cancel()
             return
-        with slicer.util.tryWithErrorDisplay(_("The plan was not kept.")):
+        with slicer.util.tryWithErrorDisplay(_("The plan was not saved.")):
             ui = self._ui
             scenario = self._keeping.run(
-                lambda tell: self._session.scenarioFiles.keepPlan(
+                lambda report: self._session.scenarioFiles.savePlan(
                     chosenData(ui.scenarioComboBox),
                     ui.planTitleLineEdit.text.strip(),
                     ui.planComboBox.currentNode(),
                     ui.programPathLineEdit.currentPath,
-                    tell,
+                    report,
                 )
             )
             if scenario is not None:
@@ -116,7 +115,7 @@ class PlanPanel:
     def showState(self, *_arguments: Any) -> None:
         """Show the plan as it stands; called about ten times a second."""
         plan, problem = self._read()
-        self._desk.follow(plan)
+        self._logic.follow(plan)
         ui = self._ui
         self._showPointButtons()
         setText(ui.planWorldText, problem if plan is None else _place(plan))
@@ -137,13 +136,13 @@ class PlanPanel:
             _("Copy the scenario above with this plan in the place of its targets or trajectory."),
             _("Place a target or a trajectory, or choose one."),
         )
-        color = {None: GRAY, True: GREEN, False: RED}[self._desk.isReachable]
-        sentence = self._desk.sentence
+        color = {None: GRAY, True: GREEN, False: RED}[self._logic.isReachable]
+        sentence = self._logic.sentence
         setLight(ui.reachableLight, color)
         setText(ui.reachableText, sentence or "–")
-        true = self._desk.trueErrorMm
-        untold = _("told once the trial is scored and the plan is shown")
-        setText(ui.planTrueText, untold if true is None else millimeters(true))
+        true = self._logic.trueErrorMm
+        unknown = _("known once the trial is scored and the plan is shown")
+        setText(ui.planTrueText, unknown if true is None else millimeters(true))
 
     def _showPointButtons(self) -> None:
         ui = self._ui
@@ -156,12 +155,12 @@ class PlanPanel:
         )
         setUsable(
             ui.undoPlanButton,
-            self._desk.points.canUndo,
+            self._logic.points.canUndo,
             _("Take back the last point that was placed or removed."),
             _("Nothing was placed or removed."),
         )
 
-    def _read(self) -> tuple[Plan | None, str]:
+    def _read(self) -> tuple[PlanOnImages | None, str]:
         """Return the plan, or why there is none; computed anew only where something changed."""
         node = self._ui.planComboBox.currentNode()
         self._offerTargets(node)
@@ -172,7 +171,7 @@ class PlanPanel:
         if seen != self._seen:
             self._seen = seen
             try:
-                self._known = self._desk.read(node, row), ""
+                self._known = self._logic.read(node, row), ""
             except InputError as error:
                 self._known = None, str(error)
         return self._known
@@ -196,7 +195,7 @@ class PlanPanel:
         self.showState()
 
 
-def _place(plan: Plan) -> str:
+def _place(plan: PlanOnImages) -> str:
     x, y, z = (fixed(value, 1) for value in plan.targetWorld)
     words = _("target x {x}, y {y}, z {z} mm").format(x=x, y=y, z=z)
     if plan.entryWorld is not None:
@@ -205,7 +204,7 @@ def _place(plan: Plan) -> str:
     return words
 
 
-def _expected(plan: Plan) -> str:
+def _expected(plan: PlanOnImages) -> str:
     if plan.expected is None:
         return "–"
     low, high = plan.expected.interval_mm

@@ -8,8 +8,8 @@ import qt
 
 from rastrainer.errors import InputError
 from rastrainer.panels.widgets import chosenData, textLabel
-from rastrainer.questionnaires.questionnaire import Item, Questionnaire
 from rastrainer.slicer.translation import _
+from rastrainer.study.questionnaires.questionnaire import Questionnaire, QuestionnaireItem
 
 
 class QuestionnaireForm:
@@ -65,7 +65,7 @@ class QuestionnaireForm:
         """
         chosen = [chosenData(box) for box in self._boxes]
         open_ = [str(number) for number, mark in enumerate(chosen, start=1) if not mark]
-        if open_:
+        if open_ and self._questionnaire is not None:
             raise InputError(
                 _("{title}: not answered yet: {items}.").format(
                     title=self._questionnaire.title, items=", ".join(open_)
@@ -81,7 +81,7 @@ class QuestionnaireForm:
         self._parts, self._boxes = [], []
 
 
-def _lineOf(item: Item, questionnaire: Questionnaire) -> str:
+def _lineOf(item: QuestionnaireItem, questionnaire: Questionnaire) -> str:
     """Return what an item is about, with its ends where they are its own."""
     if not item.anchors:
         return item.topic

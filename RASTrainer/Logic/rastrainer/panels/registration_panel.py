@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import qt
 import slicer
 
-from rastrainer.panels.kept_choices import keepChecked, keepChosen
 from rastrainer.panels.plain_text import buttonTitle, toolTip
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
+    keepChecked,
+    keepChosen,
     setChecked,
     setSentence,
     setUsable,
     textLabel,
 )
-from rastrainer.registration import AFFINE, RIGID, SIMILARITY, Registration
-from rastrainer.slicer.registration_desk import Comparison
-from rastrainer.slicer.registration_nodes import isApplied, setApplied
-from rastrainer.slicer.registration_remedies import Remedy
-from rastrainer.slicer.session import Session
+from rastrainer.registration.registration import AFFINE, RIGID, SIMILARITY, Registration
+from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.registration_logic import Comparison
+from rastrainer.slicer.logic.registration_remedies import Remedy
+from rastrainer.slicer.scene.registration_nodes import isApplied, setApplied
+from rastrainer.slicer.scene.views import jumpTo
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
-from rastrainer.slicer.slice_views import jumpTo
 from rastrainer.slicer.translation import _
-from rastrainer.target_error import INTERVAL_NOTE
 
 TITLES = {RIGID: _("Rigid"), SIMILARITY: _("Similarity"), AFFINE: _("Affine")}
 
@@ -34,13 +35,13 @@ TITLES = {RIGID: _("Rigid"), SIMILARITY: _("Similarity"), AFFINE: _("Affine")}
 class RegistrationPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
-        self._desk = session.registration
+        self._logic = session.registration
         self._remedyWidgets: list[Any] = []
         entries = [(title, kind) for kind, title in TITLES.items()]
         keepChosen(ui.kindComboBox, entries, session.settings, FIT)
-        self._desk.kind = chosenData(ui.kindComboBox)
+        self._logic.kind = chosenData(ui.kindComboBox)
         ui.kindComboBox.connect("activated(int)", self._chooseKind)
         for combo in (ui.movingComboBox, ui.fixedComboBox):
             combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
@@ -50,72 +51,71 @@ class RegistrationPanel:
         ui.fleButton.connect("clicked()", self.localizeChosen)
         ui.undoButton.connect("clicked()", self.undo)
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
-        ui.headColoredCheckBox.connect("toggled(bool)", self._desk.setHeadColored)
+        ui.headColoredCheckBox.connect("toggled(bool)", self._logic.setHeadColored)
         keepChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
-        self._desk.changed.connect(self._show)
+        self._logic.changed.connect(self._show)
         self._show()
 
     def close(self) -> None:
-        """Listen to the session no more."""
-        self._desk.changed.disconnect(self._show)
+        """Stop listening to the session."""
+        self._logic.changed.disconnect(self._show)
 
     def excludeChosen(self) -> None:
         """Register again without the chosen fiducial."""
         with slicer.util.tryWithErrorDisplay(_("The fiducial was not left out.")):
             row = self._ui.residualsTable.currentRow()
-            if row >= 0 and self._desk.shown is not None:
-                self._desk.exclude(self._desk.shown.labels[row])
+            if row >= 0 and self._logic.shown is not None:
+                self._logic.exclude(self._logic.shown.labels[row])
 
     def localizeChosen(self) -> None:
         """Register again with the stated localization error of the chosen fiducial."""
         with slicer.util.tryWithErrorDisplay(_("The localization error was not set.")):
             row = self._ui.residualsTable.currentRow()
-            if row >= 0 and self._desk.shown is not None:
-                self._desk.localize(self._desk.shown.labels[row], self._ui.fleSpinBox.value)
+            if row >= 0 and self._logic.shown is not None:
+                self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
 
     def undo(self) -> None:
         """Take the last change of the pairs back."""
         with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
-            self._desk.undo()
+            self._logic.undo()
 
     def showState(self) -> None:
         """Show what may have changed in the scene meanwhile."""
-        transform = self._desk.transform()
+        transform = self._logic.transform()
         setChecked(self._ui.appliedCheckBox, transform is not None and isApplied(transform))
         self._ui.appliedCheckBox.enabled = transform is not None
 
     def _chooseLists(self, _node: Any = None) -> None:
         ui = self._ui
-        self._desk.chooseLists(ui.movingComboBox.currentNode(), ui.fixedComboBox.currentNode())
+        self._logic.chooseLists(ui.movingComboBox.currentNode(), ui.fixedComboBox.currentNode())
 
     def _chooseTarget(self, node: Any = None) -> None:
-        self._desk.chooseTarget(node)
+        self._logic.chooseTarget(node)
 
     def _chooseKind(self, _index: int = 0) -> None:
         with slicer.util.tryWithErrorDisplay(_("The fit cannot be shown.")):
-            self._desk.chooseKind(chosenData(self._ui.kindComboBox))
+            self._logic.chooseKind(chosenData(self._ui.kindComboBox))
 
     def _apply(self, applied: bool) -> None:
-        transform = self._desk.transform()
+        transform = self._logic.transform()
         if transform is not None:
             setApplied(transform, applied)
 
     def _chooseFiducial(self) -> None:
         """Bring the chosen fiducial into the slices."""
-        row, shown = self._ui.residualsTable.currentRow(), self._desk.shown
-        hasRow = shown is not None and 0 <= row < len(shown.labels)
-        if hasRow:
+        row, shown = self._ui.residualsTable.currentRow(), self._logic.shown
+        if shown is not None and 0 <= row < len(shown.labels):
             jumpTo(slicer.mrmlScene, shown.fixed_mm[row])
         self._showButtons()
 
     def _show(self) -> None:
-        ui, comparison = self._ui, self._desk.comparison
-        setSentence(ui.registrationText, _told(comparison) if comparison else self._desk.problem)
+        ui, comparison = self._ui, self._logic.comparison
+        setSentence(ui.registrationText, _told(comparison) if comparison else self._logic.problem)
         setSentence(ui.treText, _treText(comparison) if comparison else "")
         ui.treText.toolTip = toolTip(INTERVAL_NOTE)
         fits = [] if comparison is None else _fitRows(comparison)
         fillTable(ui.fitsTable, fits, [INTERVAL_NOTE] * len(fits))
-        shown = self._desk.shown
+        shown = self._logic.shown
         fillTable(ui.residualsTable, [] if shown is None else self._residualRows(shown))
         self._showRemedies(() if comparison is None else comparison.remedies)
         self._showButtons()
@@ -123,7 +123,7 @@ class RegistrationPanel:
 
     def _showButtons(self) -> None:
         ui = self._ui
-        hasRow = self._desk.shown is not None and ui.residualsTable.currentRow() >= 0
+        hasRow = self._logic.shown is not None and ui.residualsTable.currentRow() >= 0
         setUsable(
             ui.excludeButton,
             hasRow,
@@ -135,22 +135,22 @@ class RegistrationPanel:
             hasRow,
             _(
                 "Weight the chosen fiducial by 1/FLE² in the rigid fit. Only ratios matter: "
-                "others have 1 mm, and the size of the errors is told from the residuals."
+                "others have 1 mm, and the size of the errors is estimated from the residuals."
             ),
             _("Choose a row of the table first."),
         )
         setUsable(
             ui.undoButton,
-            self._desk.canUndo,
+            self._logic.canUndo,
             _("Take the last change of the pairs back."),
             _("No pair was changed."),
         )
 
     def _residualRows(self, shown: Registration) -> list[tuple[str, ...]]:
-        without = self._desk.leaveOneOut
-        if without is None:
-            without = [None] * len(shown.labels)
-        sizes = dict(self._desk.choices.fle)
+        without: Sequence[float | None] = [None] * len(shown.labels)
+        if self._logic.leaveOneOut is not None:
+            without = self._logic.leaveOneOut.tolist()
+        sizes = dict(self._logic.choices.fle)
         return [
             (label, _number(residual), _number(alone), _number(sizes.get(label)))
             for label, residual, alone in zip(
@@ -185,7 +185,7 @@ class RegistrationPanel:
     def _applying(self, remedy: Remedy) -> Callable[[], None]:
         def apply() -> None:
             with slicer.util.tryWithErrorDisplay(_("The pairs were not changed.")):
-                self._desk.change(remedy.choices)
+                self._logic.change(remedy.choices)
 
         return apply
 
@@ -209,7 +209,7 @@ def _told(comparison: Comparison) -> str:
 def _treText(comparison: Comparison) -> str:
     error = comparison.errors.get(RIGID)
     if error is None:
-        return _("Place or choose a target to be told the error to expect there.")
+        return _("Place or choose a target to see the error to expect there.")
     low, high = error.interval_mm
     return _(
         "Expected TRE at the target, rigid: {expected:.2f} mm (95 %: {low:.2f} to {high:.2f} mm). "
@@ -218,7 +218,7 @@ def _treText(comparison: Comparison) -> str:
 
 
 def _fitRows(comparison: Comparison) -> list[tuple[str, ...]]:
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for kind, title in TITLES.items():
         fit, error = comparison.fits.get(kind), comparison.errors.get(kind)
         if fit is None:

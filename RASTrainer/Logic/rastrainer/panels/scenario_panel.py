@@ -8,14 +8,13 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.panels.application import askWhereToSave, fitSliceViews, fitThreeDViews
 from rastrainer.panels.cancelable_work import CancelableWork
-from rastrainer.panels.fitted_views import fitSliceViews, fitThreeDViews
-from rastrainer.panels.save_dialog import askWhereToSave
 from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setText, setUsable
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.scenario_library import ListedScenario
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.session import Session
+from rastrainer.scenario.library import ListedScenario
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.settings import SCENARIO, TASK
 from rastrainer.slicer.translation import _
 
@@ -25,11 +24,11 @@ PICTURE_HEIGHT = 180
 class ScenarioPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
-        self._desk = session.scenario
-        self._work = CancelableWork(self._tellOfHead, self._showProgress, self._showUsable)
+        self._logic = session.scenario
+        self._work = CancelableWork(self._showHeadMessage, self._showProgress, self._showUsable)
         self._writing = CancelableWork(self._tell, lambda _step, _share: None, self._showUsable)
         self._adding = CancelableWork(self._tell, self._showAdding, self._showUsable)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
@@ -40,24 +39,24 @@ class ScenarioPanel:
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self.showRobot)
         ui.useHeadButton.connect("clicked()", self.useHeadOrCancel)
-        ui.exportScenarioButton.connect("clicked()", self.giveOrCancel)
-        ui.importScenarioButton.connect("clicked()", self.takeInOrCancel)
+        ui.exportScenarioButton.connect("clicked()", self.exportOrCancel)
+        ui.importScenarioButton.connect("clicked()", self.importOrCancel)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         session.link.statusChanged.connect(self._showUsable)
         session.training.answered.connect(self._tell)
-        session.scenarioMade.connect(self.goOnWith)
+        session.scenarioMade.connect(self.continueWith)
         session.images.shown.connect(self._frameImages)
         session.images.problemFound.connect(self._tell)
         self._fill(session.settings.get(SCENARIO))
 
     def close(self) -> None:
-        """Break off what is under way, and listen to the session no more."""
+        """Cancel what is under way, and stop listening to the session."""
         self._work.cancel()
         self._writing.cancel()
         self._adding.cancel()
         self._session.link.statusChanged.disconnect(self._showUsable)
         self._session.training.answered.disconnect(self._tell)
-        self._session.scenarioMade.disconnect(self.goOnWith)
+        self._session.scenarioMade.disconnect(self.continueWith)
         self._session.images.shown.disconnect(self._frameImages)
         self._session.images.problemFound.disconnect(self._tell)
 
@@ -65,12 +64,12 @@ class ScenarioPanel:
         """Show the chosen head and the fiducials of the chosen task."""
         with slicer.util.tryWithErrorDisplay(_("The scenario cannot be shown."), waitCursor=True):
             name = chosenData(self._ui.scenarioComboBox)
-            self._desk.show(name, self._session.task)
-            self._session.slices.show(self._desk.find(name).target_position)
+            self._logic.show(name, self._session.task)
+            self._session.slices.show(self._logic.find(name).target_position)
             fitThreeDViews()
 
     def loadIntoSimulator(self) -> None:
-        """Let the simulator go on with the chosen head."""
+        """Load the chosen head into the simulator."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not loaded.")):
             scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
             self._session.training.loadScenario(scenario.name)
@@ -79,26 +78,26 @@ class ScenarioPanel:
     def showRobot(self, shown: bool) -> None:
         """Show the robot in the 3D view, or hide it."""
         with slicer.util.tryWithErrorDisplay(_("The robot cannot be shown.")):
-            self._desk.setRobotShown(shown)
+            self._logic.setRobotShown(shown)
             if shown:
                 fitThreeDViews()
 
     def useHeadOrCancel(self) -> None:
-        """Look at a model, or at the skin of a volume, as the head, or break off."""
+        """Look at a model, or at the skin of a volume, as the head, or cancel."""
         if self._work.isUnderWay:
             self._work.cancel()
             return
         with slicer.util.tryWithErrorDisplay(_("This cannot be used as the head.")):
             node = self._ui.headModelComboBox.currentNode()
-            used = self._work.run(lambda tell: self._desk.useHead(node, tell))
+            used = self._work.run(lambda report: self._logic.useHead(node, report))
             if used is not None:
                 model, warnings = used
                 fitThreeDViews()
-                told = _("{name} is the head now; the simulator keeps its own.")
-                self._tellOfHead(" ".join([told.format(name=model.GetName()), *warnings]))
+                text = _("{name} is the head now; the simulator keeps its own.")
+                self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
 
-    def takeInOrCancel(self) -> None:
-        """Take a scenario in that comes as a zip file, and choose it, or break off."""
+    def importOrCancel(self) -> None:
+        """Take a scenario in that comes as a zip file, and choose it, or cancel."""
         if self._adding.isUnderWay:
             self._adding.cancel()
             return
@@ -107,13 +106,17 @@ class ScenarioPanel:
                 slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
             )
             files = self._session.scenarioFiles
-            added = self._adding.run(lambda tell: files.takeIn(Path(path), tell)) if path else None
+            added = (
+                self._adding.run(lambda report: files.importScenario(Path(path), report))
+                if path
+                else None
+            )
             if added is not None:
                 self._fill(added.name)
                 self._tell(_("{title} is added.").format(title=added.title))
 
-    def giveOrCancel(self) -> None:
-        """Write the chosen scenario as a zip file, or break off."""
+    def exportOrCancel(self) -> None:
+        """Write the chosen scenario as a zip file, or cancel."""
         if self._writing.isUnderWay:
             self._writing.cancel()
             return
@@ -127,14 +130,14 @@ class ScenarioPanel:
             if path is not None:
                 own = self._ui.programPathLineEdit.currentPath
                 taken = self._writing.run(
-                    lambda tell: self._session.scenarioFiles.give(
-                        name, path, keepsFace, keepsNames, own, tell
+                    lambda report: self._session.scenarioFiles.exportScenario(
+                        name, path, keepsFace, keepsNames, own, report
                     )
                 )
                 if taken is not None:
                     self._tell(_("{path} is written.").format(path=path) + f" {taken}")
 
-    def goOnWith(self, name: str) -> None:
+    def continueWith(self, name: str) -> None:
         """Choose a scenario that has just been made, show it, and have the simulator take it."""
         self._ui.scenarioCollapsibleButton.collapsed = False
         self._fill(name)
@@ -150,21 +153,21 @@ class ScenarioPanel:
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:
-            self._tellOfHead(f"{step}: {100 * share:.0f} %")
+            self._showHeadMessage(f"{step}: {100 * share:.0f} %")
 
     def _showAdding(self, step: str, _share: float) -> None:
         self._tell(step)
 
-    def _tellOfHead(self, sentence: str) -> None:
+    def _showHeadMessage(self, sentence: str) -> None:
         setText(self._ui.otherHeadText, sentence)
 
     def showState(self) -> None:
         """Show what may have changed in the scene meanwhile."""
-        setChecked(self._ui.robotCheckBox, self._desk.isRobotShown)
+        setChecked(self._ui.robotCheckBox, self._logic.isRobotShown)
 
     def _fill(self, wanted: str = "") -> None:
         """Offer the scenarios there are, and choose one; the first where it is not there."""
-        listed = self._desk.listed()
+        listed = self._logic.listed()
         names = [entry.name for entry in listed if not entry.problem] or [""]
         chosen = wanted if wanted in names else names[0]
         combo = self._ui.scenarioComboBox
@@ -177,7 +180,7 @@ class ScenarioPanel:
     def _showTasks(self, _index: int = 0) -> None:
         """Show the chosen scenario's picture and tasks, or why it cannot be used."""
         name = chosenData(self._ui.scenarioComboBox)
-        entry = next((each for each in self._desk.listed() if each.name == name), None)
+        entry = next((each for each in self._logic.listed() if each.name == name), None)
         self._showPicture(entry)
         isUsable = entry is not None and not entry.problem
         self._ui.taskComboBox.enabled = isUsable
@@ -185,7 +188,7 @@ class ScenarioPanel:
         if not isUsable:
             self._tell(_("There is no scenario.") if entry is None else entry.problem)
             return
-        scenario = self._desk.find(name)
+        scenario = self._logic.find(name)
         tasks = [(task.title, task.name) for task in scenario.tasks]
         known = [task for _title, task in tasks]
         first = next((task for task in known if task != TRIAL_RUN), known[0])
@@ -196,13 +199,13 @@ class ScenarioPanel:
 
     def _showPicture(self, entry: ListedScenario | None) -> None:
         label = self._ui.scenarioPicture
-        hasPicture = entry is not None and entry.preview is not None
-        if hasPicture:
-            label.setPixmap(qt.QPixmap(str(entry.preview)).scaledToHeight(PICTURE_HEIGHT))
-        label.visible = hasPicture
+        preview = None if entry is None else entry.preview
+        if preview is not None:
+            label.setPixmap(qt.QPixmap(str(preview)).scaledToHeight(PICTURE_HEIGHT))
+        label.visible = preview is not None
 
     def _chooseTask(self, _index: int = 0) -> None:
-        scenario = self._desk.find(chosenData(self._ui.scenarioComboBox))
+        scenario = self._logic.find(chosenData(self._ui.scenarioComboBox))
         task = scenario.task(chosenData(self._ui.taskComboBox))
         self._session.chooseTask(task.name, task.title)
         self._tell(
@@ -228,7 +231,7 @@ class ScenarioPanel:
         setUsable(
             self._ui.loadScenarioButton,
             isConnected and isUsable,
-            _("Let the simulator go on with this head; only between two trials."),
+            _("Load this head into the simulator; only between two trials."),
             _("Connect to the simulator first.") if isUsable else broken,
         )
         hasHead = self._ui.headModelComboBox.currentNode() is not None

@@ -8,13 +8,10 @@ from typing import Any
 import qt
 import slicer
 
-from rastrainer.ctps import CTPS_WARNING
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
+from rastrainer.panels.application import TABLES, askWhereToSave, fitThreeDViews, showTable
 from rastrainer.panels.cancelable_work import CancelableWork
-from rastrainer.panels.fitted_views import fitThreeDViews
-from rastrainer.panels.save_dialog import askWhereToSave
-from rastrainer.panels.shown_results import TABLES, showTable
 from rastrainer.panels.widgets import (
     chosenData,
     fillComboBox,
@@ -25,10 +22,10 @@ from rastrainer.panels.widgets import (
     setUsable,
 )
 from rastrainer.report.report import write_report
-from rastrainer.report.study_data import read_study_data
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.score_board import (
-    Standing,
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.scene.score_board import (
+    GroupComparison,
     ctpsRows,
     motionRows,
     scoreRows,
@@ -37,16 +34,17 @@ from rastrainer.slicer.score_board import (
     showStandings,
     standings,
 )
-from rastrainer.slicer.session import Session
 from rastrainer.slicer.translation import _
-from rastrainer.study import StoredTrial
-from rastrainer.trial_analysis import TrialAnalysis
+from rastrainer.study.database.study import StoredTrial
+from rastrainer.study.study_data import read_study_data
+from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.ctps import CTPS_WARNING
 
 
 class ScorePanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
         self._trainees = session.trainees
@@ -66,7 +64,7 @@ class ScorePanel:
         self._show()
 
     def close(self) -> None:
-        """Break off what is under way, and listen to the session no more."""
+        """Cancel what is under way, and stop listening to the session."""
         self._work.cancel()
         self._trainees.changed.disconnect(self._show)
         self._session.trials.trialScored.disconnect(self._noteNewTrial)
@@ -92,13 +90,15 @@ class ScorePanel:
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
         if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The trials were not exported.")):
-                written = self._work.run(lambda tell: self._trainees.exportHistories(path, tell))
+                written = self._work.run(
+                    lambda report: self._trainees.exportHistories(path, report)
+                )
                 if written is not None:
-                    told = _(
+                    text = _(
                         "{count} trials are written to {path}. Trainees left out because they did "
                         "not agree to research: {leftOut}."
                     )
-                    self._tell(told.format(count=written[0], path=path, leftOut=written[1]))
+                    self._tell(text.format(count=written[0], path=path, leftOut=written[1]))
 
     def writeReport(self) -> None:
         """Write the report of the whole study into a folder, and open it."""
@@ -108,27 +108,29 @@ class ScorePanel:
             with slicer.util.tryWithErrorDisplay(_("The report was not written.")):
                 study = self._session.studyPath
                 page = self._work.run(
-                    lambda tell: inBackground(lambda _tell: _reportOn(study, Path(folder)), tell)
+                    lambda report: inBackground(
+                        lambda _tell: _reportOn(study, Path(folder)), report
+                    )
                 )
                 if page is not None:
                     self._tell(_("The report is {path}.").format(path=page))
                     qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
 
     def replayOrCancel(self) -> None:
-        """Show the trial again in the 3D view, or break off."""
+        """Show the trial again in the 3D view, or cancel."""
         if self._work.isUnderWay:
             self._work.cancel()
             return
         with slicer.util.tryWithErrorDisplay(_("The trial is not shown.")):
-            trial = self._trial()
-            self._work.run(lambda tell: self._session.replay.show(trial, tell))
+            trial = self._chosenTrial()
+            self._work.run(lambda report: self._session.replay.show(trial, report))
             fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
         """Show again how the worst touch came about."""
         with slicer.util.tryWithErrorDisplay(_("The touch is not shown.")):
-            trial = self._trial()
-            self._work.run(lambda tell: self._session.replay.showWorstTouch(trial, tell))
+            trial = self._chosenTrial()
+            self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
     def showState(self) -> None:
         """Show where the replay stands, which plays by itself, and whether tables are shown."""
@@ -212,7 +214,7 @@ class ScorePanel:
                 score, others = feedback.sentences[:parts], feedback.sentences[parts:]
                 sentences, self._worst = [" ".join(score), *others], feedback.worst.label
             elif trial is not None:
-                sentences = [_("What there is to say about the trial is being worked out.")]
+                sentences = [_("Feedback on the trial is being prepared.")]
         setSentence(self._ui.feedbackText, "\n".join(sentences))
         self._showUsable()
 
@@ -220,7 +222,7 @@ class ScorePanel:
         ui, isAtWork = self._ui, self._work.isUnderWay
         hasTrial = bool(chosenData(ui.trialComboBox))
         reason = _("Choose a trial first.")
-        busy = _("Wait until what was begun is done.")
+        busy = _("Wait until the work under way is done.")
         setUsable(
             ui.showTablesButton,
             hasTrial,
@@ -234,7 +236,7 @@ class ScorePanel:
             _("Show the tool, the touches and the clearance over time, as a Sequence."),
             reason,
         )
-        unjudged = reason if not hasTrial else _("The trial cannot be judged.")
+        unjudged = reason if not hasTrial else _("The trial cannot be analyzed.")
         setUsable(
             ui.worstTouchButton,
             bool(self._worst) and not isAtWork,
@@ -257,7 +259,13 @@ class ScorePanel:
         trialId = chosenData(self._ui.trialComboBox)
         return self._trainees.study.trial(trialId) if trialId else None
 
-    def _standings(self, trial: StoredTrial) -> list[Standing]:
+    def _chosenTrial(self) -> StoredTrial:
+        trial = self._trial()
+        if trial is None:
+            raise InputError(_("Choose a trial first."))
+        return trial
+
+    def _standings(self, trial: StoredTrial) -> list[GroupComparison]:
         return standings(self._trainees.study, trial, self._session.cohort)
 
 
@@ -274,7 +282,7 @@ def _entry(number: int, trial: StoredTrial) -> str:
     )
 
 
-def _standingRow(standing: Standing) -> tuple[str, ...]:
+def _standingRow(standing: GroupComparison) -> tuple[str, ...]:
     return (
         f"{standing.title} ({standing.unit})" if standing.unit else standing.title,
         fixed(standing.value, 2),

@@ -6,19 +6,18 @@ from typing import Any
 
 import slicer
 
-from rastrainer.panels.kept_choices import keepPath, keepText
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.widgets import setText, setUsable
-from rastrainer.slicer.session import Session
+from rastrainer.panels.widgets import keepPath, keepText, setText, setUsable
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS
-from rastrainer.slicer.simulator_setup import SimulatorSetup
 from rastrainer.slicer.translation import _
 
 
 class SetupPanel:
     """Wires the section's widgets to the session; open while there is something to set up."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._simulator = session.simulator
         keepText(ui.indexLineEdit, session.settings, INDEX)
@@ -41,12 +40,12 @@ class SetupPanel:
         ui.setupCollapsibleButton.collapsed = not self._isNeeded()
 
     def close(self) -> None:
-        """Listen to the session no more."""
+        """Stop listening to the session."""
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
     def setUpOrCancel(self) -> None:
-        """Begin the set-up, or break it off."""
+        """Begin the set-up, or cancel it."""
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be set up.")):
             if self._simulator.setup.isRunning:
                 self._simulator.setup.cancel()
@@ -121,8 +120,8 @@ class SetupPanel:
     def _progressSentence(self) -> str:
         progress = self._simulator.setup.progress
         if progress.isInstalling:
-            return _("All packages are there and are being put into their folder.")
-        return _("Package {number} of {count} is being fetched.").format(
+            return _("All packages are downloaded and are being installed.")
+        return _("Package {number} of {count} is being downloaded.").format(
             number=progress.done, count=progress.count
         )
 
@@ -142,7 +141,7 @@ class SetupPanel:
 
 
 def costSentence(ui: Any, setup: SimulatorSetup) -> str:
-    """Tell from where, how much and into which folder, before anything is done."""
+    """Say from where, how much and into which folder, before anything is done."""
     source = _("the public package index of Python")
     if ui.wheelsPathLineEdit.currentPath:
         source = _("the folder {path}").format(path=ui.wheelsPathLineEdit.currentPath)
@@ -155,7 +154,7 @@ def costSentence(ui: Any, setup: SimulatorSetup) -> str:
     sizes = setup.package.sizes()
     if sizes is None:
         return where
-    size = _("About {download} MB are fetched, and {kept} MB stay.").format(
+    size = _("About {download} MB are downloaded, and {kept} MB stay.").format(
         download=sizes.downloadMB, kept=sizes.keptMB
     )
     return f"{where} {size}"

@@ -7,28 +7,30 @@ from typing import Any
 
 import slicer
 
-from rastrainer.panels.kept_choices import keepChecked, keepNumber, keepText
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.setup_panel import costSentence
 from rastrainer.panels.widgets import (
     LINK_COLORS,
+    keepChecked,
+    keepNumber,
+    keepText,
     setLight,
     setSentence,
     setText,
     setUsable,
 )
-from rastrainer.slicer.free_port import freePort
-from rastrainer.slicer.heartbeat import LinkState, LinkStatus
-from rastrainer.slicer.session import Session
+from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.simulator_logic import freePort
+from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, PORT
-from rastrainer.slicer.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
 
 
 class SimulatorPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._link = session.link
         self._simulator = session.simulator
@@ -58,7 +60,7 @@ class SimulatorPanel:
         self._showPairing()
 
     def close(self) -> None:
-        """Listen to the session no more."""
+        """Stop listening to the session."""
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
@@ -84,14 +86,14 @@ class SimulatorPanel:
 
     def toggleConnection(self) -> None:
         """Connect to the simulator, or disconnect."""
-        with slicer.util.tryWithErrorDisplay(_("The connection could not be begun.")):
+        with slicer.util.tryWithErrorDisplay(_("The connection could not be started.")):
             if self._link.status.state is LinkState.OFF:
                 self._link.connectTo(self._ui.hostLineEdit.text, self._ui.portSpinBox.value)
             else:
                 self._link.disconnect()
 
     def testConnection(self) -> None:
-        """Look once whether a simulator answers, and say so when it is known."""
+        """Check once whether a simulator answers, and say so when it is known."""
         with slicer.util.tryWithErrorDisplay(_("The connection could not be tested.")):
             host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
             self._showWords(self._link.testConnection(host, port, self._showTest))
@@ -117,12 +119,12 @@ class SimulatorPanel:
     def _showProgram(self, _path: str = "") -> None:
         ui, setup, program = self._ui, self._simulator.setup, self._simulator.program
         if setup.isRunning:
-            told = _("The simulator is being set up.")
+            text = _("The simulator is being set up.")
         elif self._needsSetup() and program.state is ProgramState.STOPPED:
-            told = _("The simulator is not set up yet: see Set-up.")
+            text = _("The simulator is not set up yet: see Set-up.")
         else:
-            told = program.sentence
-        setText(ui.programText, told)
+            text = program.sentence
+        setText(ui.programText, text)
         isEnding = program.state is ProgramState.STOPPING
         setUsable(
             ui.startSimulatorButton,
@@ -162,8 +164,8 @@ class SimulatorPanel:
         setUsable(
             ui.probeButton,
             isOff,
-            _("Look once whether a simulator answers at this host and port."),
-            _("Disconnect first: the state below tells how the connection is."),
+            _("Check once whether a simulator answers at this host and port."),
+            _("Disconnect first: the state of the connection is shown below."),
         )
         if status.state is not LinkState.CONNECTED:
             setSentence(ui.trainingText, "")
@@ -179,3 +181,47 @@ class SimulatorPanel:
 
     def _showTraining(self, state: Mapping[str, Any]) -> None:
         setSentence(self._ui.trainingText, str(state.get("instruction", "")))
+
+
+class RunningSimulatorPanel:
+    """Wires its widgets to the session; seen only where a simulator was found."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        self._ui = ui
+        self._running = session.simulator.running
+        ui.connectToRunningButton.connect("clicked()", self.connectToIt)
+        ui.endRunningButton.connect("clicked()", self.endIt)
+        self._running.changed.connect(self._show)
+        self._running.look()
+        self._show()
+
+    def close(self) -> None:
+        """Stop listening to the session."""
+        self._running.changed.disconnect(self._show)
+
+    def connectToIt(self) -> None:
+        """Connect to the simulator that runs already."""
+        with slicer.util.tryWithErrorDisplay(_("The connection could not be started.")):
+            self._running.connect()
+
+    def endIt(self) -> None:
+        """End the simulator that runs already."""
+        with slicer.util.tryWithErrorDisplay(_("The simulator could not be ended.")):
+            self._running.end()
+
+    def _show(self) -> None:
+        ui, running = self._ui, self._running
+        ui.runningSimulatorFrame.visible = running.holder is not None
+        setText(ui.runningSimulatorText, running.sentence)
+        setUsable(
+            ui.connectToRunningButton,
+            running.canConnect,
+            _("Continue with this simulator, and with any trial that is under way in it."),
+            _("Its address is not known."),
+        )
+        setUsable(
+            ui.endRunningButton,
+            running.canEnd,
+            _("End this simulator and its window. A trial under way can be resumed afterward."),
+            _("It is ending, or its process is not known."),
+        )

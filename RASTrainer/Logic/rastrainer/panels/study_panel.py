@@ -11,16 +11,16 @@ import qt
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.experiment.progress import SKIPPED, Progress, StepEntry
-from rastrainer.experiment.steps import Step, StepKind
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.questionnaire_form import QuestionnaireForm
 from rastrainer.panels.widgets import fillTable, setSentence, setText, setUsable
-from rastrainer.questionnaires.catalog import find_questionnaire
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.session import Session
-from rastrainer.slicer.study_desk import TRIALS
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.study_logic import TRIALS
 from rastrainer.slicer.translation import _
+from rastrainer.study.protocol.progress import SKIPPED, Progress, StepEntry
+from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.study.questionnaires.catalog import find_questionnaire
 
 TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
 
@@ -28,10 +28,10 @@ TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
 class StudyPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
-        self._desk = session.study
+        self._logic = session.study
         self._form = QuestionnaireForm(ui.questionnaireWidget)
         self._progress: Progress | None = None
         self._judged: tuple | None = None
@@ -42,12 +42,12 @@ class StudyPanel:
         ui.repeatStepButton.connect("clicked()", self.explainRepeat)
         ui.saveAnswersButton.connect("clicked()", self.saveAnswers)
         ui.protocolPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
-        self._desk.changed.connect(self._show)
+        self._logic.changed.connect(self._show)
         self._show()
 
     def close(self) -> None:
-        """Listen to the session no more."""
-        self._desk.changed.disconnect(self._show)
+        """Stop listening to the session."""
+        self._logic.changed.disconnect(self._show)
 
     def begin(self) -> None:
         """Make the chosen file the protocol of the study, after asking."""
@@ -57,34 +57,34 @@ class StudyPanel:
                 "one needs another study's file."
             )
             if slicer.util.confirmYesNoDisplay(question, _("Begin the study")):
-                self._desk.begin(Path(self._ui.protocolPathLineEdit.currentPath))
+                self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
 
     def enroll(self) -> None:
         """Give the chosen trainee a place in the study."""
         with slicer.util.tryWithErrorDisplay(_("The trainee was not enrolled.")):
-            self._desk.enroll()
+            self._logic.enroll()
 
     def startStep(self) -> None:
         """Start the trial that comes next."""
         with slicer.util.tryWithErrorDisplay(_("The step was not started.")):
-            self._desk.startStep()
+            self._logic.startStep()
 
     def saveAnswers(self) -> None:
         """Keep the answers of the questionnaire."""
-        with slicer.util.tryWithErrorDisplay(_("The answers were not kept.")):
-            self._desk.answer(self._form.answers())
+        with slicer.util.tryWithErrorDisplay(_("The answers were not saved.")):
+            self._logic.answer(self._form.answers())
 
     def skipStep(self) -> None:
         """Leave the step out, for a reason; one that does not do can be completed."""
         question = _("Why is it left out? The reason goes into the report.")
         with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
-            self._withReason(_("Skip the step"), question, self._desk.skipStep)
+            self._withReason(_("Skip the step"), question, self._logic.skipStep)
 
     def explainRepeat(self) -> None:
         """Say why an aborted trial is played again; only then can it be started."""
         question = _("Why is the aborted trial played again? The reason goes into the report.")
-        with slicer.util.tryWithErrorDisplay(_("The reason was not kept.")):
-            self._withReason(_("Repeat the step"), question, self._desk.explainRepeat)
+        with slicer.util.tryWithErrorDisplay(_("The reason was not saved.")):
+            self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
     def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:
         """Do what takes a reason; one that does not do can be completed."""
@@ -112,13 +112,13 @@ class StudyPanel:
         progress = self._progress
         step = None if progress is None else progress.next_step
         self._warn()
-        if step is None or step.kind not in TIMED:
+        if progress is None or step is None or step.kind not in TIMED:
             setSentence(self._ui.stepTimeText, "")
         else:
             setSentence(
                 self._ui.stepTimeText,
                 _("{over} of {minutes:g} min are over.").format(
-                    over=_clock(self._desk.minutesOver(progress)), minutes=step.minutes
+                    over=_clock(self._logic.minutesOver(progress)), minutes=step.minutes
                 ),
             )
         self._showButtons()
@@ -130,13 +130,13 @@ class StudyPanel:
         if key != self._judged:
             self._judged = key
             with contextlib.suppress(InputError):
-                setSentence(self._ui.besideText, self._desk.beside())
+                setSentence(self._ui.offProtocolText, self._logic.offProtocolSentence())
 
     def _show(self) -> None:
         ui = self._ui
         self._judged = None
         try:
-            protocol, progress = self._desk.protocol(), self._desk.progress()
+            protocol, progress = self._logic.protocol(), self._logic.progress()
         except InputError as error:
             protocol = progress = None
             setSentence(ui.protocolText, str(error))
@@ -155,10 +155,13 @@ class StudyPanel:
             ui.stepsProgressBar.value = len(progress.entries)
             fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])
         step = None if progress is None else progress.next_step
-        asked = step is not None and step.kind is StepKind.QUESTIONNAIRE
-        ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = asked
-        key = (self._session.trainees.chosen, step.name) if asked else None
-        self._form.show(key, find_questionnaire(step.questionnaire) if asked else None)
+        asked = step if step is not None and step.kind is StepKind.QUESTIONNAIRE else None
+        ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = asked is not None
+        if asked is None:
+            self._form.show(None, None)
+        else:
+            key = (self._session.trainees.chosen, asked.name)
+            self._form.show(key, find_questionnaire(asked.questionnaire))
         isAborted = progress is not None and bool(progress.unexplained)
         ui.repeatStepButton.visible = isAborted
         ui.startStepButton.visible = step is not None and step.kind in TRIALS and not isAborted

@@ -9,9 +9,8 @@ from typing import Any
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.save_dialog import askWhereToSave
-from rastrainer.panels.shown_results import CALIBRATION, CURVE, showChart
 from rastrainer.panels.widgets import (
     chosenData,
     fillComboBox,
@@ -22,22 +21,21 @@ from rastrainer.panels.widgets import (
     setUsable,
 )
 from rastrainer.protocol import Mode
-from rastrainer.slicer.calibration_nodes import showCalibration
-from rastrainer.slicer.history_nodes import showLearningCurve
-from rastrainer.slicer.session import Session
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.scene.study_plots import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY
 from rastrainer.slicer.translation import _
-from rastrainer.study import StoredTrial, Trainee
-from rastrainer.study_aborted import StoredAborted
+from rastrainer.study.database.aborted_trials import StoredAborted
+from rastrainer.study.database.study import StoredTrial, Trainee
 
 
 class TraineesPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
-        self._desk = session.trainees
+        self._logic = session.trainees
         self._isProblemShown = False
         ui.studyPathLineEdit.currentPath = str(session.studyPath)
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
@@ -52,15 +50,15 @@ class TraineesPanel:
         ui.calibrationButton.connect("clicked()", self.showCalibration)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         ui.exportHistoryButton.connect("clicked()", self.exportHistory)
-        self._desk.changed.connect(self._show)
+        self._logic.changed.connect(self._show)
         self._show()
 
     def close(self) -> None:
-        """Listen to the session no more."""
-        self._desk.changed.disconnect(self._show)
+        """Stop listening to the session."""
+        self._logic.changed.disconnect(self._show)
 
     def chooseStudy(self, path: str) -> None:
-        """Go on with the study of another file, once its whole name is there."""
+        """Continue with the study of another file, once its whole name is there."""
         if not path.endswith(".db") or Path(path) == self._session.studyPath:
             return
         with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
@@ -72,64 +70,64 @@ class TraineesPanel:
 
     def chooseTrainee(self, _index: int = 0) -> None:
         """Choose the trainee of the list."""
-        self._desk.choose(chosenData(self._ui.traineeComboBox))
+        self._logic.choose(chosenData(self._ui.traineeComboBox))
 
     def createTrainee(self) -> None:
         """Add a trainee and choose them."""
         ui = self._ui
         with slicer.util.tryWithErrorDisplay(_("The trainee was not created.")):
-            self._desk.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
+            self._logic.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
             ui.pseudonymLineEdit.text = ""
             ui.newConsentCheckBox.checked = False
 
     def setConsent(self, consent: bool) -> None:
         """Note whether the chosen trainee agrees to research."""
-        with slicer.util.tryWithErrorDisplay(_("The consent was not noted.")):
-            self._desk.setConsent(consent)
+        with slicer.util.tryWithErrorDisplay(_("The consent was not saved.")):
+            self._logic.setConsent(consent)
 
     def archive(self) -> None:
         """Archive the chosen trainee, or bring them back."""
         with slicer.util.tryWithErrorDisplay(_("The trainee was not archived.")):
-            trainee = self._desk.chosenTrainee()
+            trainee = self._logic.chosenTrainee()
             if trainee is None:
                 return
             if not trainee.archived:
                 self._ui.archivedCheckBox.checked = True
-            self._desk.setArchived(not trainee.archived)
+            self._logic.setArchived(not trainee.archived)
 
     def exportTrainee(self) -> None:
         """Write everything about the chosen trainee into a file."""
-        name = f"{self._desk.chosen}.json"
+        name = f"{self._logic.chosen}.json"
         path = askWhereToSave(_("Export the trainee"), name, "JSON (*.json)")
         if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The trainee was not exported.")):
-                count = self._desk.export(path)
+                count = self._logic.export(path)
                 self._say(_("{count} trials are written to {path}."), count=count, path=path)
 
     def exportHistory(self) -> None:
         """Write the trials of the chosen trainee as a table."""
-        name = f"{self._desk.chosen}.csv"
+        name = f"{self._logic.chosen}.csv"
         path = askWhereToSave(_("Export the history"), name, "CSV (*.csv)")
         if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The history was not exported.")):
-                count = self._desk.exportHistory(path)
+                count = self._logic.exportHistory(path)
                 self._say(_("{count} trials are written to {path}."), count=count, path=path)
 
     def deleteTrainee(self) -> None:
         """Delete the chosen trainee for good, after asking."""
         with slicer.util.tryWithErrorDisplay(_("The trainee was not deleted.")):
-            name, trials = self._desk.chosen, len(self._desk.history())
+            name, trials = self._logic.chosen, len(self._logic.history())
             question = _(
                 "Delete {name} with {trials} trials from the study and from the journals on this "
                 "computer, for good? This cannot be undone; export the trainee first if the data "
                 "may be needed. Earlier exports and backups are yours to delete."
             ).format(name=name, trials=trials)
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
-                erased = self._desk.delete()
-                told = _("{name} is deleted with {trials} trials and {journals} journals.").format(
+                erased = self._logic.delete()
+                text = _("{name} is deleted with {trials} trials and {journals} journals.").format(
                     name=name, trials=erased.trials, journals=erased.journals
                 )
-                self._say("{told}", told=" ".join((told, *erased.warnings)))
+                self._say("{text}", text=" ".join((text, *erased.warnings)))
 
     def showLearningCurve(self) -> None:
         """Show score and time over the trials as a plot, or give the user's layout back."""
@@ -137,8 +135,8 @@ class TraineesPanel:
             self._session.layout.giveBack(CURVE)
             return
         with slicer.util.tryWithErrorDisplay(_("The learning curve cannot be shown.")):
-            trials = self._desk.history()
-            chart = showLearningCurve(slicer.mrmlScene, self._desk.chosen, trials)
+            trials = self._logic.history()
+            chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, trials)
             showChart(self._session.layout, chart)
 
     def showCalibration(self) -> None:
@@ -147,10 +145,10 @@ class TraineesPanel:
             self._session.layout.giveBack(CALIBRATION)
             return
         with slicer.util.tryWithErrorDisplay(_("The target errors cannot be shown.")):
-            found = self._desk.calibration()
+            found = self._logic.calibration()
             chart = showCalibration(slicer.mrmlScene, found)
             showChart(self._session.layout, chart, CALIBRATION)
-            self._say("{told}", told=" ".join(found.sentences()))
+            self._say("{text}", text=" ".join(found.sentences()))
 
     def showState(self) -> None:
         """Show whether a plot is shown; called about ten times a second."""
@@ -166,9 +164,9 @@ class TraineesPanel:
     def _show(self, *_arguments: Any) -> None:
         ui = self._ui
         try:
-            trainees = self._desk.trainees(archived=ui.archivedCheckBox.checked)
-            trainee, history = self._desk.chosenTrainee(), self._desk.history()
-            aborted = self._desk.aborted()
+            trainees = self._logic.trainees(archived=ui.archivedCheckBox.checked)
+            trainee, history = self._logic.chosenTrainee(), self._logic.history()
+            aborted = self._logic.aborted()
         except InputError as error:
             self._say("{error}", error=error)
             self._isProblemShown = True
@@ -176,7 +174,7 @@ class TraineesPanel:
         if self._isProblemShown:
             self._say("")
         entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
-        ui.pseudonymLineEdit.placeholderText = self._desk.study.next_pseudonym()
+        ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
         setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
         hasTrainee = trainee is not None
@@ -195,7 +193,7 @@ class TraineesPanel:
             (ui.exportHistoryButton, _("Write the trainee's trials into a CSV file.")),
         ):
             setUsable(button, bool(history), tip, hasTrials)
-        if hasTrainee:
+        if trainee is not None:
             self._say(
                 _("{name}, since {day}. Trials: {count}. {aborted}"),
                 name=trainee.pseudonym,

@@ -7,7 +7,6 @@ from typing import Any
 import slicer
 
 from rastrainer.number_text import fixed
-from rastrainer.panels.kept_choices import keepChecked, keepChosen
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
 from rastrainer.panels.widgets import (
     GRAY,
@@ -15,16 +14,18 @@ from rastrainer.panels.widgets import (
     RED,
     YELLOW,
     chosenData,
+    keepChecked,
+    keepChosen,
     setLight,
     setSentence,
     setText,
     setUsable,
 )
 from rastrainer.protocol import TRIAL_RUN, Mode, Phase, Proximity
-from rastrainer.slicer.heartbeat import LinkState
-from rastrainer.slicer.session import Session
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.training_logic import TrialStatus
 from rastrainer.slicer.settings import MODE, SLICES_FOLLOW_TOOL, SLICES_SHOW_NEXT_POINT
-from rastrainer.slicer.training_desk import TrialStatus
 from rastrainer.slicer.translation import _
 
 PHASES = {
@@ -45,10 +46,10 @@ NEARNESS = {
 class TrainingPanel:
     """Wires the section's widgets to the session."""
 
-    def __init__(self, ui: Any, session: Session) -> None:
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
-        self._desk = session.training
+        self._logic = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
         keepChosen(ui.modeComboBox, modes, session.settings, MODE)
         keepChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
@@ -60,8 +61,8 @@ class TrainingPanel:
         ui.pauseButton.connect("clicked()", self.pauseOrResume)
         ui.abortButton.connect("clicked()", self.abort)
         self._listening = (
-            (self._desk.changed, self.showState),
-            (self._desk.answered, self._tell),
+            (self._logic.changed, self.showState),
+            (self._logic.answered, self._tell),
             (session.trials.problemFound, self._tell),
             (session.aborted.problemFound, self._tell),
             (session.trainees.changed, self.showState),
@@ -75,7 +76,7 @@ class TrainingPanel:
         self.showState()
 
     def close(self) -> None:
-        """Listen to the session no more."""
+        """Stop listening to the session."""
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
@@ -88,18 +89,18 @@ class TrainingPanel:
         self._start(self._session.task)
 
     def pauseOrResume(self) -> None:
-        """Pause the trial, or go on with it."""
+        """Pause the trial, or resume it."""
         with slicer.util.tryWithErrorDisplay(_("The trial was not paused.")):
-            self._desk.pauseOrResume()
+            self._logic.pauseOrResume()
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
         with slicer.util.tryWithErrorDisplay(_("The trial was not aborted.")):
             question = _("Abort the trial of {name}? Its touches will not be registered.").format(
-                name=shortName(self._desk.progress.trainee)
+                name=shortName(self._logic.progress.trainee)
             )
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
-                self._desk.abort()
+                self._logic.abort()
 
     def _moveSlices(self, *_checked: bool) -> None:
         slices = self._session.slices
@@ -108,7 +109,7 @@ class TrainingPanel:
 
     def showState(self, *_arguments: Any) -> None:
         """Show where the trial stands; called about ten times a second."""
-        ui, progress, session = self._ui, self._desk.progress, self._session
+        ui, progress, session = self._ui, self._logic.progress, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
         title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
@@ -132,8 +133,8 @@ class TrainingPanel:
         setText(ui.nextPointText, progress.nextPoint or "–")
         setText(ui.elapsedText, _clock(progress.elapsedS))
         self._showClearance(progress)
-        told = _("Told the trainee: {sentence}").format(sentence=progress.instruction)
-        setSentence(ui.instructionText, told if progress.instruction else "")
+        text = _("Shown to the trainee: {sentence}").format(sentence=progress.instruction)
+        setSentence(ui.instructionText, text if progress.instruction else "")
 
     def _start(self, task: str) -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
@@ -159,7 +160,7 @@ class TrainingPanel:
         ui.pauseButton.text = _("Resume") if isPaused else _("Pause")
         mayPause = isConnected and (isPaused or progress.phase == Phase.RUNNING.value)
         noTrial = _("No trial is running.")
-        setUsable(ui.pauseButton, mayPause, _("Let the trial and its time stand still."), noTrial)
+        setUsable(ui.pauseButton, mayPause, _("Pause the trial and its time."), noTrial)
         setUsable(
             ui.abortButton,
             isConnected and progress.isOpen,
@@ -169,10 +170,10 @@ class TrainingPanel:
 
     def _showClearance(self, progress: TrialStatus) -> None:
         color, words = NEARNESS.get(progress.proximity, (GRAY, progress.proximity))
-        isKnown = progress.clearanceMm is not None
-        setLight(self._ui.clearanceLight, color if isKnown else GRAY)
-        told = f"{fixed(progress.clearanceMm, 1)} mm, {words}" if isKnown else "–"
-        setText(self._ui.clearanceText, told)
+        clearance = progress.clearanceMm
+        setLight(self._ui.clearanceLight, GRAY if clearance is None else color)
+        shown = "–" if clearance is None else f"{fixed(clearance, 1)} mm, {words}"
+        setText(self._ui.clearanceText, shown)
 
     def _tell(self, sentence: str) -> None:
         setSentence(self._ui.trainingMessageText, sentence)

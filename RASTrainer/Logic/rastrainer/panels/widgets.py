@@ -14,7 +14,8 @@ from rastrainer.panels.plain_text import (
     toolTip,
     wrappable,
 )
-from rastrainer.slicer.heartbeat import LinkState
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.settings import Setting, Settings
 
 GREEN, YELLOW, RED, GRAY = "#2e9e44", "#c98a00", "#d03030", "#888888"
 LINK_COLORS = {
@@ -55,7 +56,7 @@ def textLabel(text: str) -> Any:
     label.textFormat = qt.Qt.PlainText
     label.wordWrap = True
     label.setSizePolicy(qt.QSizePolicy.Expanding, qt.QSizePolicy.Preferred)
-    # A label is at least as wide as its longest word, unless it is told otherwise.
+    # A label is at least as wide as its longest word, unless it has another minimum.
     label.minimumWidth = 1
     setText(label, text)
     return label
@@ -81,7 +82,7 @@ def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = (
 
 
 def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) -> None:
-    """Replace the entries (text, data) of a `QComboBox` and choose one, telling nobody."""
+    """Replace the entries (text, data) of a `QComboBox` and choose one, without a signal."""
     entries = [(shortName(text), data) for text, data in entries]
     shown = [(combo.itemText(i), combo.itemData(i)) for i in range(combo.count)]
     wasBlocked = combo.blockSignals(True)
@@ -101,7 +102,7 @@ def chosenData(combo: Any) -> str:
 
 
 def setChecked(box: Any, checked: bool) -> None:
-    """Check a box or not, telling nobody."""
+    """Check a box or not, without a signal."""
     wasBlocked = box.blockSignals(True)
     box.checked = checked
     box.blockSignals(wasBlocked)
@@ -110,3 +111,37 @@ def setChecked(box: Any, checked: bool) -> None:
 def millimeters(value: float | None, digits: int = 2) -> str:
     """Return a length with its unit, a dash where it is not known."""
     return "–" if value is None else f"{value:.{digits}f} mm"
+
+
+def keepChecked(box: Any, settings: Settings, setting: Setting[bool]) -> None:
+    """Save whether a check box is checked."""
+    box.checked = settings.get(setting)
+    box.connect("toggled(bool)", lambda checked: settings.set(setting, checked))
+
+
+def keepText(edit: Any, settings: Settings, setting: Setting[str]) -> None:
+    """Let a line edit keep its text."""
+    edit.text = settings.get(setting)
+    edit.connect("textChanged(QString)", lambda text: settings.set(setting, text))
+
+
+def keepNumber(box: Any, settings: Settings, setting: Setting[int]) -> None:
+    """Let a spin box keep its number."""
+    box.value = settings.get(setting)
+    box.connect("valueChanged(int)", lambda value: settings.set(setting, value))
+
+
+def keepPath(edit: Any, settings: Settings, setting: Setting[str]) -> None:
+    """Let a path edit keep its path."""
+    edit.currentPath = settings.get(setting)
+    edit.connect("currentPathChanged(QString)", lambda path: settings.set(setting, path))
+
+
+def keepChosen(
+    combo: Any, entries: Sequence[tuple[str, str]], settings: Settings, setting: Setting[str]
+) -> None:
+    """Let a combo box of these entries (text, data) keep the data of the chosen one."""
+    chosen = settings.get(setting)
+    known = [data for _text, data in entries]
+    fillComboBox(combo, entries, chosen if chosen in known else setting.usual)
+    combo.connect("activated(int)", lambda _index: settings.set(setting, chosenData(combo)))

@@ -10,17 +10,14 @@ from pathlib import Path
 import rastrainer
 from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import trials_csv
-from rastrainer.files import write_text
-from rastrainer.inference.few_subjects import FEW
+from rastrainer.files.writing import write_text
 from rastrainer.number_text import counted
-from rastrainer.report.comparisons import ModeComparison, compare_modes
-from rastrainer.report.markup import bullets, paragraph, section
-from rastrainer.report.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
-from rastrainer.report.page import page
-from rastrainer.report.published_scores import with_ctps
-from rastrainer.report.score_versions import versions_note, with_one_score_version
+from rastrainer.report.html.markup import bullets, page, paragraph, section
+from rastrainer.report.results.comparisons import ModeComparison, compare_modes
+from rastrainer.report.results.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.begun import begun
 from rastrainer.report.sections.calibration import calibration
+from rastrainer.report.sections.distributions import spread
 from rastrainer.report.sections.groups import groups
 from rastrainer.report.sections.learning import learning
 from rastrainer.report.sections.limits import limits
@@ -32,14 +29,14 @@ from rastrainer.report.sections.paired_statistics import (
     order_caveat,
     paired_statistics,
 )
-from rastrainer.report.sections.paper_notes import paper_notes
 from rastrainer.report.sections.passing import passing
-from rastrainer.report.sections.published_tables import published_tables
+from rastrainer.report.sections.published_tables import paper_notes, published_tables
 from rastrainer.report.sections.questionnaires import questionnaires
-from rastrainer.report.sections.spread import spread
 from rastrainer.report.sections.variation import variation
-from rastrainer.report.study_data import StudyData
-from rastrainer.scipy_modules import scipy_module
+from rastrainer.statistics.few_subjects import FEW
+from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
+from rastrainer.study.study_data import StudyData
 
 PAGE, NUMBERS = "report.html", "trials.csv"
 

@@ -16,11 +16,13 @@ import sys
 import threading
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.progress import Progress
+from rastrainer.slicer.main_turn import workersTurn
 from rastrainer.slicer.signal import Signal
 
 T = TypeVar("T")
@@ -31,7 +33,7 @@ PERIOD_MS = 40
 """So often a timer does it: about half of the time is the worker's."""
 SWITCH_INTERVAL_S = 0.0002
 """So soon a worker gives Python's lock back to the main thread that wants it."""
-FAREWELL_S = 1.0
+CLOSING_S = 1.0
 """So long closing waits for what is under way."""
 
 
@@ -74,13 +76,12 @@ class _Workers:
 _WORKERS = _Workers()
 
 
-class Job:
+class Job(Generic[T]):
     """One piece of work in a thread of its own, begun at once; the main thread looks after it."""
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._work = work
-        self._result: T | None = None
-        self._error: BaseException | None = None
+        self._outcome: Future[T] = Future()
         self._isLookedAfter = True
         self._thread = threading.Thread(target=self._run, daemon=True)
         _WORKERS.begin()
@@ -96,7 +97,8 @@ class Job:
 
     def giveTime(self, seconds: float = TIME_S) -> None:
         """Let the thread run, and return as soon as it has ended."""
-        self._thread.join(seconds)
+        with workersTurn():
+            self._thread.join(seconds)
 
     def leave(self) -> None:
         """Look after the thread no more: it has ended, or nobody waits for it."""
@@ -106,15 +108,13 @@ class Job:
 
     def result(self) -> T:
         """Return what the work has returned, or raise what it has raised, once it is done."""
-        if self._error is not None:
-            raise self._error
-        return self._result
+        return self._outcome.result(timeout=0)
 
     def _run(self) -> None:
         try:
-            self._result = self._work()
+            self._outcome.set_result(self._work())
         except BaseException as error:
-            self._error = error
+            self._outcome.set_exception(error)
 
 
 @dataclass(frozen=True)
@@ -135,14 +135,13 @@ class BackgroundWork:
         self.began = Signal()
         self._waiting: deque[_Waiting] = deque()
         self._slices: deque[Callable[[], None]] = deque()
-        self._job: Job | None = None
-        self._underWay: _Waiting | None = None
+        self._underWay: tuple[Job[Any], _Waiting] | None = None
         self._isClosed = False
 
     @property
     def isBusy(self) -> bool:
         """Whether there is anything that `process` has not yet handed over."""
-        return self._job is not None or bool(self._waiting or self._slices)
+        return self._underWay is not None or bool(self._waiting or self._slices)
 
     def do(
         self,
@@ -176,9 +175,9 @@ class BackgroundWork:
             self.began.emit()
 
     def giveTime(self) -> None:
-        """Let what is under way run for a moment."""
-        if self._job is not None:
-            self._job.giveTime()
+        """Let what is under way run for a moment, unless the main thread has what was put off."""
+        if self._underWay is not None and not self._slices:
+            self._underWay[0].giveTime()
 
     def process(self) -> None:
         """Call what was put off till later, one function at a time; hand over what is done."""
@@ -188,10 +187,10 @@ class BackgroundWork:
             finally:
                 self._beginNext()
             return
-        if self._job is None or not self._job.isDone:
+        if self._underWay is None or not self._underWay[0].isDone:
             return
-        job, ended = self._job, self._underWay
-        self._job = self._underWay = None
+        job, ended = self._underWay
+        self._underWay = None
         try:
             self._handOver(job, ended)
         finally:
@@ -202,21 +201,21 @@ class BackgroundWork:
         self._isClosed = True
         self._waiting.clear()
         self._slices.clear()
-        if self._job is not None:
-            self._job.giveTime(FAREWELL_S)
-        job = self._job
+        if self._underWay is None:
+            return
+        job = self._underWay[0]
+        job.giveTime(CLOSING_S)
         self.process()
-        if job is not None:
-            job.leave()
-        self._job = self._underWay = None
+        job.leave()
+        self._underWay = None
 
     def _beginNext(self) -> None:
         """Begin what waits, after what is put off: both at once would share Python's lock."""
-        if self._waiting and self._job is None and not self._slices:
-            self._underWay = self._waiting.popleft()
-            self._job = Job(self._underWay.work)
+        if self._waiting and self._underWay is None and not self._slices:
+            waiting = self._waiting.popleft()
+            self._underWay = Job(waiting.work), waiting
 
-    def _handOver(self, job: Job, ended: _Waiting) -> None:
+    def _handOver(self, job: Job[Any], ended: _Waiting) -> None:
         try:
             result = job.result()
         except Exception as error:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from rastrainer_simulator.desktop import theme
-from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
-from rastrainer_simulator.desktop.theme import Color, rgba
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.theme import Color, rgba
 
 # In a frame that is 100 wide and 66 high, y down.
 WIDTH, HEIGHT = 100.0, 66.0

@@ -6,8 +6,8 @@ from enum import Enum
 
 import numpy as np
 
-from rastrainer_simulator.desktop.canvas import Box, Canvas
-from rastrainer_simulator.desktop.theme import Color
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.theme import Color
 
 
 class Side(Enum):

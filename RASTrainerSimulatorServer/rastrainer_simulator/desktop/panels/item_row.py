@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rastrainer_simulator.desktop import theme
-from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
-from rastrainer_simulator.desktop.theme import Color
-from rastrainer_simulator.flow.screen import Item, ItemKind
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.theme import Color
+from rastrainer_simulator.net.views.screen import ItemKind, MenuItem, Tone
 
 _VALUE_SHARE = 0.52
 
@@ -21,7 +21,7 @@ class Look:
     is_hovered: bool
 
 
-def draw_item(canvas: Canvas, item: Item, look: Look, brush: Brush, row: Box) -> None:
+def draw_item(canvas: Canvas, item: MenuItem, look: Look, brush: Brush, row: Box) -> None:
     """Draw an item into its row."""
     radius = brush.px(theme.RADIUS)
     canvas.box(row, _ground(item, look), radius)
@@ -40,7 +40,7 @@ def draw_item(canvas: Canvas, item: Item, look: Look, brush: Brush, row: Box) ->
         _DRAW_VALUE[item.kind](canvas, item, look, brush, place, color)
 
 
-def _ground(item: Item, look: Look) -> Color:
+def _ground(item: MenuItem, look: Look) -> Color:
     if look.has_focus:
         return theme.ACCENT
     return theme.ROW_HOVER if look.is_hovered and item.is_enabled else theme.ROW
@@ -51,7 +51,7 @@ def _value_width(row: Box) -> int:
 
 
 def _draw_plain(
-    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+    canvas: Canvas, item: MenuItem, look: Look, brush: Brush, place: Box, color: Color
 ) -> None:
     text = brush.fit(item.value, theme.BODY, place.width)
     left = place.left + place.width - brush.width(text, theme.BODY)
@@ -60,23 +60,23 @@ def _draw_plain(
 
 
 def _draw_choice(
-    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+    canvas: Canvas, item: MenuItem, look: Look, brush: Brush, place: Box, color: Color
 ) -> None:
     """Draw the chosen option between two arrow heads."""
     reach = brush.px(theme.STEP)
     middle = place.top + place.height / 2
     right = place.left + place.width
     arrows = color if look.has_focus else theme.TEXT_SOFT if item.is_enabled else color
-    for x, way in ((place.left + reach, 1), (right - reach, -1)):
-        points = [(x + way * reach / 2, middle - reach), (x - way * reach / 2, middle)]
-        canvas.stroke([*points, (x + way * reach / 2, middle + reach)], brush.px(3), arrows)
+    for x, side in ((place.left + reach, 1), (right - reach, -1)):
+        points = [(x + side * reach / 2, middle - reach), (x - side * reach / 2, middle)]
+        canvas.stroke([*points, (x + side * reach / 2, middle + reach)], brush.px(3), arrows)
     text = brush.fit(item.value, theme.STRONG, place.width - 6 * reach)
     left = place.left + (place.width - brush.width(text, theme.STRONG)) // 2
     brush.write(canvas, text, theme.STRONG, color, left, _text_top(brush, place))
 
 
 def _draw_text(
-    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+    canvas: Canvas, item: MenuItem, look: Look, brush: Brush, place: Box, color: Color
 ) -> None:
     """Draw a sunk field with what was typed, its end in sight, and a caret after it."""
     field = Box(place.left, place.top + brush.px(9), place.width, place.height - 2 * brush.px(9))
@@ -99,7 +99,7 @@ def _draw_text(
 
 
 def _draw_axis(
-    canvas: Canvas, item: Item, look: Look, brush: Brush, place: Box, color: Color
+    canvas: Canvas, item: MenuItem, look: Look, brush: Brush, place: Box, color: Color
 ) -> None:
     """Draw a position between −1 and 1 as a bar from the middle of a track."""
     del look
@@ -113,7 +113,7 @@ def _draw_axis(
         position = 0.0
     length = round(abs(position) * place.width / 2)
     bar = Box(middle if position > 0 else middle - length, top, max(1, length), height)
-    canvas.box(bar, theme.TONES["good"], height / 2)
+    canvas.box(bar, theme.TONES[Tone.GOOD], height / 2)
     tick = brush.px(2)
     canvas.box(Box(middle - tick // 2, top - height, tick, 3 * height), color)
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer_simulator.desktop import theme
-from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad
 from rastrainer_simulator.desktop.panels.item_row import Look, draw_item
-from rastrainer_simulator.desktop.thumbnail import Thumbnail
-from rastrainer_simulator.flow.screen import Menu
+from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.net.views.screen import Menu
 
 SHRINK = 0.94
 SMALLEST = 0.84

@@ -6,19 +6,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rastrainer_simulator.desktop import theme
-from rastrainer_simulator.desktop.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
-from rastrainer_simulator.desktop.theme import Color, Type
-from rastrainer_simulator.flow.screen import Hint, Message
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
+from rastrainer_simulator.net.views.screen import Hint, ScreenMessage
 
 
-def instruction(message: Message, brush: Brush, room: int) -> np.ndarray:
+def instruction(message: ScreenMessage, brush: Brush, room: int) -> np.ndarray:
     """Return what to do now, at most `room` pixels wide; a bar in the tone's color leads it."""
     return _sentence(message, theme.HEADING, theme.GLASS, theme.TONES[message.tone], brush, room)
 
 
-def warning(message: Message, brush: Brush, room: int) -> np.ndarray:
+def warning(message: ScreenMessage, brush: Brush, room: int) -> np.ndarray:
     """Return what is wrong, on a ground that cannot be overlooked."""
     return _sentence(message, theme.STRONG, theme.BANNERS[message.tone], theme.TEXT, brush, room)
 
@@ -64,7 +64,7 @@ def hints(shown: Sequence[Hint], brush: Brush, room: int) -> np.ndarray:
 
 
 def _sentence(
-    message: Message, style: Type, ground: Color, mark: Color, brush: Brush, room: int
+    message: ScreenMessage, style: TextStyle, ground: Color, mark: Color, brush: Brush, room: int
 ) -> np.ndarray:
     pad_x, pad_y = brush.px(theme.MARGIN), brush.px(theme.GAP)
     bar = brush.px(theme.STEP)

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.controls.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.controls.control_name import IN_MENUS, STICKS, ControlName
-from rastrainer_simulator.controls.inputs import Device
-from rastrainer_simulator.flow.page import Page
-from rastrainer_simulator.flow.screen import Item, Menu
-from rastrainer_simulator.flow.session import Session
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.control_name import IN_MENUS, STICKS, ControlName
+from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.net.views.screen import Menu, MenuItem
 
 GROUPS = {
     "work": tuple(name for name in ControlName if name not in STICKS and name not in IN_MENUS),
@@ -24,12 +24,12 @@ LISTEN_S = 10.0
 T = TypeVar("T")
 
 
-class BindingsPage(Page):
+class BindingsPage(SessionPage):
     """The controls of a device, a group at a time."""
 
     name = "bindings"
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
         self._device = session.device
         self._group = "work"
@@ -56,21 +56,21 @@ class BindingsPage(Page):
     def step(self, item: str, direction: int) -> None:
         """Show another device or group."""
         if item == "device":
-            self._device = _stepped(tuple(Device), self._device, direction)
+            self._device = _stepped(tuple(InputDevice), self._device, direction)
         elif item == "group":
             self._group = _stepped(tuple(GROUPS), self._group, direction)
 
-    def _control(self, control: ControlName) -> Item:
+    def _control(self, control: ControlName) -> MenuItem:
         inputs = self.session.input_labels(self._device, control)
         return self.button(control.value, self.say(f"control.{control.value}"), value=inputs)
 
 
-class ListenPage(Page):
+class ListenPage(SessionPage):
     """Waits for the new input of one control; the control for the menu calls it off."""
 
     name = "listen"
 
-    def __init__(self, session: Session, device: Device, control: ControlName) -> None:
+    def __init__(self, session: TrainingSession, device: InputDevice, control: ControlName) -> None:
         super().__init__(session)
         self._device = device
         self._control = control
@@ -88,7 +88,7 @@ class ListenPage(Page):
         """Call it off."""
         self.back()
 
-    def input_pressed(self, device: Device, name: str) -> bool:
+    def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Take the input, or ask what shall become of the control that it works now."""
         if device is not self._device:
             return False
@@ -109,12 +109,14 @@ class ListenPage(Page):
             self.back()
 
 
-class ConflictPage(Page):
+class ConflictPage(SessionPage):
     """The input works another control already: the two are exchanged, or nothing changes."""
 
     name = "conflict"
 
-    def __init__(self, session: Session, device: Device, control: ControlName, wanted: str) -> None:
+    def __init__(
+        self, session: TrainingSession, device: InputDevice, control: ControlName, wanted: str
+    ) -> None:
         super().__init__(session)
         self._device, self._control, self._wanted = device, control, wanted
 
@@ -141,7 +143,7 @@ class ConflictPage(Page):
             rebind(self.session, self._device, self._control, self._wanted)
 
 
-def rebind(session: Session, device: Device, control: ControlName, name: str) -> None:
+def rebind(session: TrainingSession, device: InputDevice, control: ControlName, name: str) -> None:
     """Give a control its new input and say so, or say why that cannot be."""
     try:
         bindings = session.bindings.rebound(device, control, name)

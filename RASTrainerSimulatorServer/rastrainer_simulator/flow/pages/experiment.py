@@ -1,36 +1,43 @@
-"""The experiment menu: who trains, in which mode, on which head, and which task."""
+"""The experiment menu: who trains, in which mode, on which head, and which task.
+
+With it the pages that it opens: an on-screen keyboard for the ID, and the list of heads.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from rastrainer.errors import InputError
-from rastrainer.experiment.study_step import StudyStep
 from rastrainer.protocol import CommandName, Mode, StepKind
-from rastrainer_simulator.controls.source import SourceKind
-from rastrainer_simulator.flow.page import Page
-from rastrainer_simulator.flow.pages.keyboard import KeyboardPage
+from rastrainer.scenario.library import ListedScenario
+from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
-from rastrainer_simulator.flow.pages.scenario import ScenarioPage
-from rastrainer_simulator.flow.screen import Item, ItemKind, Menu
-from rastrainer_simulator.flow.session import Session
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem
 
 LONGEST_ID = 32
 
 _TYPES = (SourceKind.KEYBOARD, SourceKind.MOUSE)
+ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
+_PREFIX = "head "
+"""No scenario's name has a space: no head is taken for the way back."""
 
 
-class ExperimentPage(Page):
+class ExperimentPage(SessionPage):
     """Begins trials; a task waits for the one before it unless the instructor says otherwise."""
 
     name = "experiment"
 
-    def __init__(self, session: Session, first: str = "") -> None:
+    def __init__(self, session: TrainingSession, first: str = "") -> None:
         super().__init__(session)
         self.first = first
 
     def menu(self) -> Menu:
         """Return who, how and what."""
         session = self.session
-        trainee = Item(
+        trainee = MenuItem(
             "trainee",
             self.say("experiment.trainee"),
             ItemKind.TEXT,
@@ -78,12 +85,12 @@ class ExperimentPage(Page):
         if item == "trainee":
             self.session.trainee = value.lstrip()[:LONGEST_ID]
 
-    def _task(self, name: str) -> Item:
+    def _task(self, name: str) -> MenuItem:
         """Return a task's button: a disabled one says why."""
         session = self.session
         reason = self._obstacle(name)
         is_done = session.progress.has_done(session.trainee.strip(), session.scenario.name, name)
-        return Item(
+        return MenuItem(
             name,
             session.task_title(name),
             value=self.say("experiment.done") if is_done else "",
@@ -114,8 +121,11 @@ class ExperimentPage(Page):
         return self.session.study.step_of(self.session.trainee.strip())
 
     def _answer(self) -> None:
+        step = self._step()
+        if step is None:
+            return
         try:
-            self.session.pages.open(QuestionnairePage(self.session, self._step()))
+            self.session.pages.open(QuestionnairePage(self.session, step))
         except InputError as error:
             self.session.complain(str(error))
 
@@ -123,3 +133,106 @@ class ExperimentPage(Page):
         session = self.session
         trainee = session.trainee.strip()
         session.do(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": session.mode})
+
+
+class KeyboardPage(SessionPage):
+    """Rows of characters: left and right choose one, accepting types it."""
+
+    name = "keyboard"
+    steps_when_accepted = False
+
+    def __init__(self, session: TrainingSession, write: Callable[[str, str], None]) -> None:
+        super().__init__(session)
+        self._write = write
+        self._places = [0] * len(ROWS)
+
+    def menu(self) -> Menu:
+        """Return the rows, the chosen character of each in brackets."""
+        rows = tuple(
+            self.choice(f"row{number}", self._row(number), label=self.say("keyboard.row"))
+            for number in range(len(ROWS))
+        )
+        return Menu(
+            self.name,
+            self.say("keyboard.title"),
+            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
+            items=(*rows, self.button("delete"), self.button("done")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Type a character, take one back, or finish."""
+        trainee = self.session.trainee
+        if item == "done":
+            self.back()
+        elif item == "delete":
+            self._write("trainee", trainee[:-1])
+        else:
+            number = int(item.removeprefix("row"))
+            self._write("trainee", trainee + ROWS[number][self._places[number]])
+
+    def step(self, item: str, direction: int) -> None:
+        """Choose the next character of a row."""
+        number = int(item.removeprefix("row"))
+        self._places[number] = (self._places[number] + direction) % len(ROWS[number])
+
+    def _row(self, number: int) -> str:
+        place = self._places[number]
+        return " ".join(
+            f"[{character}]" if index == place else character
+            for index, character in enumerate(ROWS[number])
+        )
+
+
+class ScenarioPage(SessionPage):
+    """Lists the scenarios; one that cannot be used says why."""
+
+    name = "scenario"
+
+    def __init__(self, session: TrainingSession) -> None:
+        super().__init__(session)
+        self.first = _PREFIX + session.scenario.name
+        self._listing = session.list_scenarios()
+        self._wanted = ""
+
+    def menu(self) -> Menu:
+        """Return the list, as far as it is known."""
+        listed = self._listing.result() if self._listing.done() else []
+        text = "scenario.text" if self._listing.done() else "scenario.looking"
+        items = tuple(self._item(entry) for entry in listed)
+        return Menu(
+            self.name,
+            self.say("scenario.title"),
+            (self.say(text),),
+            items=(*items, self.button("back")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Have a head loaded, or go back."""
+        if item == "back":
+            self.back()
+            return
+        self._wanted = item.removeprefix(_PREFIX)
+        self.session.use_scenario(self._wanted)
+
+    def advance(self, dt: float) -> None:  # noqa: ARG002
+        """Go back when the head that was chosen is there; stay where it was refused."""
+        if not self._wanted or self.session.is_being_set_up:
+            return
+        is_there = self.session.scenario.name == self._wanted
+        self._wanted = ""
+        if is_there:
+            self.back()
+
+    def _item(self, entry: ListedScenario) -> MenuItem:
+        is_present = entry.name == self.session.scenario.name
+        is_loading = self.session.is_being_set_up
+        value = "scenario.loading" if entry.name == self._wanted and is_loading else ""
+        value = "scenario.present" if is_present and not value else value
+        return MenuItem(
+            _PREFIX + entry.name,
+            entry.title,
+            value=self.say(value) if value else "",
+            is_enabled=not entry.problem and not is_loading,
+            help=entry.problem or self.say("scenario.help"),
+            picture=f"/scenarios/{entry.name}.png" if entry.preview else "",
+        )

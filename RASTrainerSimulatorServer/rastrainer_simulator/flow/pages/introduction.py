@@ -1,15 +1,15 @@
-"""What the training is about, and which control does what."""
+"""What the training is about, which control does what, and a page to try the controls."""
 
 from __future__ import annotations
 
-from rastrainer_simulator.controls.control_name import ControlName
-from rastrainer_simulator.controls.inputs import Device
-from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.bindings import BindingsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.pad_test import PadTestPage
-from rastrainer_simulator.flow.screen import Fact, Menu
-from rastrainer_simulator.flow.session import Session
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.control_name import ROTATION, TRANSLATION, ControlName
+from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
+from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem
 
 SHEETS = 3
 
@@ -31,15 +31,17 @@ _SHOWN = (
     ("pause", (ControlName.PAUSE,)),
     ("menu", (ControlName.MENU,)),
 )
+SHOWN = 4
+"""Inputs that are remembered."""
 
 
-class IntroductionPage(Page):
+class IntroductionPage(SessionPage):
     """A few sheets of text; the last leads to the controls."""
 
     name = "introduction"
     first = "next"
 
-    def __init__(self, session: Session, sheet: int = 1) -> None:
+    def __init__(self, session: TrainingSession, sheet: int = 1) -> None:
         super().__init__(session)
         self._sheet = sheet
 
@@ -72,12 +74,12 @@ class IntroductionPage(Page):
             self._sheet -= 1
 
 
-class ControlsPage(Page):
+class ControlsPage(SessionPage):
     """Which input does what, on whatever the reader has in their hands."""
 
     name = "controls"
 
-    def __init__(self, session: Session, leads_on: bool = False) -> None:
+    def __init__(self, session: TrainingSession, leads_on: bool = False) -> None:
         super().__init__(session)
         self._leads_on = leads_on
 
@@ -85,13 +87,12 @@ class ControlsPage(Page):
         """Return the list of the controls."""
         session = self.session
         # Two ways of a stick tell which one it is; a key has only one.
-        most = len(ControlName) if session.device is Device.KEYBOARD else 2
+        most = len(ControlName) if session.device is InputDevice.KEYBOARD else 2
         facts = tuple(
             Fact(self.say(f"controls.{key}"), " / ".join(map(session.label, controls[:most])))
             for key, controls in _SHOWN
         )
-        items = ("next",) if self._leads_on else ()
-        items += ("test", "rebind", "back")
+        items = (*(["next"] if self._leads_on else []), "test", "rebind", "back")
         return Menu(
             self.name,
             self.say("controls.title"),
@@ -102,7 +103,7 @@ class ControlsPage(Page):
         )
 
     def accept(self, item: str) -> None:
-        """Go on, or look closer."""
+        """Continue, try the controls or change them."""
         pages = self.session.pages
         if item == "next":
             self.session.has_read_introduction = True
@@ -111,3 +112,56 @@ class ControlsPage(Page):
             self.back()
         else:
             pages.open((PadTestPage if item == "test" else BindingsPage)(self.session))
+
+
+class PadTestPage(SessionPage):
+    """Shows what arrives. Every input but the menu's is only shown; the menu's leaves."""
+
+    name = "test"
+
+    def __init__(self, session: TrainingSession) -> None:
+        super().__init__(session)
+        self._pressed: list[tuple[InputDevice, str]] = []
+
+    def menu(self) -> Menu:
+        """Return the sticks' positions and the last inputs."""
+        held = self.session.held
+        positions = (*held.translation, *held.rotation)
+        axes = tuple(
+            MenuItem(f"axis{number}", self._axis(pair), ItemKind.AXIS, f"{position:.2f}", False)
+            for number, (pair, position) in enumerate(
+                zip((*TRANSLATION, *ROTATION), positions, strict=True)
+            )
+        )
+        fine = Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))
+        facts = tuple(Fact(*self._input(*pressed)) for pressed in self._pressed)
+        leave = self.session.label(ControlName.MENU)
+        return Menu(
+            self.name,
+            self.say("test.title"),
+            (self.say("test.text", menu=leave),),
+            (fine, *facts),
+            (*axes, self.button("back")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Go back."""
+        if item == "back":
+            self.back()
+
+    def input_pressed(self, device: InputDevice, name: str) -> bool:
+        """Show an input, and let it be felt."""
+        if name in self.session.bindings.table(device)[ControlName.MENU]:
+            return False
+        self._pressed = [(device, name), *self._pressed][:SHOWN]
+        self.session.happened(FeedbackEvent.TEST)
+        return True
+
+    def _axis(self, pair: tuple[ControlName, ControlName]) -> str:
+        return " / ".join(self.say(f"control.{control.value}") for control in pair)
+
+    def _input(self, device: InputDevice, name: str) -> tuple[str, str]:
+        table = self.session.bindings.table(device)
+        works = [control for control, inputs in table.items() if name in inputs]
+        names = ", ".join(self.say(f"control.{control.value}") for control in works)
+        return self.session.input_label(device, name), names or self.say("test.nothing")

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from rastrainer.experiment.study_step import StudyStep
-from rastrainer.questionnaires.catalog import find_questionnaire
-from rastrainer.questionnaires.questionnaire import Item
-from rastrainer_simulator.flow.page import Page
-from rastrainer_simulator.flow.screen import Menu
-from rastrainer_simulator.flow.session import Session
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.questionnaires.catalog import find_questionnaire
+from rastrainer.study.questionnaires.questionnaire import QuestionnaireItem
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.net.views.screen import Menu
 
 UNANSWERED = "–"
 
 
-class QuestionnairePage(Page):
+class QuestionnairePage(SessionPage):
     """Takes an answer to each item, and hands them over together for Slicer to keep."""
 
     name = "questionnaire"
 
-    def __init__(self, session: Session, step: StudyStep) -> None:
+    def __init__(self, session: TrainingSession, step: StudyStep) -> None:
         """Show the questionnaire of a step.
 
         Raises:
@@ -55,7 +55,7 @@ class QuestionnairePage(Page):
         )
         return Menu(self.name, asked.title, (text,), items=(*items, keep, self.button("back")))
 
-    def _line(self, item: Item) -> str:
+    def _line(self, item: QuestionnaireItem) -> str:
         """Return what an item is about, with its ends where they are its own."""
         topic = self.say(item.name)
         if not item.anchors:
@@ -86,6 +86,6 @@ class QuestionnairePage(Page):
         self.back()
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Close when the study goes on without the answers, such as with those given in Slicer."""
+        """Close when the study continues otherwise, such as with answers given in Slicer."""
         if self.session.study.step_of(self._step.trainee) != self._step:
             self.back()

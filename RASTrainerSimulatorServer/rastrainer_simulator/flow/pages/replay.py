@@ -3,57 +3,56 @@
 from __future__ import annotations
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.controls.control_name import ControlName, Situation
-from rastrainer_simulator.controls.inputs import Device
-from rastrainer_simulator.flow.feedback import happening
-from rastrainer_simulator.flow.page import Page
-from rastrainer_simulator.flow.screen import Fact, Hint, Menu, Screen
-from rastrainer_simulator.flow.session import Session
-from rastrainer_simulator.replaying.film_making import FilmMaking
-from rastrainer_simulator.replaying.player import ACTIONS, Action, Player
-from rastrainer_simulator.replaying.replay_loop import ReplayLoop
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.control_name import ControlContext, ControlName
+from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.net.views.feedback_event import feedback_event
+from rastrainer_simulator.net.views.screen import Hint, Menu, Screen
+from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.player import ACTIONS, Player, PlayerAction
+from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import StepResult
 
-_WORST = {Device.KEYBOARD: "KeyT", Device.GAMEPAD: "x"}
+_WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
 """Further inputs for the worst touch, which no control of the menus needs."""
 
 
-class ReplayPage(Page):
-    """Waits for the film, and plays it to whoever holds the control.
+class ReplayPage(SessionPage):
+    """Waits for the recorded trial, and plays it to whoever holds the control.
 
     Attributes:
-        replay: what is played; None while the film is being made.
+        playback: what is played; None while it is being loaded.
     """
 
     name = "replay"
 
-    def __init__(self, session: Session, making: FilmMaking, begins_at_worst: bool) -> None:
+    def __init__(
+        self, session: TrainingSession, loading: TrialLoading, begins_at_worst: bool
+    ) -> None:
         """`begins_at_worst` shows the worst touch at first."""
         super().__init__(session)
-        self.replay: ReplayLoop | None = None
-        self._making = making
+        self.playback: Playback | None = None
+        self._loading = loading
         self._begins_at_worst = begins_at_worst
         self._player: Player | None = None
 
     def menu(self) -> Menu:
-        """Return how far the film is."""
-        percent = self.say("replay.percent", percent=100.0 * self._making.share)
-        done = Fact(self.say("replay.done"), percent)
-        button = self.button("back")
-        return Menu(self.name, self.say("replay.making"), (), (done,), (button,))
+        """Return what is read while the trial is being loaded."""
+        return Menu(self.name, self.say("replay.loading"), (), (), (self.button("back"),))
 
     def screen(self) -> Screen | None:
-        """Return what is read while it is played."""
+        """Return what is read while the trial is played."""
         if self._player is None:
             return None
         session = self.session
         return self._player.screen(session.texts, self._hints(), session.preferences.language)
 
     def advance(self, dt: float) -> None:
-        """Go on, or begin as soon as the film is there."""
-        if self.replay is not None:
-            self.replay.advance(dt)
-        elif self._making.film.done():
+        """Play, as soon as the trial is loaded."""
+        if self.playback is not None:
+            self.playback.advance(dt)
+        elif self._loading.trial.done():
             self._begin()
 
     def accept(self, item: str) -> None:  # noqa: ARG002
@@ -61,43 +60,43 @@ class ReplayPage(Page):
         self.back()
 
     def pressed(self, control: ControlName) -> bool:
-        """Steer the film; before it is there, the menu is steered."""
+        """Steer the playback; while it is being loaded, the menu is steered."""
         if self._player is None:
             return False
         if control in ACTIONS:
             self._player.do(ACTIONS[control])
         return True
 
-    def input_pressed(self, device: Device, name: str) -> bool:
+    def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Take what has no meaning in menus: the worst touch, and the camera as while working."""
         bindings = self.session.bindings
-        if self._player is None or bindings.control(device, name, Situation.MENU) is not None:
+        if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
         is_camera = name in bindings.table(device)[ControlName.CAMERA]
         if is_camera or name == _WORST[device]:
-            self._player.do(Action.CAMERA if is_camera else Action.WORST)
+            self._player.do(PlayerAction.CAMERA if is_camera else PlayerAction.WORST)
         return True
 
     def _begin(self) -> None:
         session = self.session
         try:
-            film = self._making.film.result()
+            trial = self._loading.trial.result()
         except InputError as error:
             self.back()
             session.complain(str(error))
             return
-        self.replay = ReplayLoop(film, session.setup)
-        self._player = Player(self.replay, self.back)
-        self.replay.subscribe(self._feel)
-        if self._begins_at_worst and film.worst is None:
+        self.playback = Playback(trial, session.setup)
+        self._player = Player(self.playback, self.back)
+        self.playback.subscribe(self._feel)
+        if self._begins_at_worst and trial.worst is None:
             session.complain(self.say("replay.no worst"))
         elif self._begins_at_worst:
-            self._player.do(Action.WORST)
+            self._player.do(PlayerAction.WORST)
 
     def _feel(self, result: StepResult) -> None:
-        """Let what happened then be heard and felt again."""
+        """Play the sounds and vibrations of what happened again."""
         for event in result.events:
-            felt = happening(event)
+            felt = feedback_event(event)
             if felt is not None:
                 self.session.happened(felt)
 

@@ -5,20 +5,21 @@ from __future__ import annotations
 import contextlib
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeGuard
 
 from rastrainer.errors import InputError
-from rastrainer.experiment.study_step import StudyStep
-from rastrainer.feedback.trial_feedback import MOST_SHORT
-from rastrainer.scoring import PASS_MARK
-from rastrainer_simulator.flow.page import Page
+from rastrainer.json_checks import is_number
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.trial.scoring import PASS_MARK
+from rastrainer.trial.trial_feedback import MOST_SHORT
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
-from rastrainer_simulator.flow.screen import Fact, Item, Menu, Tone
-from rastrainer_simulator.flow.session import Session
-from rastrainer_simulator.replaying.film_making import FilmMaking
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem, Tone
+from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import TrialResult
-from rastrainer_simulator.texts.texts import Texts
 
 GOOD_MM = 2.0
 POOR_MM = 4.0
@@ -28,10 +29,10 @@ POOR_SCORE = 40.0
 LONGEST_SENTENCE = 300
 
 
-class FinishedPage(Page):
+class FinishedPage(SessionPage):
     """What both pages after a trial offer."""
 
-    def items(self) -> tuple[Item, ...]:
+    def items(self) -> tuple[MenuItem, ...]:
         """Return where one can go from here."""
         following = self._following()
         label = self.say("result.next", task=self.session.task_title(following))
@@ -73,7 +74,7 @@ class WaitingPage(FinishedPage):
     def menu(self) -> Menu:
         """Return who is waited for."""
         training = self.session.training
-        is_there = self.session.is_slicer_there()
+        is_there = self.session.is_slicer_connected()
         key = "waiting.slicer" if is_there else "waiting.nobody"
         return Menu(
             self.name,
@@ -89,14 +90,15 @@ class ResultPage(FinishedPage):
 
     name = "result"
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
-        self._making: FilmMaking | None = None
+        self._loading: TrialLoading | None = None
 
     def menu(self) -> Menu:
         """Return the results with their units."""
         training = self.session.training
         result = training.result
+        assert result is not None, "The page is only opened for a scored trial."
         task = self.session.task_title(training.task)
         return Menu(
             self.name,
@@ -112,7 +114,7 @@ class ResultPage(FinishedPage):
             self.items(),
         )
 
-    def items(self) -> tuple[Item, ...]:
+    def items(self) -> tuple[MenuItem, ...]:
         """Return where one can go, and what can be shown again."""
         items = {item.name: item for item in super().items()}
         shown = (self.button("worst"), self.button("replay"))
@@ -120,26 +122,26 @@ class ResultPage(FinishedPage):
         return (*onward, *shown, *items.values())
 
     def accept(self, item: str) -> None:
-        """Show the trial again, or go on."""
+        """Show the trial again, or continue."""
         if item in ("replay", "worst"):
             self._show_again(begins_at_worst=item == "worst")
         else:
             super().accept(item)
 
     def closed(self) -> None:
-        """Nobody wants the film any more."""
-        if self._making is not None:
-            self._making.cancel()
+        """Stop loading the trial."""
+        if self._loading is not None:
+            self._loading.cancel()
 
     def _show_again(self, begins_at_worst: bool) -> None:
-        """The film is made once, when it is first asked for."""
+        """Load the trial once, when it is first asked for."""
         session = self.session
         try:
-            self._making = self._making or session.make_film()
+            self._loading = self._loading or session.load_trial()
         except InputError as error:
             session.complain(str(error))
         else:
-            session.pages.open(ReplayPage(session, self._making, begins_at_worst))
+            session.pages.open(ReplayPage(session, self._loading, begins_at_worst))
 
     def _what_comes_next(self) -> tuple[str, ...]:
         """Return what a study asks for after this trial."""
@@ -196,7 +198,7 @@ def _tone_of_score(result: TrialResult) -> Tone:
     return Tone.WARNING if result.score < POOR_SCORE else Tone.PLAIN
 
 
-def _facts_of_trial(session: Session) -> tuple[Fact, ...]:
+def _facts_of_trial(session: TrainingSession) -> tuple[Fact, ...]:
     training = session.training
     say = session.texts.say
     return (
@@ -253,6 +255,5 @@ def _plain(values: Any) -> dict[str, Any]:
     return {name: value for name, value in told if isinstance(value, str) or _is_number(value)}
 
 
-def _is_number(value: Any) -> bool:
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return is_number and math.isfinite(value)
+def _is_number(value: object) -> TypeGuard[float]:
+    return is_number(value) and math.isfinite(value)

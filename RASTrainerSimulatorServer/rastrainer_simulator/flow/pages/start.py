@@ -1,15 +1,15 @@
-"""The start menu, and leaving."""
+"""The start menu, the settings, and quitting."""
 
 from __future__ import annotations
 
-from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import ControlsPage, IntroductionPage
-from rastrainer_simulator.flow.pages.settings import SettingsPage
-from rastrainer_simulator.flow.screen import Menu
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.preferences import OF_THE_SIMULATION, OPTIONS
+from rastrainer_simulator.net.views.screen import Menu, MenuItem
 
 
-class StartPage(Page):
+class StartPage(SessionPage):
     """Where everything begins. Who has not read the introduction is led through it once."""
 
     name = "start"
@@ -42,7 +42,7 @@ class StartPage(Page):
         """There is nothing before it."""
 
 
-class QuitPage(Page):
+class QuitPage(SessionPage):
     """Asks once more before the simulator is shut down."""
 
     name = "quit"
@@ -58,3 +58,38 @@ class QuitPage(Page):
         if item == "leave":
             self.session.quit()
         self.session.pages.close()
+
+
+class SettingsPage(SessionPage):
+    """One choice for each preference; what would change a running trial waits for its end."""
+
+    name = "settings"
+
+    def menu(self) -> Menu:
+        """Return the choices."""
+        items = tuple(self._item(name) for name in OPTIONS)
+        return Menu(self.name, self.say("settings.title"), items=(*items, self.button("back")))
+
+    def accept(self, item: str) -> None:
+        """Go back."""
+        if item == "back":
+            self.back()
+
+    def step(self, item: str, direction: int) -> None:
+        """Choose another option, which counts at once."""
+        self.session.prefer(self.session.preferences.stepped(item, direction))
+
+    def _item(self, name: str) -> MenuItem:
+        waits = self.session.has_open_trial and name in OF_THE_SIMULATION
+        help_ = self.say("settings.waits") if waits else self.say(f"settings.{name} help")
+        return self.choice(name, self._value(name), is_enabled=not waits, help=help_)
+
+    def _value(self, name: str) -> str:
+        value = getattr(self.session.preferences, name)
+        if name == "volume":
+            return f"{value} %"
+        if name in ("coarse", "fine"):
+            return f"{value} mm/s"
+        if isinstance(value, bool):
+            value = "yes" if value else "no"
+        return self.say(f"settings.{name}.{value}")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from rastrainer.protocol import TRIAL_RUN, AbortReason, CommandName, Phase
-from rastrainer_simulator.controls.control_name import ControlName
-from rastrainer_simulator.flow.page import Page
 from rastrainer_simulator.flow.pages.introduction import ControlsPage
-from rastrainer_simulator.flow.pages.settings import SettingsPage
-from rastrainer_simulator.flow.screen import Menu
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.start import SettingsPage
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.net.views.screen import Menu
 
 
-class TrialPage(Page):
+class TrialPage(SessionPage):
     """The menu during a trial, which is paused while it is open."""
 
     name = "trial"
@@ -46,20 +46,20 @@ class TrialPage(Page):
             session.pages.open(pages[item](session))
 
     def back(self) -> None:
-        """Go on with the trial."""
+        """Resume the trial."""
         if self.session.training.phase is Phase.PAUSED:
             self.session.do(CommandName.RESUME)
         else:
             self.session.pages.close()
 
     def pressed(self, control: ControlName) -> bool:
-        """The control that pauses goes on, too."""
+        """The control that pauses also resumes."""
         if control is ControlName.PAUSE:
             self.back()
         return control is ControlName.PAUSE
 
 
-class AbortPage(Page):
+class AbortPage(SessionPage):
     """Asks once more before a trial is given up."""
 
     name = "abort"
@@ -80,8 +80,8 @@ class AbortPage(Page):
             self.session.pages.close()
 
 
-class PracticePage(Page):
-    """The trial run's minutes are over: the trainee decides how to go on."""
+class PracticePage(SessionPage):
+    """The trial run's minutes are over: the trainee decides how to continue."""
 
     name = "practice"
 
@@ -94,18 +94,18 @@ class PracticePage(Page):
         return Menu(self.name, self.say("practice.title"), (text,), items=items)
 
     def accept(self, item: str) -> None:
-        """Finish, or practice on."""
+        """Finish, or keep practicing."""
         if item == "finish":
             self.session.do(CommandName.ABORT, {"reason": AbortReason.PRACTICE_OVER.value})
         else:
             self.session.do(CommandName.RESUME)
 
     def back(self) -> None:
-        """Practice on."""
+        """Keep practicing."""
         self.accept("resume")
 
 
-class CompletePage(Page):
+class CompletePage(SessionPage):
     """All points are touched: they are registered, or the last one is taken back."""
 
     name = "complete"

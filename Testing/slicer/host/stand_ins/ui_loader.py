@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import xml.etree.ElementTree as ElementTree
 
 from PySide6 import QtCore, QtUiTools, QtWidgets
@@ -13,16 +14,9 @@ class QUiLoader(QtUiTools.QUiLoader):
     """Makes the widgets of CTK and of Slicer, too, and connects them."""
 
     def load(self, device: QtCore.QIODevice, parent: QtWidgets.QWidget | None = None) -> object:
-        root = ElementTree.fromstring(bytes(device.readAll().data()))
-        enumerations = {}
-        for element in root.iter("widget"):
-            check_widget(element)
-            enumerations |= _take_enumerations(element)
-        connections = [dict(_texts(item)) for item in root.iter("connection")]
-        for element in root.findall("connections"):
-            root.remove(element)
+        content, enumerations, connections = _checked(bytes(device.readAll().data()))
         buffer = QtCore.QBuffer()
-        buffer.setData(ElementTree.tostring(root))
+        buffer.setData(content)
         buffer.open(QtCore.QIODevice.OpenModeFlag.ReadOnly)
         widget = super().load(buffer, parent)
         for name, (key, value) in enumerations.items():
@@ -42,6 +36,25 @@ class QUiLoader(QtUiTools.QUiLoader):
         widget = made(parent)
         widget.setObjectName(name)
         return widget
+
+
+@functools.cache
+def _checked(
+    content: bytes,
+) -> tuple[bytes, dict[str, tuple[str, int]], list[dict[str, str]]]:
+    """Return what Qt can read of a `.ui` file, and apart from it what only CTK knows.
+
+    That is the enumerations, by the names of their widgets, and the connections.
+    """
+    root = ElementTree.fromstring(content)
+    enumerations = {}
+    for element in root.iter("widget"):
+        check_widget(element)
+        enumerations |= _take_enumerations(element)
+    connections = [dict(_texts(item)) for item in root.iter("connection")]
+    for element in root.findall("connections"):
+        root.remove(element)
+    return ElementTree.tostring(root), enumerations, connections
 
 
 def check_widget(element: ElementTree.Element) -> None:

@@ -1,4 +1,4 @@
-"""How every trainee went on from trial to trial, with the curve of all."""
+"""Every trainee's values from trial to trial, with the curve of all."""
 
 from __future__ import annotations
 

@@ -1,17 +1,17 @@
-"""How many trials were begun, and what became of them: an aborted one does not disappear."""
+"""How many trials were started, and how they ended: an aborted one does not disappear."""
 
 from __future__ import annotations
 
 from collections import Counter
 
 from rastrainer.number_text import counted
-from rastrainer.report.markup import bullets, heading, paragraph, section, table
-from rastrainer.report.outcomes import mode_title, task_title
-from rastrainer.report.study_data import StudyData
-from rastrainer.study_aborted import StoredAborted
+from rastrainer.report.html.markup import bullets, heading, paragraph, section, table
+from rastrainer.study.database.aborted_trials import StoredAborted
+from rastrainer.study.outcomes import mode_title, task_title
+from rastrainer.study.study_data import StudyData
 
 HEADER = [
-    *("trainee", "mode", "task", "begun (n)", "finished"),
+    *("trainee", "mode", "task", "started (n)", "finished"),
     *("aborted before all touches", "aborted after all touches"),
 ]
 
@@ -23,7 +23,7 @@ def begun(data: StudyData) -> str:
     scored = [stored for stored in data.aborted if not stored.record.is_trial_run]
     runs = len(data.aborted) - len(scored)
     total = len(data.trials) + len(scored)
-    parts = [paragraph(f"{len(data.trials)} of {total} trials that were begun were finished.")]
+    parts = [paragraph(f"{len(data.trials)} of {total} started trials were finished.")]
     if scored:
         parts.append(table([HEADER], _rows(data, scored)))
         failed = sum(stored.record.counts_as_failed for stored in scored)
@@ -32,7 +32,7 @@ def begun(data: StudyData) -> str:
                 "Tasks of trainees who aborted none are left out of the table. An aborted trial "
                 f"with a touch ({failed} of {len(scored)}) counts as not passed in the pass mark's "
                 "LC-CUSUM; it has no score and no time for anything else here, so that what "
-                "follows tells of the finished trials.",
+                "follows is about the finished trials.",
                 "small",
             )
         )
@@ -54,12 +54,13 @@ def begun(data: StudyData) -> str:
                 "small",
             )
         )
-    return section("Trials that were begun", *parts)
+    return section("Started trials", *parts)
 
 
 def _rows(data: StudyData, aborted: list[StoredAborted]) -> list[list[str]]:
     finished = Counter((trial.trainee, trial.mode, trial.task) for trial in data.trials)
-    early, late = Counter(), Counter()
+    early: Counter[tuple[str, str, str]] = Counter()
+    late: Counter[tuple[str, str, str]] = Counter()
     for stored in aborted:
         record = stored.record
         counter = late if record.is_after_all_touches else early

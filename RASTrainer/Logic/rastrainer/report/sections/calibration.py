@@ -1,15 +1,27 @@
-"""Whether the target errors that were expected came true, which only a simulator can tell."""
+"""Whether the true target errors were as expected, which only a simulator can show."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from rastrainer.number_text import fixed
-from rastrainer.report.charts.calibration import calibration_chart
-from rastrainer.report.charts.svg import mode_color
-from rastrainer.report.markup import bullets, figure, paragraph, section, table
-from rastrainer.report.outcomes import mode_title
-from rastrainer.report.study_data import StudyData, TrialRow
-from rastrainer.target_error import INTERVAL_NOTE
-from rastrainer.tre_calibration import CalibrationPoint, TreCalibration, share_text
+from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.report.charts.svg import (
+    FAINT,
+    GRID,
+    INK,
+    Axis,
+    Sheet,
+    axis_over,
+    mode_color,
+    number,
+    y_grid,
+)
+from rastrainer.report.html.markup import bullets, figure, paragraph, section, table
+from rastrainer.statistics.intervals import Proportion
+from rastrainer.study.outcomes import mode_title
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.tre_calibration import CalibrationPoint, TreCalibration, share_text
 
 HEADER = [
     *("mode", "n", "true, RMS (mm)", "expected, RMS (mm)"),
@@ -37,11 +49,16 @@ def calibration(data: StudyData) -> str:
             "Every trial with both errors at the scenario's target. Bars: the interval in which "
             "the true error was to lie; rimmed: it does not. The axes have different scales."
         )
-        rows = [_row(mode_title(mode), found.of_mode(mode)) for mode in colors]
-        if len(rows) > 1:
-            rows.append(_row("all", found))
+        parted = {mode_title(mode): found.of_mode(mode) for mode in colors}
+        if len(parted) > 1:
+            parted["all"] = found
+        rows = [
+            _row(title, part, inside)
+            for title, part in parted.items()
+            if (inside := part.inside) is not None
+        ]
         parts += [figure([calibration_chart(found, colors)], caption), table([HEADER], rows)]
-    parts.append(paragraph(f"{INTERVAL_NOTE} {_words()}", "small"))
+    parts.append(paragraph(f"{INTERVAL_NOTE} {_note()}", "small"))
     return section("Expected and true target error", *parts)
 
 
@@ -67,8 +84,8 @@ def _point(trial: TrialRow) -> CalibrationPoint | None:
     )
 
 
-def _row(title: str, found: TreCalibration) -> list[str]:
-    inside, count = found.inside, len(found.points)
+def _row(title: str, found: TreCalibration, inside: Proportion) -> list[str]:
+    count = len(found.points)
     return [
         title,
         str(count),
@@ -80,9 +97,97 @@ def _row(title: str, found: TreCalibration) -> list[str]:
     ]
 
 
-def _words() -> str:
+def _note() -> str:
     return (
         "True errors that lie above their intervals mostly come from touches that share an offset: "
         "hovering, aiming beside, a view that misleads. The share's own interval is Wilson's "
         "(1927); it takes the trials as independent, which those of one trainee are not."
     )
+
+
+WIDTH, HEIGHT = 660, 360
+LEFT, RIGHT, TOP, BOTTOM = 52, 640, 52, 306
+OFF = "#b3261e"
+"""The rim of what lies outside of its interval."""
+
+
+def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[str, str]]) -> str:
+    """Return the chart; both axes begin at nought, each with its own scale.
+
+    Args:
+        calibration: With at least one point.
+        colors: Mode → its title and color.
+    """
+    points = calibration.points
+    heading = "True against expected target error (mm)"
+    sheet = Sheet(WIDTH, HEIGHT, heading)
+    sheet.text(10, 16, heading, 12.5, INK, weight="600")
+    highest = max(max(point.true_mm, point.interval_mm[1]) for point in points)
+    up = axis_over([0.0, highest], BOTTOM, TOP, from_zero=True)
+    along = axis_over([0.0, max(point.expected_mm for point in points)], LEFT, RIGHT, True)
+    y_grid(sheet, up, LEFT, RIGHT)
+    for tick in along.ticks(8):
+        x = along.at(tick)
+        sheet.line(x, BOTTOM, x, BOTTOM + 4, FAINT)
+        sheet.text(x, BOTTOM + 17, number(tick), 10, FAINT, "middle")
+    _identity(sheet, along, up)
+    # Bars of very many trials make a band.
+    opacity = max(0.05, min(0.55, 14 / len(points)))
+    for point in points:
+        _bar(sheet, along, up, point, colors[point.mode][1], opacity)
+    radius = 3.6 if len(points) <= 120 else 2.4
+    for point in points:
+        _dot(sheet, along, up, point, colors[point.mode][1], radius)
+    _legend(sheet, colors)
+    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 12, "expected TRE (mm)", 11, INK, "middle")
+    middle = (TOP + BOTTOM) / 2
+    sheet.text(16, middle, "true TRE (mm)", 11, INK, "middle", turn=-90)
+    return sheet.svg()
+
+
+def _identity(sheet: Sheet, along: Axis, up: Axis) -> None:
+    end = min(along.high, up.high)
+    sheet.line(along.at(0.0), up.at(0.0), along.at(end), up.at(end), INK, 1.3, "5 4")
+
+
+def _bar(
+    sheet: Sheet, along: Axis, up: Axis, point: CalibrationPoint, color: str, opacity: float
+) -> None:
+    x = along.at(point.expected_mm)
+    low, high = (up.at(end) for end in point.interval_mm)
+    sheet.polyline([(x, low), (x, high)], color, 1.6, opacity)
+    for end in (low, high):
+        sheet.polyline([(x - 2.5, end), (x + 2.5, end)], color, 1.2, opacity)
+
+
+def _dot(
+    sheet: Sheet, along: Axis, up: Axis, point: CalibrationPoint, color: str, radius: float
+) -> None:
+    x, y = along.at(point.expected_mm), up.at(point.true_mm)
+    if not point.is_inside:
+        sheet.dot(x, y, radius + 2.4, OFF)
+    words = (
+        f"{point.trainee}, {point.task}: true {fixed(point.true_mm, 2)} mm, expected "
+        f"{fixed(point.expected_mm, 2)} mm"
+    )
+    sheet.dot(x, y, radius, color, 0.85, words)
+
+
+def _legend(sheet: Sheet, colors: Mapping[str, tuple[str, str]]) -> None:
+    x, y = float(LEFT), 38.0
+    for title, color in colors.values():
+        sheet.dot(x + 5, y - 4, 3.6, color, 0.85)
+        x = _words(sheet, x + 14, y, title)
+    sheet.dot(x + 5, y - 4, 6, OFF)
+    sheet.dot(x + 5, y - 4, 3.6, GRID)
+    x = _words(sheet, x + 16, y, "outside of its interval")
+    sheet.line(x + 5, y - 11, x + 5, y + 3, FAINT, 1.6)
+    x = _words(sheet, x + 14, y, "95 % interval")
+    sheet.line(x, y - 4, x + 22, y - 4, INK, 1.3, "5 4")
+    _words(sheet, x + 28, y, "true = expected")
+
+
+def _words(sheet: Sheet, x: float, y: float, text: str) -> float:
+    """Write a name and return where the next may begin."""
+    sheet.text(x, y, text, 11)
+    return x + 22 + 5.1 * len(text)

@@ -1,4 +1,4 @@
-"""Groups of trainees by performance, or why none are told."""
+"""Groups of trainees by performance, or why none are reported."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections import defaultdict
 
 import numpy as np
 
-from rastrainer.clusters.trainee_clusters import (
+from rastrainer.number_text import fixed, p_phrase
+from rastrainer.report.html.markup import paragraph, section, table
+from rastrainer.statistics.trainee_clusters import (
     NoClustersError,
     TraineeClusters,
     cluster_trainees,
 )
-from rastrainer.number_text import fixed, p_phrase
-from rastrainer.report.markup import paragraph, section, table
-from rastrainer.report.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES
-from rastrainer.report.study_data import StudyData
+from rastrainer.study.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES
+from rastrainer.study.study_data import StudyData
 
 NAMES = "ABCDE"
 MOST_NAMED = 12

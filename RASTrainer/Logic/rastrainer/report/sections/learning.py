@@ -1,4 +1,4 @@
-"""How trainees went on from trial to trial, and whether that is more than chance."""
+"""How trainees changed from trial to trial, and whether that is more than chance."""
 
 from __future__ import annotations
 
@@ -6,22 +6,21 @@ from collections import defaultdict
 
 import numpy as np
 
-from rastrainer.learning.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
-from rastrainer.learning.trend import ALPHA, STEADY, Verdict
 from rastrainer.number_text import fixed, p_text, percent
 from rastrainer.report.charts.learning_curves import learning_curves
 from rastrainer.report.charts.svg import mode_color
-from rastrainer.report.markup import Cell, bullets, figure, paragraph, section, table
-from rastrainer.report.outcomes import MAIN_OUTCOMES, Outcome, mode_title
-from rastrainer.report.score_versions import versions_note
+from rastrainer.report.html.markup import Cell, Line, bullets, figure, paragraph, section, table
+from rastrainer.report.results.scores import versions_note
 from rastrainer.report.sections.paired_statistics import interval_text
-from rastrainer.report.study_data import StudyData
-from rastrainer.report.trends import CohortTrend, cohort_trend
+from rastrainer.statistics.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
+from rastrainer.statistics.trend import ALPHA, STEADY, CohortTrend, TrendVerdict, cohort_trend
+from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, mode_title
+from rastrainer.study.study_data import StudyData
 
 SHOWN = ("completion_time_s", "rmse_mm", "score")
-CURVE_TOLD = 8
-"""Of fewer trials the plateau lies too far beyond them to be told."""
-HEADER = [
+FEWEST_FOR_CURVE = 8
+"""Of fewer trials the plateau lies too far beyond them to be reported."""
+HEADER: Line = [
     *(
         "Outcome",
         Cell("mode", kind="text"),
@@ -52,7 +51,7 @@ def learning(data: StudyData) -> str:
             charts.append(_chart(data, outcome, mode, index, points, curve))
             if data.has_order:
                 rows.append(_row(outcome, mode, trend, len(points)))
-            if curve is not None and len(trend.means) >= CURVE_TOLD:
+            if curve is not None and trend is not None and len(trend.means) >= FEWEST_FOR_CURVE:
                 sentences.append(_sentence(outcome, mode, curve))
     return section(
         "Learning curves",
@@ -104,14 +103,14 @@ def _chart(
     return learning_curves(heading, color, points, x_title, fitted, (min(span), max(span)))
 
 
-def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> list[Cell | str]:
-    start = [outcome.heading, Cell(mode_title(mode), kind="text")]
+def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> Line:
+    start: Line = [outcome.heading, Cell(mode_title(mode), kind="text")]
     if trend is None:
         return [*start, str(trainees), "too few", *["–"] * (len(HEADER) - 4)]
     change = "–"
-    if trend.change is not None:
+    if trend.change is not None and trend.interval is not None:
         change = interval_text(trend.change, trend.interval, outcome.digits)
-    counts = [trend.verdicts[verdict] for verdict in Verdict]
+    counts = [trend.verdicts[verdict] for verdict in TrendVerdict]
     return [
         *start,
         str(trend.trainees),

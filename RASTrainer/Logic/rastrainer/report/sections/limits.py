@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rastrainer.inference.few_subjects import what_cannot_be_concluded
 from rastrainer.number_text import counted
-from rastrainer.report.comparisons import ModeComparison
-from rastrainer.report.markup import bullets, heading, section
-from rastrainer.report.outcomes import mode_title, task_title
-from rastrainer.report.study_data import StudyData
-from rastrainer.scoring import LONG_PAUSE_S
+from rastrainer.report.html.markup import bullets, heading, section
+from rastrainer.report.results.comparisons import ModeComparison
+from rastrainer.statistics.few_subjects import what_cannot_be_concluded
+from rastrainer.study.outcomes import mode_title, task_title
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.scoring import LONG_PAUSE_S
 
 
 def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
@@ -26,9 +26,9 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         sentences.append(
             f"Left out: {counted(data.without_consent, 'trainee')} who did not agree to research."
         )
-    if data.beside_protocol:
+    if data.outside_protocol:
         sentences.append(
-            f"Left out: {counted(data.beside_protocol, 'trial')} that the protocol had not asked "
+            f"Left out: {counted(data.outside_protocol, 'trial')} that the protocol had not asked "
             "for."
         )
     sentences.append(

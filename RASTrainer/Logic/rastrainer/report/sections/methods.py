@@ -7,16 +7,16 @@ import platform
 import numpy as np
 
 import rastrainer
-from rastrainer.brain_region import BELOW_VERTEX_MM, SPACING_MM, UNDER_SKIN_MM
-from rastrainer.experiment.study_protocol import BALANCED
 from rastrainer.motion.definitions import FILTER
 from rastrainer.number_text import counted
-from rastrainer.report.markup import bullets, heading, paragraph, section, table
-from rastrainer.report.score_versions import compared_version
-from rastrainer.report.study_data import StudyData
-from rastrainer.scipy_modules import scipy_module
-from rastrainer.score_reference import REFERENCE_FLE_MM
-from rastrainer.scoring import (
+from rastrainer.report.html.markup import bullets, heading, paragraph, section, table
+from rastrainer.report.results.scores import compared_version
+from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.study.protocol.study_protocol import BALANCED
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.brain_region import BELOW_VERTEX_MM, SPACING_MM, UNDER_SKIN_MM
+from rastrainer.trial.score_reference import REFERENCE_FLE_MM
+from rastrainer.trial.scoring import (
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,

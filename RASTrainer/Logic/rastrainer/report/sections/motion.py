@@ -8,11 +8,12 @@ import numpy as np
 
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.number_text import fixed
-from rastrainer.report.comparisons import ModeComparison
-from rastrainer.report.markup import Cell, paragraph, section, table
-from rastrainer.report.outcomes import MOTION_OUTCOMES, mode_title
+from rastrainer.report.html.markup import Cell, Line, paragraph, section, table
+from rastrainer.report.results.comparisons import ModeComparison, tested
 from rastrainer.report.sections.paired_statistics import interval_text
-from rastrainer.report.study_data import StudyData
+from rastrainer.statistics.paired import PairedComparison
+from rastrainer.study.outcomes import MOTION_OUTCOMES, mode_title
+from rastrainer.study.study_data import StudyData
 
 
 def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
@@ -21,7 +22,7 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     outcomes = [outcome for outcome in MOTION_OUTCOMES if outcome.name in found]
     if not outcomes:
         return ""
-    compared = {c.outcome.name: c for c in comparisons if c.result is not None}
+    compared = {c.outcome.name: result for c, result in tested(comparisons)}
     rows = []
     for outcome in outcomes:
         values = [
@@ -31,7 +32,7 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         means = [_mean_and_sd(own, outcome.digits) if own else "–" for own in values]
         counts = " / ".join(str(len(own)) for own in values)
         rows.append([outcome.heading, *means, counts, *_effect(compared.get(outcome.name))])
-    definitions = [
+    definitions: list[Line] = [
         [
             outcome.title,
             Cell(DEFINITIONS[outcome.name].definition, kind="text"),
@@ -54,13 +55,13 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     )
 
 
-def _effect(comparison: ModeComparison | None) -> list[str]:
+def _effect(result: PairedComparison | None) -> list[str]:
     """Return the number of trainees and the effect size, as far as there is one."""
-    if comparison is None:
+    if result is None:
         return ["–", "–"]
-    gz, interval = comparison.result.hedges_gz, comparison.result.gz_interval
-    text = "–" if gz is None else interval_text(gz, interval, 2)
-    return [str(len(comparison.trainees)), text]
+    if result.hedges_gz is None or result.gz_interval is None:
+        return [str(result.n), "–"]
+    return [str(result.n), interval_text(result.hedges_gz, result.gz_interval, 2)]
 
 
 def _mean_and_sd(values: Sequence[float], digits: int) -> str:

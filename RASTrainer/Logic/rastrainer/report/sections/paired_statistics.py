@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rastrainer.inference.few_subjects import what_it_shows
-from rastrainer.inference.paired import equivalence_margin
 from rastrainer.number_text import fixed, p_text
-from rastrainer.report.charts.effect_sizes import effect_sizes
-from rastrainer.report.charts.paired_lines import paired_lines
-from rastrainer.report.comparisons import ModeComparison
-from rastrainer.report.markup import Cell, figure, heading, paragraph, section, table
-from rastrainer.report.outcomes import mode_name, mode_title
+from rastrainer.report.charts.paired import effect_sizes, paired_lines
+from rastrainer.report.html.markup import Cell, Line, figure, heading, paragraph, section, table
+from rastrainer.report.results.comparisons import ModeComparison, tested
+from rastrainer.statistics.few_subjects import what_it_shows
+from rastrainer.statistics.paired import equivalence_margin
+from rastrainer.study.outcomes import mode_name, mode_title
 
 SEPARATED = (
     "Trainees did the modes in different orders, so that the effect of the period (practice, "
@@ -41,12 +40,12 @@ def findings(comparisons: Sequence[ModeComparison]) -> list[str]:
             comparison.outcome.unit,
             mode_name(comparison.first),
             mode_name(comparison.second),
-            comparison.result,
+            result,
             comparison.adjusted_p,
             comparison.outcome.digits + 1,
         )
-        for comparison in comparisons
-        if comparison.result is not None and comparison.adjusted_p is not None
+        for comparison, result in tested(comparisons)
+        if comparison.adjusted_p is not None
     ]
 
 
@@ -72,31 +71,35 @@ def paired_statistics(comparisons: Sequence[ModeComparison]) -> str:
             "with its 95 % interval on an axis of its own.",
         ),
         figure([effect_sizes(comparisons)], "Standardized paired differences.")
-        if any(one.result is not None and one.result.gz_interval for one in comparisons)
+        if any(result.gz_interval for _one, result in tested(comparisons))
         else "",
     )
 
 
 def order_caveat(comparisons: Sequence[ModeComparison]) -> str:
     """Return why the effect of the period is not separated; "" where it is."""
-    if any(one.result is not None and one.result.sequences is not None for one in comparisons):
+    if any(result.sequences is not None for _one, result in tested(comparisons)):
         return ""
     known = any(comparison.order is not None for comparison in comparisons)
     return SAME_ORDER if known else UNKNOWN_ORDER
 
 
 def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
-    """Say what the order of the modes did, or why that is not told."""
-    separated = [c for c in comparisons if c.result is not None and c.result.sequences is not None]
+    """Say what the order of the modes did, or why that is unknown."""
+    separated = [
+        (comparison, result.sequences)
+        for comparison, result in tested(comparisons)
+        if result.sequences is not None
+    ]
     if not separated:
         return [paragraph(order_caveat(comparisons))]
-    one = separated[0]
+    one = separated[0][0]
     first, second = mode_name(one.first), mode_name(one.second)
     rows = []
-    for comparison in separated:
-        found, digits = comparison.result.sequences, comparison.outcome.digits + 1
+    for comparison, found in separated:
+        digits = comparison.outcome.digits + 1
         between = "–"
-        if found.between is not None:
+        if found.between is not None and found.between_interval is not None:
             between = interval_text(found.between, found.between_interval, digits)
         later = interval_text(found.later, found.later_interval, digits)
         counts = [str(found.first_first), str(found.second_first)]
@@ -133,9 +136,10 @@ def _table(comparisons: Sequence[ModeComparison]) -> str:
     return table([[*headers, "g_z"]], rows, "wide")
 
 
-def _row(comparison: ModeComparison) -> list[Cell | str]:
+def _row(comparison: ModeComparison) -> Line:
     outcome, result = comparison.outcome, comparison.result
-    means = [outcome.text(float(values.mean())) for values in _both(comparison)]
+    both = (comparison.first_means, comparison.second_means)
+    means = [outcome.text(float(values.mean())) for values in both]
     start = [outcome.heading, str(len(comparison.trainees)), *means]
     if result is None:
         return [*start, Cell(comparison.reason, 7, kind="text")]
@@ -155,7 +159,3 @@ def interval_text(value: float, interval: tuple[float, float], digits: int) -> s
     """Return a value with its interval, such as `0.15 [0.08, 0.21]`."""
     low, high = interval
     return f"{fixed(value, digits)} [{fixed(low, digits)}, {fixed(high, digits)}]"
-
-
-def _both(comparison: ModeComparison):
-    return comparison.first_means, comparison.second_means

@@ -7,36 +7,36 @@ from datetime import datetime
 
 import numpy as np
 
-from rastrainer.aborted_trial import AbortedTrial
-from rastrainer.experiment.study_protocol import pass_mark_of, sets_pass_mark
-from rastrainer.feedback.progress_words import (
-    ADEQUATE_FAILURES,
-    INADEQUATE_FAILURES,
-    TRAINING_TRIALS,
-    competence_of,
-)
-from rastrainer.learning.lc_cusum import (
+from rastrainer.number_text import percent
+from rastrainer.report.charts.learning_curves import learning_curves
+from rastrainer.report.charts.svg import mode_color
+from rastrainer.report.html.markup import figure, paragraph, section, table
+from rastrainer.report.results.scores import compared_version, versions_note
+from rastrainer.statistics.lc_cusum import (
     FALSE_DISCOVERY,
     LcCusum,
     chance_of_successes,
     fewest_trials,
     lc_cusum_limit,
 )
-from rastrainer.number_text import percent
-from rastrainer.report.charts.learning_curves import learning_curves
-from rastrainer.report.charts.svg import mode_color
-from rastrainer.report.markup import figure, paragraph, section, table
-from rastrainer.report.outcomes import mode_title
-from rastrainer.report.score_versions import compared_version, versions_note
-from rastrainer.report.study_data import StudyData
-from rastrainer.scoring import (
+from rastrainer.study.database.clock import moment
+from rastrainer.study.outcomes import mode_title
+from rastrainer.study.protocol.study_protocol import pass_mark_of
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.scoring import (
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
     FIRST_SCORE_VERSION,
     passes,
 )
-from rastrainer.study_clock import moment
+from rastrainer.trial.trainee_progress import (
+    ADEQUATE_FAILURES,
+    INADEQUATE_FAILURES,
+    TRAINING_TRIALS,
+    competence_of,
+)
 
 HEADER = [
     *("mode", "trials", "passed", "trainees competent", "shown at trial (median)"),
@@ -133,11 +133,12 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
 def _words(data: StudyData, mark: float) -> str:
     version = compared_version(data)
     source = "the default, since the study sets no mark; no data support it"
-    if sets_pass_mark(data.protocol):
+    protocol = data.protocol
+    if protocol is not None and protocol.pass_mark is not None:
         source = "set by the protocol"
-        if version and data.protocol.score_version != version:
+        if version and protocol.score_version != version:
             source += (
-                f" for score version {data.protocol.score_version}, so that it need not fit these "
+                f" for score version {protocol.score_version}, so that it need not fit these "
                 f"scores of version {version}"
             )
     acceptable = (

@@ -1,4 +1,4 @@
-"""The paper's Tables I and II: times and errors, with the performance of tasks and users."""
+"""The paper's Tables I and II from the trials, and its printed numbers and claims beside ours."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from rastrainer.ctps import CTPS_WARNING, CohortScores
-from rastrainer.inference.correlation import Correlation
-from rastrainer.number_text import counted, fixed, p_phrase
-from rastrainer.report.markup import Cell, heading, paragraph, section, table
-from rastrainer.report.outcomes import mode_title, task_title
-from rastrainer.report.published_scores import cohort_scores, complexity_correlation
-from rastrainer.report.study_data import StudyData
+from rastrainer.number_text import counted, fixed, p_phrase, significant
+from rastrainer.report.html.markup import Cell, Line, bullets, heading, paragraph, section, table
+from rastrainer.report.results.scores import cohort_scores, complexity_correlation
+from rastrainer.statistics.intervals import Correlation
+from rastrainer.study.outcomes import mode_title, task_title
+from rastrainer.study.study_data import StudyData
+from rastrainer.study.study_notes import Printed
+from rastrainer.trial.ctps import CTPS_WARNING, CohortScores
 
 MOST_COLUMNS = 6
 ROMAN = ("I", "II", "III", "IV")
@@ -51,7 +52,7 @@ def performance_color(value: float, values: Iterable[float]) -> str:
 
 def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
     subjects = list(scores.subjects)
-    headers = [
+    headers: list[Line] = [
         [
             Cell("", kind="group"),
             *(Cell(_subject(name), 2, kind="group") for name in subjects),
@@ -60,9 +61,9 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
         ["Task", *("CT (s)", "RMSE (mm)") * len(subjects), "Task Perf."],
     ]
     trials = {(t.task, t.trainee): t.values for t in data.of_mode(mode) if "rmse_mm" in t.values}
-    rows = []
+    rows: list[Line] = []
     for task in (task for task in data.tasks if task in scores.tasks):
-        line: list[Cell | str] = [task_title(task)]
+        line: Line = [task_title(task)]
         for subject in subjects:
             values = trials.get((task, subject))
             line += (
@@ -74,7 +75,7 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
                 ]
             )
         rows.append([*line, _performance(scores.tasks[task], scores.tasks.values())])
-    last: list[Cell | str] = [Cell("User Perf.", kind="total")]
+    last: Line = [Cell("User Perf.", kind="total")]
     for subject in subjects:
         color = performance_color(scores.subjects[subject], scores.subjects.values())
         last.append(Cell(fixed(scores.subjects[subject], 2), 2, color, "total"))
@@ -85,7 +86,7 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
 
 def _by_task(data: StudyData, mode: str, scores: CohortScores) -> str:
     """Return the table of a cohort that is too large for a column a subject."""
-    rows = []
+    rows: list[Line] = []
     for task in (task for task in data.tasks if task in scores.tasks):
         own = [t.values for t in data.of_mode(mode) if t.task == task and "rmse_mm" in t.values]
         cells = [str(len(own))]
@@ -146,7 +147,7 @@ def _complexity(data: StudyData, mode: str, scores: CohortScores) -> str:
         for task in scores.tasks
     )
     task_scores = complexity_correlation(scores.tasks.items())
-    if None in (of_times, of_trials, task_times, task_scores):
+    if not (of_times and of_trials and task_times and task_scores):
         return ""
     return (
         f" With the number of the task as its complexity, over {task_times.n} task means: time "
@@ -161,3 +162,53 @@ def _correlation(found: Correlation) -> str:
     if found.interval is not None:
         interval = f" [{fixed(found.interval[0], 3)}, {fixed(found.interval[1], 3)}]"
     return f"r = {fixed(found.r, 2)}{interval}, {p_phrase(found.p)}"
+
+
+def paper_notes(data: StudyData) -> str:
+    """Return the section; "" for a study without notes."""
+    notes = data.notes
+    if notes is None:
+        return ""
+    rows = [
+        [
+            printed.what,
+            _count(data, printed),
+            printed.printed,
+            _ours(data, printed),
+        ]
+        for printed in notes.printed
+    ]
+    claims = [[Cell(claim, kind="text"), Cell(words, kind="text")] for claim, words in notes.claims]
+    return section(
+        "The paper's numbers, checked",
+        paragraph(f"Source: {notes.source}."),
+        table([["what", "n", "printed", "from the trials"]], rows),
+        heading("What does not fit"),
+        bullets(notes.inconsistencies),
+        heading("The claims"),
+        table([[Cell("The paper says", kind="text"), Cell("The trials say", kind="text")]], claims),
+    )
+
+
+def _count(data: StudyData, printed: Printed) -> str:
+    """Return what a number is computed from, and how many there are."""
+    trials = data.ctps_trials(printed.mode)
+    if printed.quantity in ("pearson_r", "r_squared"):
+        return counted(len({trial.task for trial in trials}), "task mean")
+    return counted(len(trials), "trial")
+
+
+def _ours(data: StudyData, printed: Printed) -> str:
+    trials = data.ctps_trials(printed.mode)
+    scores = cohort_scores(data, printed.mode)
+    if scores is None:
+        return "–"
+    if printed.quantity == "mean_ct":
+        value = float(np.mean([trial.completion_time_s for trial in trials]))
+    elif printed.quantity == "mean_rmse":
+        value = float(np.mean([trial.rmse_mm for trial in trials]))
+    else:
+        value = getattr(scores, printed.quantity)
+    if value is None:
+        return "–"
+    return significant(value, 4) if abs(value) < 1 else fixed(value, 3)

@@ -6,11 +6,11 @@ from collections import defaultdict
 
 import numpy as np
 
-from rastrainer.questionnaires.catalog import QUESTIONNAIRES
-from rastrainer.questionnaires.questionnaire import Scale
-from rastrainer.report.markup import Cell, paragraph, section, table
-from rastrainer.report.outcomes import mode_title
-from rastrainer.report.study_data import StudyData
+from rastrainer.report.html.markup import Cell, Line, paragraph, section, table
+from rastrainer.study.outcomes import mode_title
+from rastrainer.study.questionnaires.catalog import QUESTIONNAIRES
+from rastrainer.study.questionnaires.questionnaire import Scale
+from rastrainer.study.study_data import StudyData
 
 
 def questionnaires(data: StudyData) -> str:
@@ -22,15 +22,18 @@ def questionnaires(data: StudyData) -> str:
         occasion = _occasion(answered.step.name, answered.step.mode)
         for scale, score in answered.scores.items():
             values[answered.step.questionnaire, scale, occasion].append(score)
-    rows, sources = [], []
+    rows: list[Line] = []
+    sources = []
     for name, questionnaire in QUESTIONNAIRES.items():
-        for scale in questionnaire.scales:
+        for asked in questionnaire.scales:
             for key, scores in values.items():
-                if key[:2] == (name, scale.name):
-                    rows.append(_row(scale, key[2], scores))
+                if key[:2] == (name, asked.name):
+                    rows.append(_row(asked, key[2], scores))
         if any(key[0] == name for key in values):
             sources.append(f"{questionnaire.title}: {questionnaire.source}.")
-    header = [["Scale", Cell("when", kind="text"), "n", "mean ± SD", "median", "range", "better"]]
+    header: list[Line] = [
+        ["Scale", Cell("when", kind="text"), "n", "mean ± SD", "median", "range", "better"]
+    ]
     return section("Questionnaires", table(header, rows), paragraph(" ".join(sources)))
 
 
@@ -41,7 +44,7 @@ def _occasion(step: str, mode: str) -> str:
     return f"{when} {mode_title(mode)}"
 
 
-def _row(scale: Scale, when: str, scores: list[float]) -> list[Cell | str]:
+def _row(scale: Scale, when: str, scores: list[float]) -> Line:
     spread = f" ± {np.std(scores, ddof=1):.1f}" if len(scores) > 1 else ""
     return [
         scale.title,

@@ -6,9 +6,9 @@ import numpy as np
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.head_mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.progress import Progress
-from rastrainer.slicer.head import beyond_image, mask, surface, tissue, topology
+from rastrainer.slicer.head import level_set, mask, surface, topology
 from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
 from rastrainer.slicer.head.volume import Volume, on_ras_grid
 
@@ -46,7 +46,7 @@ def find_head(volume: Volume, settings: HeadSettings, progress: Progress) -> Hea
     progress("Reading the volume", 0.0)
     grid = on_ras_grid(volume, SPACING_MM)
     progress("Finding the skin", 0.1)
-    found = tissue.find_tissue(grid.values, settings.threshold, settings.noise_mm / SPACING_MM)
+    found = level_set.find_tissue(grid.values, settings.threshold, settings.noise_mm / SPACING_MM)
     lowest = grid.ijk_to_ras[2, 3]
     top = lowest + SPACING_MM * np.flatnonzero((found.level > 0).any(axis=(0, 1))).max()
     base = settings.base_mm
@@ -59,7 +59,7 @@ def find_head(volume: Volume, settings: HeadSettings, progress: Progress) -> Hea
         )
     below = max(0, int((base - lowest) / SPACING_MM) - 1)
     around = _around(found.level > 0, below)
-    level = beyond_image.continued(found.level[around], MARGIN)
+    level = level_set.continued(found.level[around], MARGIN)
     progress("Filling cavities", 0.3)
     body = _body(level > 0, settings, progress)
     first = np.array([part.start for part in around])

@@ -6,15 +6,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from rastrainer.head_mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.progress import Progress
-from rastrainer.scenario_draft import HeadDraft
+from rastrainer.scenario.draft import HeadDraft
 from rastrainer.slicer.head.extraction import find_head, skin_of
 from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
-from rastrainer.slicer.head.head_image import image_of
+from rastrainer.slicer.head.images_and_skull import SCALP_MM, image_of, skull_of
+from rastrainer.slicer.head.level_set import is_hounsfield
 from rastrainer.slicer.head.segment import SegmentImage, for_segment, volume_of_segment
-from rastrainer.slicer.head.skull import SCALP_MM, skull_of
-from rastrainer.slicer.head.tissue import is_hounsfield
 from rastrainer.slicer.head.volume import Volume, as_float, read_volume
 from rastrainer.slicer.head.volume_checks import check_head, check_volume
 

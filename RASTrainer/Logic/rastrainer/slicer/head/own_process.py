@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress, print_progress, tell_line
-from rastrainer.slicer.child_process import runChild
+from rastrainer.progress import Progress, print_progress
+from rastrainer.slicer.program.child_process import runChild
 
 TASK, OUTCOME = "task.pickle", "outcome.pickle"
 PROGRAM = """
@@ -50,19 +50,11 @@ def in_own_process(
         folder = Path(temporary)
         with (folder / TASK).open("wb") as file:
             pickle.dump((function, arguments, named), file, pickle.HIGHEST_PROTOCOL)
-        told, said = [("", 0.0)], [""]
-
-        def take(line: str) -> None:
-            tell_line(line, lambda *step: told.append(step), lambda _warning: None)
-            said.append(line or said[-1])
-
-        command = [python, "-c", PROGRAM, str(LOGIC), str(folder)]
-        runChild(command, take, lambda: progress(*told[-1]))
+        ended = runChild((python, "-c", PROGRAM, LOGIC, folder), progress)
         outcome = folder / OUTCOME
         if not outcome.is_file():
-            raise InputError(f"The head could not be made: {said[-1] or 'its process ended'}")
-        with outcome.open("rb") as file:
-            kind, value = pickle.load(file)
+            raise InputError(f"The head could not be made: {ended.lastLine or 'its process ended'}")
+        kind, value = pickle.loads(outcome.read_bytes())
     if kind == "refused":
         raise InputError(value)
     if kind == "missing":
@@ -86,8 +78,8 @@ def main(folder: str) -> None:
         traceback.print_exc()
         sys.exit(1)
     partial = path / f"{OUTCOME}.partial"
-    with partial.open("wb") as file:
-        pickle.dump(outcome, file, pickle.HIGHEST_PROTOCOL)
+    with partial.open("wb") as written:
+        pickle.dump(outcome, written, pickle.HIGHEST_PROTOCOL)
     partial.replace(path / OUTCOME)
 
 

@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress, tell_line
-from rastrainer.scenario import Scenario, load_scenario
-from rastrainer.scenario_draft import HeadDraft, write_draft
+from rastrainer.progress import Progress
+from rastrainer.scenario.draft import HeadDraft, write_draft
+from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.child_process import runChild
+from rastrainer.slicer.program.child_process import runChild
 
 HEAD_SHARE = 0.5
 
@@ -69,18 +69,12 @@ def plan_scenario(
 
 def _run(command: Sequence[str], progress: Progress) -> list[str]:
     """Run the planner of tasks to its end and return its warnings; `progress` may raise to stop."""
-    told = [("Placing fiducials", 0.0)]
-    said = ["it said nothing"]
-    warnings: list[str] = []
 
-    def take(line: str) -> None:
-        tell_line(line, lambda *step: told.append(step), warnings.append)
-        said.append(line or said[-1])
-
-    def rest() -> None:
-        step, share = told[-1]
+    def showShare(step: str, share: float) -> None:
         progress(step, HEAD_SHARE + (1.0 - HEAD_SHARE) * share)
 
-    if runChild(command, take, rest) != 0:
-        raise InputError(f"The tasks could not be made: {said[-1].removeprefix('rastrainer: ')}")
-    return warnings
+    ended = runChild(command, showShare, "Placing fiducials")
+    if ended.exitStatus != 0:
+        reason = ended.lastLine.removeprefix("rastrainer: ") or "it wrote nothing"
+        raise InputError(f"The tasks could not be made: {reason}")
+    return list(ended.warnings)

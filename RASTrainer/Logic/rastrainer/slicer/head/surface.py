@@ -7,7 +7,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.errors import InputError
-from rastrainer.head_mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh
 
 SMOOTHING_PASS_BAND = 0.08
 """Of the windowed-sinc filter (Taubin 1996): takes the grid's steps and keeps eyelids and ears."""

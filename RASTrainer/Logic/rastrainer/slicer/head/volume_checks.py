@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.head_mesh import HeadMesh
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.slicer.head.volume import Volume
 
 FEWEST_VOXELS = 16

@@ -1,1 +1,0 @@
-"""Cohorts of virtual trainees whose parameters are set, to plan studies and test statistics."""

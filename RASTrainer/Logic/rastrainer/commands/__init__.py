@@ -1,1 +1,0 @@
-"""Commands for files: each module has `add_parser`, and its `run` returns the exit status."""

@@ -1,1 +1,0 @@
-"""A study's protocol: who does what in which order, what comes next, what was done."""

@@ -1,1 +1,0 @@
-"""What a trainee is told after a trial: score, touches, what to improve, progress."""

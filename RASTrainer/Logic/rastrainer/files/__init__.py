@@ -1,0 +1,1 @@
+"""Reading and writing files safely: what comes from outside is hostile until checked."""

@@ -1,0 +1,116 @@
+"""Point lists in Slicer's markups files (`.mrk.json`), in RAS mm on our side."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.point_list import COORDINATE_LIMIT_MM, PointList
+from rastrainer.files.reading import read_json
+from rastrainer.files.writing import write_text
+from rastrainer.json_checks import numbers
+
+LIMIT_BYTES = 4 * 2**20
+SCHEMA = (
+    "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/"
+    "Resources/Schema/markups-schema-v1.0.3.json#"
+)
+"""The name by which Slicer knows its format; nothing is fetched from there."""
+_SCHEMA_MARK = "markups-schema-v1."
+_TO_RAS = {"RAS": np.array([1.0, 1.0, 1.0]), "LPS": np.array([-1.0, -1.0, 1.0])}
+
+
+def read_markups(path: str | os.PathLike[str]) -> PointList:
+    """Return the points of a markups file with one point list, in RAS mm.
+
+    Raises:
+        InputError: the file cannot be read, is no markups file of Slicer, holds another markup or
+            several, other units than mm, or a point that is not placed.
+    """
+    document = read_json(path, LIMIT_BYTES)
+    try:
+        return _point_list(document)
+    except InputError as error:
+        raise InputError(f"The file {path} cannot be used: {error}") from None
+
+
+def write_markups(path: str | os.PathLike[str], point_list: PointList) -> None:
+    """Write points in RAS mm as a markups file that Slicer opens, whole or not at all.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    labels = point_list.labels or tuple("" for _ in point_list.points)
+    control_points = [
+        {
+            "id": str(row + 1),
+            "label": label,
+            "description": "",
+            "associatedNodeID": "",
+            "position": [float(value) for value in position],
+            "orientation": [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+            "selected": True,
+            "locked": False,
+            "visibility": True,
+            "positionStatus": "defined",
+        }
+        for row, (label, position) in enumerate(zip(labels, point_list.points, strict=True))
+    ]
+    markup = {
+        "type": "Fiducial",
+        "coordinateSystem": "RAS",
+        "coordinateUnits": "mm",
+        "locked": False,
+        "fixedNumberOfControlPoints": False,
+        "labelFormat": "%d",
+        "lastUsedControlPointNumber": len(control_points),
+        "controlPoints": control_points,
+        "measurements": [],
+    }
+    document = {"@schema": SCHEMA, "markups": [markup]}
+    write_text(path, json.dumps(document, indent=1, ensure_ascii=False) + "\n")
+
+
+def _point_list(document: Any) -> PointList:
+    if not isinstance(document, Mapping) or _SCHEMA_MARK not in str(document.get("@schema")):
+        raise InputError("it is not a markups file of Slicer (schema version 1).")
+    markups = document.get("markups")
+    if not isinstance(markups, list) or len(markups) != 1 or not isinstance(markups[0], Mapping):
+        raise InputError("it must hold exactly one point list.")
+    markup = markups[0]
+    if markup.get("type") != "Fiducial":
+        raise InputError("its markup must be a point list (type Fiducial).")
+    if markup.get("coordinateUnits", "mm") not in ("mm", ["mm", "mm", "mm"]):
+        raise InputError("its coordinates must be in mm.")
+    # Slicer takes LPS where a file does not say.
+    system = markup.get("coordinateSystem", "LPS")
+    if not isinstance(system, str) or system not in _TO_RAS:
+        raise InputError("its coordinate system must be LPS or RAS.")
+    control_points = markup.get("controlPoints")
+    if not isinstance(control_points, list) or not control_points:
+        raise InputError("it holds no points.")
+    labels, positions = zip(
+        *(_control_point(row, item) for row, item in enumerate(control_points)), strict=True
+    )
+    return PointList(labels, np.array(positions) * _TO_RAS[system])
+
+
+def _control_point(row: int, item: Any) -> tuple[str, tuple[float, ...]]:
+    if not isinstance(item, Mapping):
+        raise InputError(f"point {row + 1} must be an object.")
+    label = item.get("label", "")
+    if not isinstance(label, str):
+        raise InputError(f"the label of point {row + 1} must be text.")
+    if item.get("positionStatus", "defined") != "defined":
+        raise InputError(f"point {row + 1} {json.dumps(label[:64])} is not placed.")
+    try:
+        return label, numbers(3, COORDINATE_LIMIT_MM)(item.get("position"))
+    except ValueError:
+        raise InputError(
+            f"the position of point {row + 1} must be three numbers within ±1e6 mm."
+        ) from None

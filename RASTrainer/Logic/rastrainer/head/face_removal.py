@@ -1,0 +1,93 @@
+"""Take the face off a head's surface, so that nobody is known by it.
+
+The skin around the tip of the nose, from the brows to the chin, is replaced by a smooth shield:
+seen from the head's vertical axis, each place has the mean direction, height and distance of its
+neighbors (Tutte 1963). What is left there depends on the shield's rim alone. Vertices are moved,
+never added or removed: the surface stays closed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rastrainer.head.mesh import HeadMesh
+
+RADIUS_MM = 72.0
+"""Around the tip of the nose: the eyes and the mouth are within, the ears and temples are not."""
+
+MIDLINE_MM = 25.0
+NOSE_BELOW_TOP_SHARE = (0.45, 0.95)
+_ITERATIONS = 4000
+_TOLERANCE = 1e-4
+
+
+def face_vertices(mesh: HeadMesh) -> np.ndarray:
+    """Return which vertices (n,) bool are the face; none on a head that ends above it."""
+    away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
+    return (away < RADIUS_MM) & ~is_on_base(mesh)
+
+
+def is_on_base(mesh: HeadMesh) -> np.ndarray:
+    """Return which vertices (n,) bool lie on the flat base."""
+    heights = mesh.vertices[:, 2]
+    return heights < heights.min() + 1e-3
+
+
+def nose_tip(mesh: HeadMesh) -> np.ndarray:
+    """Return the foremost place (3,), RAS mm, of the lower half of the head, near its middle."""
+    vertices = mesh.vertices
+    top, bottom = vertices[:, 2].max(), vertices[:, 2].min()
+    below = (top - vertices[:, 2]) / (top - bottom)
+    middle = (vertices[:, 0].max() + vertices[:, 0].min()) / 2.0
+    low, high = NOSE_BELOW_TOP_SHARE
+    candidates = (np.abs(vertices[:, 0] - middle) < MIDLINE_MM) & (below > low) & (below < high)
+    places = vertices[candidates] if candidates.any() else vertices
+    return places[places[:, 1].argmax()]
+
+
+def without_face(mesh: HeadMesh) -> HeadMesh:
+    """Return the head with a smooth membrane in the place of its face."""
+    free = face_vertices(mesh)
+    # Where the base cuts through the face its rim would keep the profile: it may slide along.
+    away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
+    rim = (away < RADIUS_MM) & is_on_base(mesh)
+    across, forward, height = (np.asarray(mesh.vertices, dtype=float) - mesh.centroid).T
+    distance, direction = np.hypot(across, forward), np.arctan2(across, forward)
+    distance, direction = (_relaxed(mesh.edges, x, free | rim) for x in (distance, direction))
+    height = _relaxed(mesh.edges, height, free)
+    vertices = np.array(mesh.vertices, dtype=float)
+    around = distance[:, None] * np.column_stack([np.sin(direction), np.cos(direction)])
+    moved = np.column_stack([around, height]) + mesh.centroid
+    vertices[free | rim] = moved[free | rim]
+    return HeadMesh(vertices, mesh.triangles)
+
+
+def _relaxed(edges: np.ndarray, values: np.ndarray, moving: np.ndarray) -> np.ndarray:
+    """Return values (n,) that are the mean of their neighbors wherever they may move.
+
+    Solved by conjugate gradients (Hestenes and Stiefel 1952).
+    """
+    if not moving.any():
+        return values
+    within = edges[moving[edges].any(axis=1)]
+    first, second = within.T
+    count = len(values)
+    degree = np.bincount(within.ravel(), minlength=count).astype(float)
+
+    def applied(x: np.ndarray) -> np.ndarray:
+        sums = np.bincount(first, x[second], count) + np.bincount(second, x[first], count)
+        return np.where(moving, degree * x - sums, 0.0)
+
+    result = values.copy()
+    residual = -applied(result)
+    direction, size = residual.copy(), float(residual @ residual)
+    for _ in range(_ITERATIONS):
+        if np.sqrt(size) < _TOLERANCE:
+            break
+        onward = applied(direction)
+        step = size / float(direction @ onward)
+        result += step * direction
+        residual -= step * onward
+        former, size = size, float(residual @ residual)
+        direction = residual + size / former * direction
+    return result

@@ -1,0 +1,173 @@
+"""The head's surface as triangles, and its file: binary PLY in RAS mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+
+MOST_BYTES = 64_000_000
+MOST_TRIANGLES = 1_000_000
+RAS_LIMIT_MM = 2000.0
+"""Of every place in a patient: scanners may count from far away."""
+
+
+_HEADER = """ply
+format binary_little_endian 1.0
+comment SPACE=RAS
+element vertex {vertices}
+property float x
+property float y
+property float z
+element face {triangles}
+property list uchar int vertex_indices
+end_header
+"""
+BASE_THICKNESS_MM = 1.0
+_FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
+
+
+@dataclass(frozen=True)
+class HeadMesh:
+    """Triangles that share vertices.
+
+    Attributes:
+        vertices: (n, 3) float, RAS mm.
+        triangles: (m, 3) int, counterclockwise seen from outside.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+
+    @property
+    def sides(self) -> np.ndarray:
+        """(3 m, 2) int: the sides of all triangles, from corner to next corner."""
+        corners = self.triangles
+        return np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """(e, 2) int: every edge once, the lower vertex first."""
+        edges = np.stack(np.divmod(np.unique(self._side_keys), len(self.vertices)), axis=1)
+        return edges.astype(self.triangles.dtype)
+
+    @property
+    def side_uses(self) -> np.ndarray:
+        """(m, 3) int: how many triangles share each side of each triangle."""
+        _, places, uses = np.unique(self._side_keys, return_inverse=True, return_counts=True)
+        return uses[places].reshape(3, -1).T
+
+    @property
+    def _side_keys(self) -> np.ndarray:
+        """(3 m,) int: each side as one number, which sorts many times faster than a row."""
+        low, high = np.sort(self.sides, axis=1).T.astype(np.int64)
+        return low * len(self.vertices) + high
+
+    @cached_property
+    def base(self) -> np.ndarray:
+        """(3,) float: the middle of the flat base on which the head stands, RAS mm."""
+        heights = self.vertices[:, 2]
+        base = self.vertices[heights <= heights.min() + BASE_THICKNESS_MM]
+        return (base.min(axis=0) + base.max(axis=0)) / 2.0
+
+    @property
+    def euler_characteristic(self) -> int:
+        """Vertices − edges + triangles: 2 for one closed body without a tunnel."""
+        return len(np.unique(self.triangles)) - len(self.edges) + len(self.triangles)
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether every edge lies between exactly two triangles that run along it oppositely."""
+        start, end = self.sides.T.astype(np.int64)
+        keys, opposite = start * len(self.vertices) + end, end * len(self.vertices) + start
+        keys.sort()
+        opposite.sort()
+        return bool(np.all(keys[1:] != keys[:-1]) and np.array_equal(keys, opposite))
+
+    @cached_property
+    def vertex_normals(self) -> np.ndarray:
+        """(n, 3) float: outward unit normals, means of the triangles' weighted by their areas."""
+        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        normals = np.zeros((len(self.vertices), 3))
+        for corner in range(3):
+            np.add.at(normals, self.triangles[:, corner], np.cross(b - a, c - a))
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        return normals / np.where(lengths > 0, lengths, 1.0)
+
+    @cached_property
+    def triangle_spheres(self) -> tuple[np.ndarray, np.ndarray]:
+        """Centers (m, 3) and radii (m,) of spheres that hold the triangles, mm."""
+        corners = self.vertices[self.triangles]
+        centers = corners.mean(axis=1)
+        return centers, np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+
+    @property
+    def centroid(self) -> np.ndarray:
+        """(3,) float: the center of mass of the closed body, RAS mm."""
+        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+        return volumes @ (a + b + c) / (4.0 * volumes.sum())
+
+
+def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
+    """Write a mesh as PLY whose comment lets Slicer place it in RAS; whole or not at all."""
+    header = _HEADER.format(vertices=len(mesh.vertices), triangles=len(mesh.triangles))
+    faces = np.empty(len(mesh.triangles), _FACE)
+    faces["count"] = 3
+    faces["corners"] = mesh.triangles
+    content = header.encode() + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
+    partial = Path(path).with_suffix(".partial")
+    partial.write_bytes(content)
+    partial.replace(path)
+
+
+def read_head_mesh(path: Path) -> HeadMesh:
+    """Read a mesh that `write_head_mesh` wrote.
+
+    Raises:
+        InputError: missing, too large, or not such a file.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"The head mesh {path} does not exist.")
+    if path.stat().st_size > MOST_BYTES:
+        raise InputError(f"The head mesh {path} is larger than {MOST_BYTES // 1_000_000} MB.")
+    content = path.read_bytes()
+    head, end, body = content.partition(b"end_header\n")
+    vertex_count, triangle_count = (_count(head, element) for element in (b"vertex", b"face"))
+    expected = _HEADER.format(vertices=vertex_count, triangles=triangle_count).encode()
+    if not end or head + end != expected:
+        raise InputError(
+            f"The head mesh {path} must be a binary little-endian PLY file in RAS (comment "
+            "SPACE=RAS) with float vertices x, y, z and triangles."
+        )
+    return _checked(path, vertex_count, triangle_count, body)
+
+
+def _count(head: bytes, element: bytes) -> int:
+    for line in head.splitlines():
+        words = line.split()
+        if words[:2] == [b"element", element] and len(words) == 3 and words[2].isdigit():
+            return min(int(words[2][:9]), 10**9)
+    return 0
+
+
+def _checked(path: Path, vertex_count: int, triangle_count: int, body: bytes) -> HeadMesh:
+    if not 4 <= triangle_count <= MOST_TRIANGLES or vertex_count < 4:
+        raise InputError(f"The head mesh {path} must have 4 to {MOST_TRIANGLES} triangles.")
+    if len(body) != 12 * vertex_count + _FACE.itemsize * triangle_count:
+        raise InputError(f"The head mesh {path} is cut short or has bytes left over.")
+    vertices = np.frombuffer(body, "<f4", 3 * vertex_count).reshape(-1, 3)
+    faces = np.frombuffer(body, _FACE, triangle_count, 12 * vertex_count)
+    corners = faces["corners"]
+    if not np.all(np.abs(vertices) <= RAS_LIMIT_MM):
+        raise InputError(
+            f"The head mesh {path} has a vertex that is not within ±{RAS_LIMIT_MM:g} mm."
+        )
+    if (faces["count"] != 3).any() or corners.min() < 0 or corners.max() >= vertex_count:
+        raise InputError(f"The head mesh {path} has a face that is no triangle of its vertices.")
+    return HeadMesh(vertices.astype(float), corners.astype(np.int32))

@@ -1,0 +1,92 @@
+"""The images that a head was made of, as a scenario carries them: in an NRRD file, RAS mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.files.json_fields import Fields
+from rastrainer.files.nrrd import read_nrrd, write_nrrd
+from rastrainer.head.mesh import HeadMesh
+
+GRAY_LIMIT = 32768.0
+"""Of window and level: as far as the values of a volume go."""
+
+KEPT_MM = 6.0
+"""Around the head; what lies farther away may be noise, a frame, a text or a wrapped nose."""
+
+LEAST_COVERED = 0.5
+"""Share of the head's vertices that lie in the images: scans often lack the nose and the ears."""
+
+
+@dataclass(frozen=True)
+class VolumeFile:
+    """What a scenario says about its volume, of which nothing is read yet.
+
+    Attributes:
+        path: of the NRRD file.
+        window, level: of its values, that are shown from black to white.
+    """
+
+    path: Path
+    window: float
+    level: float
+
+
+@dataclass(frozen=True)
+class HeadVolume:
+    """A scalar image of a head.
+
+    Attributes:
+        values: (i, j, k) uint8 or int16.
+        ijk_to_ras: (4, 4) float, voxel index to RAS mm.
+        window, level: as of `VolumeFile`.
+    """
+
+    values: np.ndarray
+    ijk_to_ras: np.ndarray
+    window: float
+    level: float
+
+
+def read_volume_file(fields: Fields) -> VolumeFile | None:
+    """Return what the field `volume` says; None where there is none."""
+    if "volume" not in fields.names():
+        return None
+    volume = fields.fields("volume")
+    window = volume.number("window", 1, 2 * GRAY_LIMIT)
+    return VolumeFile(volume.file("file"), window, volume.number("level", -GRAY_LIMIT, GRAY_LIMIT))
+
+
+def read_head_volume(file: VolumeFile) -> HeadVolume:
+    """Read the volume of a scenario.
+
+    Raises:
+        InputError: it is missing or cannot be used; the sentence says what it must be.
+    """
+    return HeadVolume(*read_nrrd(file.path), file.window, file.level)
+
+
+def write_head_volume(path: Path, volume: HeadVolume) -> None:
+    """Write the voxels of a volume and where they lie, and nothing else.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    write_nrrd(path, volume.values, volume.ijk_to_ras)
+
+
+def check_place(volume: HeadVolume, head: HeadMesh, path: Path) -> None:
+    """Raise a sentence about the file where a volume does not lie where its head is.
+
+    Raises:
+        InputError: less than half of the head lies in the volume.
+    """
+    indices = transforms.apply(transforms.inverse(volume.ijk_to_ras), head.vertices.astype(float))
+    is_within = (indices >= -0.5) & (indices <= np.array(volume.values.shape) - 0.5)
+    if is_within.all(axis=1).mean() < LEAST_COVERED:
+        raise InputError(f"The volume {path} must lie where the head is.")

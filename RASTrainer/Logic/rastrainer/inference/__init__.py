@@ -1,1 +1,0 @@
-"""What follows from a study's numbers: paired tests, effect sizes, intervals, power."""

@@ -1,0 +1,193 @@
+"""A trial's journal: lines with hashes, and whether a file is intact, cut short or altered.
+
+A line is a JSON object that carries its own hash and the one of the line before:
+`{"n":…,"previous":"…",…,"sha256":"…"}` and a newline. `n` counts from 1, `previous` is the `sha256`
+of the line before (64 zeros in the first), and `sha256` is that of the line's bytes up to the comma
+in front of it, closed by `}`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from rastrainer.errors import InputError
+from rastrainer.finite_json import DEEPEST, decode_finite_json
+
+FORMAT = "rastrainer-trial-journal"
+FORMAT_VERSION = 1
+NO_LINE = "0" * 64
+"""What the first line carries in place of a hash."""
+LONGEST_LINE = 1 << 20
+DEEPEST_LINE = DEEPEST + 8
+"""Levels of a line: it holds what came in a message, which may be as deep as any."""
+
+FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT}",'.encode()
+"""How every journal begins."""
+
+_SEAL = b',"sha256":"'
+_SEAL_LENGTH = len(_SEAL) + 64 + len(b'"}')
+
+
+class DamagedLineError(ValueError):
+    """The line is not what was once written; the message says why."""
+
+
+def encode_line(n: int, previous: str, entry: Mapping[str, Any]) -> tuple[bytes, str]:
+    """Return the line of an entry with its newline, and its hash.
+
+    Raises:
+        ValueError: the entry holds a number that is not finite.
+    """
+    body = json.dumps(
+        {"n": n, "previous": previous, **entry},
+        allow_nan=False,
+        check_circular=False,
+        separators=(",", ":"),
+    ).encode("ascii")
+    digest = hashlib.sha256(body).hexdigest()
+    return body[:-1] + _SEAL + digest.encode("ascii") + b'"}\n', digest
+
+
+def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
+    """Return the entry of a line, without its newline, that shall be the `n`-th after `previous`.
+
+    The entry has `sha256` as its last key.
+
+    Raises:
+        DamagedLineError: something in it has been altered, or it is not the line that belongs here.
+    """
+    body, seal = line[:-_SEAL_LENGTH] + b"}", line[-_SEAL_LENGTH:]
+    digest = hashlib.sha256(body).hexdigest()
+    if seal != _SEAL + digest.encode("ascii") + b'"}':
+        raise DamagedLineError("its bytes do not match its hash")
+    try:
+        entry = decode_finite_json(line.decode("ascii"), DEEPEST_LINE)
+    except ValueError:
+        raise DamagedLineError("it is not JSON") from None
+    if not isinstance(entry, dict) or not isinstance(entry.get("kind"), str):
+        raise DamagedLineError("it is not an entry of a journal")
+    if entry.get("n") != n:
+        raise DamagedLineError(f"it has the number {json.dumps(entry.get('n'))[:20]}")
+    if entry.get("previous") != previous:
+        raise DamagedLineError("it does not follow the line before")
+    return entry
+
+
+ENDS = frozenset({"registered", "aborted", "stopped"})
+"""Kinds of entries after which nothing of the trial itself is missing."""
+LINES_A_REST = 10
+"""They take about 0.1 ms."""
+_STEPS = frozenset({"header", "phase", "continued", *ENDS})
+
+
+class Integrity(str, Enum):
+    """What became of a journal."""
+
+    INTACT = "intact"
+    CUT_SHORT = "cut short"
+    ALTERED = "altered"
+
+
+@dataclass(frozen=True)
+class JournalReading:
+    """What a journal says.
+
+    Attributes:
+        path: of the file.
+        integrity: whether all of it is there, as it was written.
+        entries: of the whole lines, up to the first that was altered.
+        end: how many bytes these lines take.
+        sentence: the same in words.
+    """
+
+    path: Path
+    integrity: Integrity
+    entries: tuple[dict[str, Any], ...]
+    end: int
+    sentence: str
+
+    @property
+    def header(self) -> dict[str, Any]:
+        """The first entry.
+
+        Raises:
+            InputError: not even the first line is whole.
+        """
+        if not self.entries:
+            raise InputError(f"{self.path} holds no whole line.")
+        return self.entries[0]
+
+    @property
+    def last_hash(self) -> str:
+        """The hash that the next line would have to carry."""
+        return self.entries[-1]["sha256"] if self.entries else NO_LINE
+
+    def of_kind(self, *kinds: str) -> list[dict[str, Any]]:
+        """Return the entries of the given kinds, in their order."""
+        return [entry for entry in self.entries if entry["kind"] in kinds]
+
+
+def read_journal(path: Path, rest: Callable[[], None] = lambda: None) -> JournalReading:
+    """Read a journal as far as it is whole.
+
+    Args:
+        path: of the file.
+        rest: called again and again meanwhile; a thread may wait in it.
+
+    Raises:
+        InputError: the file cannot be read, is no journal, or is of another format version.
+    """
+    try:
+        with path.open("rb") as file:
+            return _read(path, file, rest)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}.") from None
+
+
+def _read(path: Path, file: BinaryIO, rest: Callable[[], None]) -> JournalReading:
+    beginning = file.read(len(FIRST_BYTES))
+    if not FIRST_BYTES.startswith(beginning):
+        raise InputError(f"{path} is not a trial's journal: it should begin with {_BEGINNING}.")
+    file.seek(0)
+    entries: list[dict[str, Any]] = []
+    previous, end = NO_LINE, 0
+    while line := file.readline(LONGEST_LINE):
+        n = len(entries) + 1
+        if n % LINES_A_REST == 0:
+            rest()
+        if not line.endswith(b"\n") and len(line) < LONGEST_LINE:
+            break
+        try:
+            entry = decode_line(line[:-1], n, previous)
+        except DamagedLineError as error:
+            sentence = f"altered: line {n} is not as it was written, {error}"
+            return JournalReading(path, Integrity.ALTERED, tuple(entries), end, sentence)
+        if n == 1 and entry.get("version") != FORMAT_VERSION:
+            raise InputError(
+                f"{path} has the format version {entry.get('version')!r}; "
+                f"this program reads version {FORMAT_VERSION}."
+            )
+        entries.append(entry)
+        previous, end = entry["sha256"], end + len(line)
+    return JournalReading(path, *_judged(entries, end, whole=not line))
+
+
+def _judged(
+    entries: list[dict[str, Any]], end: int, whole: bool
+) -> tuple[Integrity, tuple[dict[str, Any], ...], int, str]:
+    steps = [entry["kind"] for entry in entries if entry["kind"] in _STEPS]
+    ended = bool(steps) and steps[-1] in ENDS
+    if whole and ended:
+        return Integrity.INTACT, tuple(entries), end, f"intact: {len(entries)} lines"
+    why = "the trial was not ended" if whole else "the line after it is not whole"
+    sentence = f"cut short: recovered up to line {len(entries)}, {why}"
+    return Integrity.CUT_SHORT, tuple(entries), end, sentence
+
+
+_BEGINNING = '{"n":1,"previous":"000…","kind":"header","format":"rastrainer-trial-journal"'

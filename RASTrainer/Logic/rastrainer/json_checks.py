@@ -1,0 +1,198 @@
+"""Checks of decoded JSON: what a command's arguments, a record's keys and a file's fields may be.
+
+A check returns the accepted value or raises `ValueError` with the words that follow "must be".
+"""
+
+from __future__ import annotations
+
+import json
+import uuid
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeGuard, TypeVar
+
+from rastrainer.errors import InputError
+
+T = TypeVar("T")
+OBJECT_LIMIT = 65_536
+"""Characters of a JSON object that is kept with a trial, such as the details of a score."""
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One value of a JSON object: how it is checked, and what it is when left out.
+
+    `check` returns the accepted value or raises `ValueError` with the words that follow "must be".
+    A value without `default` is required.
+    """
+
+    check: Callable[[Any], Any]
+    default: Any = ...
+
+    @property
+    def is_required(self) -> bool:
+        """Whether it may not be left out."""
+        return self.default is ...
+
+    def checked(self, values: Mapping[str, Any], name: str, what: str) -> Any:
+        """Return the accepted value of that name, or the default where it is left out.
+
+        Raises:
+            InputError: the value is not acceptable; `what` begins the sentence.
+        """
+        return accepted(self.check, values[name], what) if name in values else self.default
+
+
+def accepted(check: Callable[[Any], T], value: Any, what: str) -> T:
+    """Return the value that a check accepts.
+
+    Raises:
+        InputError: it does not; the sentence is `what`, "must be" and the words of the check.
+    """
+    try:
+        return check(value)
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"{what} must be {error}.") from None
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Return whether a decoded value is a number; true and false are none."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def text(longest: int = 64) -> Callable[[Any], str]:
+    """Accept printable text of 1 to `longest` characters."""
+
+    def check(value: Any) -> str:
+        if not isinstance(value, str) or not 1 <= len(value) <= longest or not value.isprintable():
+            raise ValueError(f"printable text of 1 to {longest} characters")
+        return value
+
+    return check
+
+
+def pseudonym() -> Callable[[Any], str]:
+    """Accept what a trainee may be called: short printable text without a space at an end."""
+
+    def check(value: Any) -> str:
+        if text()(value) != value.strip():
+            raise ValueError("printable text without a space at its beginning or end")
+        return value
+
+    return check
+
+
+def number(lowest: float, highest: float, unit: str = "") -> Callable[[Any], float]:
+    """Accept a finite number from `lowest` to `highest`."""
+
+    def check(value: Any) -> float:
+        if not is_number(value) or not lowest <= value <= highest:
+            raise ValueError(f"a number from {lowest:g} to {highest:g} {unit}".rstrip())
+        return float(value)
+
+    return check
+
+
+def whole_number(lowest: int, highest: int) -> Callable[[Any], int]:
+    """Accept an integer from `lowest` to `highest`."""
+
+    def check(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
+            raise ValueError(f"a whole number from {lowest} to {highest}")
+        return value
+
+    return check
+
+
+def numbers(count: int, limit: float, unit: str = "") -> Callable[[Any], tuple[float, ...]]:
+    """Accept a list of `count` finite numbers, each within ±`limit`."""
+    check_one = number(-limit, limit)
+
+    def check(value: Any) -> tuple[float, ...]:
+        sentence = f"a list of {count} numbers within ±{limit:g} {unit}".rstrip()
+        if not isinstance(value, (list, tuple)) or len(value) != count:
+            raise ValueError(sentence)
+        try:
+            return tuple(check_one(item) for item in value)
+        except ValueError:
+            raise ValueError(sentence) from None
+
+    return check
+
+
+def one_of(*choices: str) -> Callable[[Any], str]:
+    """Accept one of the given words."""
+
+    def check(value: Any) -> str:
+        if not isinstance(value, str) or value not in choices:
+            raise ValueError("one of " + ", ".join(choices))
+        return value
+
+    return check
+
+
+def texts(
+    fewest: int, most: int, choices: Collection[str] = ()
+) -> Callable[[Any], tuple[str, ...]]:
+    """Accept a list of different texts of up to 64 characters, of the choices if there are any."""
+    check_one = text()
+
+    def check(value: Any) -> tuple[str, ...]:
+        sentence = f"a list of {fewest} to {most} texts"
+        if not isinstance(value, list) or not fewest <= len(value) <= most:
+            raise ValueError(sentence)
+        try:
+            found = tuple(check_one(item) for item in value)
+        except ValueError:
+            raise ValueError(sentence) from None
+        if len(set(found)) != len(found):
+            raise ValueError("a list without duplicates")
+        if choices and not set(found) <= set(choices):
+            raise ValueError(f"a list of some of {', '.join(choices)}")
+        return found
+
+    return check
+
+
+def yes_or_no(value: Any) -> bool:
+    """Accept true or false."""
+    if not isinstance(value, bool):
+        raise ValueError("true or false")
+    return value
+
+
+def trial_id(value: Any) -> str:
+    """Accept the UUID of a trial in its canonical spelling."""
+    try:
+        return str(uuid.UUID(value))
+    except (ValueError, AttributeError, TypeError):
+        raise ValueError("the UUID of a trial") from None
+
+
+def plain_object(value: Any) -> dict[str, Any]:
+    """Accept a JSON object as it is, within a size that fits a line of a journal."""
+    words = f"a JSON object of at most {OBJECT_LIMIT} characters"
+    try:
+        size = len(json.dumps(value, allow_nan=False))
+    except (TypeError, ValueError, RecursionError):
+        raise ValueError(words) from None
+    if not isinstance(value, dict) or size > OBJECT_LIMIT:
+        raise ValueError(words)
+    return value
+
+
+def checked_keys(value: object, keys: Mapping[str, Argument], what: str) -> dict[str, Any]:
+    """Return the checked values of a JSON object's known keys, defaults filled in.
+
+    Raises:
+        InputError: it is no object, or a key is missing or holds something else than it should;
+            `what` begins the sentence.
+    """
+    if not isinstance(value, Mapping):
+        raise InputError(f"{what} must be a JSON object.")
+    for key, argument in keys.items():
+        if key not in value and argument.is_required:
+            raise InputError(f"{what} needs the key {json.dumps(key)}.")
+    return {key: argument.checked(value, key, f"{what}: {key}") for key, argument in keys.items()}

@@ -1,1 +1,0 @@
-"""How trainees get better: learning curves, control charts, pass marks."""

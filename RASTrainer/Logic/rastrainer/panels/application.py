@@ -1,0 +1,128 @@
+"""Where Slicer keeps what the module needs: assets, the user's folders, its own Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import qt
+import slicer
+
+from rastrainer.panels.plain_text import toolTip
+from rastrainer.scenario.library import user_library
+from rastrainer.slicer.logic.module_session import ModulePaths
+from rastrainer.slicer.program.pip_install import pythonSlicer
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.slicer.scene.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
+from rastrainer.slicer.settings import STUDY, Settings
+from rastrainer.slicer.translation import _
+
+
+def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:
+    """Return the places for a module whose Python file this is."""
+    paths = qt.QStandardPaths
+    documents = Path(paths.writableLocation(paths.DocumentsLocation))
+    data = Path(paths.writableLocation(paths.GenericDataLocation))
+    study = settings.get(STUDY)
+    return ModulePaths(
+        assets=assetsFolder(moduleFile),
+        python=pythonSlicer(Path(slicer.app.slicerHome)),
+        simulator=data / "RASTrainer" / "simulator",
+        study=Path(study) if study else documents / "RASTrainer" / "study.db",
+        records=Path.home() / "RASTrainer" / "trials",
+        library=user_library(),
+        package=SimulatorPackage.of(moduleFile.parent),
+    )
+
+
+def assetsFolder(moduleFile: Path) -> Path:
+    """Return where scenarios and the robot are: installed with the module, or in a checkout."""
+    installed = moduleFile.parent / "Resources" / "RASTrainer"
+    return installed if installed.is_dir() else moduleFile.parents[1] / "assets"
+
+
+def callSoon(work: Callable[[], None]) -> None:
+    """Call `work` as soon as what is being done now is over."""
+    qt.QTimer.singleShot(0, work)
+
+
+def isSomethingSeen(isEntered: bool, inSlices: bool = False) -> bool:
+    """Return whether the module is entered or a view shown, in a window that is not minimized.
+
+    The parts of a minimized window still call themselves visible.
+
+    Args:
+        isEntered: the module is the one that is chosen.
+        inSlices: slice views count as well as 3D views.
+    """
+    window = slicer.util.mainWindow()
+    if window is not None and window.minimized:
+        return False
+    layoutManager = slicer.app.layoutManager()
+    if isEntered or layoutManager is None:
+        return isEntered
+    return _is3DViewShown(layoutManager) or (inSlices and _isSliceViewShown(layoutManager))
+
+
+def _is3DViewShown(layoutManager: Any) -> bool:
+    count = layoutManager.threeDViewCount
+    return any(layoutManager.threeDWidget(index).visible for index in range(count))
+
+
+def _isSliceViewShown(layoutManager: Any) -> bool:
+    names = layoutManager.sliceViewNames()
+    return any(layoutManager.sliceWidget(name).visible for name in names)
+
+
+def fitThreeDViews() -> None:
+    """Move the cameras of the 3D views so that all that is visible is seen."""
+    if slicer.app.layoutManager() is not None:
+        slicer.util.resetThreeDViews()
+
+
+def fitSliceViews() -> None:
+    """Let the slice views show their volumes as a whole, which moves their slices, too."""
+    if slicer.app.layoutManager() is not None:
+        slicer.util.resetSliceViews()
+
+
+CURVE, CALIBRATION, TABLES = "learning curve", "calibration", "tables"
+
+
+def showChart(layout: BorrowedLayout, chart: Any, purpose: str = CURVE) -> None:
+    """Show a `vtkMRMLPlotChartNode` in a layout that has a plot view."""
+    layout.show(purpose, WITH_PLOT)
+    logic = slicer.app.applicationLogic()
+    logic.GetSelectionNode().SetActivePlotChartID(chart.GetID())
+    logic.PropagatePlotChartSelection()
+
+
+def showTable(layout: BorrowedLayout, table: Any) -> None:
+    """Show a `vtkMRMLTableNode` in a layout that has a table view, where others can be chosen."""
+    layout.show(TABLES, WITH_TABLE)
+    logic = slicer.app.applicationLogic()
+    logic.GetSelectionNode().SetActiveTableID(table.GetID())
+    logic.PropagateTableSelection()
+
+
+def askWhereToSave(caption: str, proposed: str, kind: str) -> Path | None:
+    """Return the path of the file to be written; None where the user cancels.
+
+    Args:
+        caption: of the dialog.
+        proposed: name of the file, whose suffix it is to have.
+        kind: filter of the dialog, such as `CSV (*.csv)`.
+    """
+    chosen = qt.QFileDialog.getSaveFileName(slicer.util.mainWindow(), caption, proposed, kind)
+    if not chosen:
+        return None
+    suffix = Path(proposed).suffix
+    if chosen.lower().endswith(suffix):
+        return Path(chosen)
+    path = Path(chosen + suffix)
+    # The dialog has asked only about the name without the suffix.
+    question = _("{path} is there already. Replace it?").format(path=path)
+    if path.exists() and not slicer.util.confirmYesNoDisplay(toolTip(question), caption):
+        return None
+    return path

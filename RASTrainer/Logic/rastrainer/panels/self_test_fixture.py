@@ -1,0 +1,98 @@
+"""The panels on a study of their own, for the module's self tests: no user's study is touched."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import slicer
+
+from rastrainer import transforms
+from rastrainer.panels.application import callSoon, findPlaces
+from rastrainer.panels.panel_stack import PanelStack
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.link.connection import desktopKit
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.settings import Settings
+
+SCENARIO = "colin27"
+TASK = "task-1"
+SEED = 3
+NOISE_MM = 0.5
+
+
+class SelfTestFixture:
+    """A session and its panels, driven without a timer; to be used in a `with` statement.
+
+    Attributes:
+        session: the logic.
+        ui: the panels' widgets by name.
+        study: file of the study, in a folder that is deleted at the end.
+    """
+
+    def __init__(self, moduleFile: Path, resourcePath: Callable[[str], str]) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="RASTrainer-")
+        folder = Path(self._folder.name)
+        self.study = folder / "study.db"
+        # In memory alone: a test changes nothing that the user has chosen.
+        settings = Settings()
+        places = replace(
+            findPlaces(moduleFile, settings),
+            study=self.study,
+            records=folder / "trials",
+            library=folder / "scenarios",
+        )
+        self.session = ModuleSession(slicer.mrmlScene, places, desktopKit, settings, callSoon)
+        self._container = slicer.util.loadUI(resourcePath("UI/RASTrainer.ui"))
+        self._container.setMRMLScene(slicer.mrmlScene)
+        self._panels = PanelStack(self._container, resourcePath, self.session)
+        self.ui = self._panels.ui
+
+    def __enter__(self) -> SelfTestFixture:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self._panels.close()
+        self.session.close()
+        self._container.deleteLater()
+        self._folder.cleanup()
+
+    def process(self) -> None:
+        """Do what the module's timers do, until nothing is left to be done."""
+        self.session.process()
+        while self.session.giveTimeToWork():
+            pass
+        self._panels.showState()
+
+    def clearScene(self) -> None:
+        """Close the scene, and tell the session as the module's widget does."""
+        slicer.mrmlScene.Clear()
+        self.session.sceneWasCleared()
+        self.process()
+
+    def touches(self) -> np.ndarray:
+        """Return good touches of task 1, (15, 3) float, World, mm."""
+        scenario = self.session.scenario.find(SCENARIO)
+        noise = np.random.default_rng(SEED).normal(0.0, NOISE_MM, (len(LABELS), 3))
+        return transforms.apply(
+            scenario.perturbed_head_to_world(SEED), scenario.task(TASK).fiducials + noise
+        )
+
+    def touch(self, points: np.ndarray) -> None:
+        """Put touches (n, 3) float, World, mm into the scene, as the simulator sends them."""
+        setPoints(capturedPointsNode(slicer.mrmlScene), LABELS[: len(points)], points)
+        self.process()
+
+    def child(self, name: str) -> Any:
+        """Return a widget that came later than the `.ui` files.
+
+        Raises:
+            RuntimeError: there is none of that name.
+        """
+        return slicer.util.findChild(self._container, name)

@@ -1,0 +1,1 @@
+"""The environment and folder in which a child process runs."""

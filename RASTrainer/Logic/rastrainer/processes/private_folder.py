@@ -1,0 +1,122 @@
+"""Run a program on the packages of one folder, which `pip install --target` has filled.
+
+Slicer's Python would look into Slicer's own packages first, and `.pth` files of a folder that is
+merely put into PYTHONPATH are not read: Pinocchio is found by one. So the program, and each process
+that it starts, is started by `python_words`, and finds its way by `run`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import runpy
+import site
+import sys
+import uuid
+from collections.abc import Mapping
+from pathlib import Path
+
+from rastrainer.processes.clean_environment import clean_environment
+
+START = (
+    "import site, sys; sys.path.insert(0, sys.argv[1]); site.addsitedir(sys.argv[1]); "
+    "from rastrainer.processes.private_folder import run; run()"
+)
+"""For `python -S -c`, followed by the folder, a module's name and the program's arguments.
+
+A `.pth` file of the folder may say where our own package is: in a checkout.
+"""
+LIBRARIES = "python-libraries"
+"""Folder of links, in the private one: to shared libraries that Python itself needs."""
+
+_LINKED_MODULES = ("_bz2", "_ctypes", "_hashlib", "_lzma", "_sqlite3", "_ssl", "_uuid", "zlib")
+"""Of the standard library: what is made of shared libraries."""
+_LOADER_VARIABLES = ("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FRAMEWORK_PATH")
+_MAPS = Path("/proc/self/maps")
+
+_folder: Path | None = None
+
+
+def python_words(module: str, *words: str) -> list[str]:
+    """Return what starts a module as a program, by this Python and on the packages of this one."""
+    if _folder is None:
+        return [sys.executable, "-m", module, *words]
+    return private_words(Path(sys.executable), _folder, module, *words)
+
+
+def private_words(python: Path, folder: Path, module: str, *words: str) -> list[str]:
+    """Return what starts a module as a program, on the packages of a folder alone."""
+    return [str(python), "-S", "-c", START, str(folder), module, *words]
+
+
+def run() -> None:
+    """Run the program that `private_words` names; it never returns."""
+    global _folder
+    _command, folder, module, *words = sys.argv
+    environment = _own_environment(Path(folder))
+    loader = [name for name in _LOADER_VARIABLES if environment.get(name) != os.environ.get(name)]
+    if loader and os.name == "posix":
+        # What the loader has read once cannot be changed any more.
+        arguments = private_words(Path(sys.executable), Path(folder), module, *words)
+        os.execve(sys.executable, arguments, environment)
+    given = [place for place in os.environ.get("PYTHONPATH", "").split(os.pathsep) if place]
+    os.environ.clear()
+    os.environ.update(environment)
+    # Python puts those of PYTHONPATH first; one may be that of the standard library, too.
+    sys.path[:] = [place for place in sys.path if place not in ("", folder)][len(given) :]
+    site.addsitedir(folder)
+    _folder = Path(folder)
+    sys.argv = [module, *words]
+    runpy.run_module(module, run_name="__main__", alter_sys=True)
+    sys.exit(0)
+
+
+def _own_environment(folder: Path) -> dict[str, str]:
+    """Return the environment for this Python and what it starts, without Slicer's folders."""
+    clean = clean_environment(os.environ)
+    clean.pop("PYTHONPATH", None)
+    # Slicer's Python lies in another folder than its standard library.
+    if "PYTHONHOME" in os.environ:
+        clean["PYTHONHOME"] = os.environ["PYTHONHOME"]
+    wanted = clean.get("LD_LIBRARY_PATH", "")
+    if os.environ.get("LD_LIBRARY_PATH", "") != wanted:
+        places = [_linked(python_libraries(os.environ), folder / LIBRARIES), wanted]
+        clean["LD_LIBRARY_PATH"] = os.pathsep.join(filter(None, places))
+    return clean
+
+
+def python_libraries(environment: Mapping[str, str]) -> dict[str, Path]:
+    """Return, by their names, shared libraries of this Python that LD_LIBRARY_PATH leads to.
+
+    Slicer's Python finds its own OpenSSL only by it, in a folder with all of Slicer's libraries.
+    """
+    if not _MAPS.exists():
+        return {}
+    for name in _LINKED_MODULES:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    lines = _MAPS.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
+    mapped = {os.path.realpath(line.split(None, 5)[5]) for line in lines if "/" in line}
+    found: dict[str, Path] = {}
+    for place in filter(None, environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)):
+        with contextlib.suppress(OSError):
+            for path in sorted(Path(place).iterdir()):
+                if os.path.realpath(path) in mapped:
+                    found.setdefault(path.name, Path(os.path.realpath(path)))
+    return found
+
+
+def _linked(libraries: Mapping[str, Path], folder: Path) -> str:
+    """Link to the libraries in a folder and return it, empty where there are none."""
+    if not libraries:
+        return ""
+    folder.mkdir(exist_ok=True)
+    for name, path in libraries.items():
+        link = folder / name
+        if os.path.realpath(link) != str(path):
+            # Another simulator may start just now.
+            partial = folder / f".{uuid.uuid4().hex}"
+            partial.symlink_to(path)
+            partial.replace(link)
+    return str(folder)

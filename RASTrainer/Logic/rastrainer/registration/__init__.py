@@ -1,0 +1,1 @@
+"""Paired-point registration: fits, checks, faults, and expected and true target error."""

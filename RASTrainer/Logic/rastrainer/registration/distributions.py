@@ -1,0 +1,223 @@
+"""Probabilities for tests and intervals, on numpy alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+MOST_STEPS = 40
+"""Of the search for a bracket; the bisection does what they leave."""
+
+
+def f_tail(value: float, numerator: float, denominator: float) -> float:
+    """Return the probability that an F variable exceeds `value`.
+
+    Args:
+        value: Not below 0; may be infinite.
+        numerator: Degrees of freedom of the numerator.
+        denominator: Degrees of freedom of the denominator.
+    """
+    if math.isinf(value):
+        return 0.0
+    x = denominator / (denominator + numerator * value)
+    return incomplete_beta(denominator / 2, numerator / 2, x)
+
+
+def incomplete_beta(a: float, b: float, x: float) -> float:
+    """Return the regularized incomplete beta function I_x(a, b), a and b > 0, x from 0 to 1."""
+    if x <= 0.0:
+        return 0.0
+    if x >= 1.0:
+        return 1.0
+    # The continued fraction converges fast only below the mean; beyond it, use the symmetry.
+    if x > (a + 1.0) / (a + b + 2.0):
+        return 1.0 - incomplete_beta(b, a, 1.0 - x)
+    log_front = (
+        math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)
+    )
+    return math.exp(log_front) / (a * _continued_fraction(a, b, x))
+
+
+def _continued_fraction(a: float, b: float, x: float, terms: int = 200) -> float:
+    """Return 1 + d₁/(1 + d₂/(1 + …)) of DLMF 8.17.22, evaluated from its last term backwards."""
+    value = 1.0
+    for n in range(terms, 0, -1):
+        m = n // 2
+        if n % 2:
+            d = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
+        else:
+            d = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
+        value = 1.0 + d / value
+    return value
+
+
+def ratio_quantile(probability: float, weights: np.ndarray, dof: float) -> float:
+    """Return the quantile of Σ wₖ zₖ² / (χ²/dof), zₖ standard normal, all independent.
+
+    With equal weights it is a multiple of the F distribution; with unequal ones it is the squared
+    length of a vector of anisotropic variance whose size was estimated from `dof` residuals.
+
+    Args:
+        probability: Between 0 and 1.
+        weights: (k,) float, above 0.
+        dof: Degrees of freedom of the χ² variable.
+    """
+    scale = float(np.sum(weights))
+    probability_up_to = _ratio_distribution(np.asarray(weights) / scale, dof)
+    return scale * _quantile(probability_up_to, probability, 1.0, 1e-8)
+
+
+def widened_quantile(probability: float, weights: np.ndarray, dof: float, added: float) -> float:
+    """Return the quantile of Σ (wₖ·dof/χ² + added) zₖ², zₖ standard normal, all independent.
+
+    It is the squared length of a vector in space of two parts: one whose size was estimated from
+    `dof` residuals, and one of known variance that is the same in all directions. Given χ² and the
+    direction n of z, |z|² is χ² with 3 degrees of freedom; the mean over both is taken by
+    quadrature.
+
+    Args:
+        probability: Between 0 and 1.
+        weights: (3,) float, not below 0.
+        dof: Degrees of freedom of the χ² variable; infinite where the size is known.
+        added: The known variance a coordinate, above 0 where the weights are not.
+    """
+    scales, shares = _inverse_chi_square(dof)
+    squares, areas = _octant()
+    # One row a direction, one column a size.
+    variances = (squares @ np.asarray(weights, dtype=float))[:, None] * scales + added
+    of_nodes = areas[:, None] * shares
+
+    def probability_up_to(value: float) -> float:
+        return float(np.sum(of_nodes * _chi_square_3(value / variances)))
+
+    return _quantile(probability_up_to, probability, float(np.sum(weights)) + 3.0 * added, 1e-7)
+
+
+def _quantile(
+    probability_up_to: Callable[[float], float],
+    probability: float,
+    guess: float,
+    tolerance: float,
+) -> float:
+    """Return, by bisection, the value above 0 up to which a distribution has a probability.
+
+    Where most of the middles lie is known from a narrow bracket, which takes a third of the
+    bisection's evaluations.
+
+    `guess` is above 0, and `tolerance` is a share of the value.
+    """
+    low, high, at_low = 0.0, guess, -probability
+    while (at_high := probability_up_to(high) - probability) < 0.0:
+        low, high, at_low = high, 4.0 * high, at_high
+
+    def offset(value: float) -> float:
+        return probability_up_to(value) - probability
+
+    below, above = _bracket(offset, (low, at_low), (high, at_high), 0.25 * tolerance)
+    while high - low > tolerance * high:
+        middle = (low + high) / 2
+        if middle <= below or (middle < above and offset(middle) < 0.0):
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+def _bracket(
+    offset: Callable[[float], float],
+    low: tuple[float, float],
+    high: tuple[float, float],
+    tolerance: float,
+) -> tuple[float, float]:
+    """Return the ends of a bracket around the zero of a rising function: its sign differs there.
+
+    It is regula falsi as in the Illinois method (Dowell 1971). Each step goes a little beyond the
+    zero that it expects, so that the end on the farther side comes near, too.
+
+    Args:
+        offset: The function.
+        low: An argument below the zero, and the function there.
+        high: An argument above the zero, and the function there.
+        tolerance: Width of the bracket, a share of its upper end; not reached in rare cases.
+    """
+    (below, at_below), (above, at_above) = low, high
+    moved = ""
+    for _ in range(MOST_STEPS):
+        if above - below <= tolerance * above:
+            break
+        tried = below + (above - below) * at_below / (at_below - at_above)
+        beyond = 0.4 * tolerance * above
+        tried += beyond if tried - below < above - tried else -beyond
+        at_tried = offset(tried)
+        if at_tried < 0.0:
+            # An end that stays twice counts as nearer to the zero than it is.
+            at_above *= 0.5 if moved == "below" else 1.0
+            below, at_below, moved = tried, at_tried, "below"
+        else:
+            at_below *= 0.5 if moved == "above" else 1.0
+            above, at_above, moved = tried, at_tried, "above"
+    return below, above
+
+
+def _inverse_chi_square(dof: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return values of dof/χ² and their probabilities, which sum to 1.
+
+    The trapezoidal rule over ln χ² converges exponentially.
+    """
+    if math.isinf(dof):
+        return np.ones(1), np.ones(1)
+    width = math.sqrt(2.0 / dof)
+    y = math.log(dof) + width * np.linspace(-14.0 - 8.0 * width, 8.0, 49)
+    logs = 0.5 * (dof * y - np.exp(y))
+    densities = np.exp(logs - logs.max())
+    kept = densities > 1e-12
+    return dof * np.exp(-y[kept]), densities[kept] / densities[kept].sum()
+
+
+@lru_cache(maxsize=1)
+def _octant(count: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    """Return the squared coordinates of directions in an octant, (m, 3), and their shares of it."""
+    roots, root_weights = np.polynomial.legendre.leggauss(count)
+    height, turn = 0.5 * (roots + 1.0), (np.arange(count) + 0.5) * math.pi / (2 * count)
+    across = 1.0 - height[:, None] ** 2
+    squares = [across * np.cos(turn) ** 2, across * np.sin(turn) ** 2]
+    squares.append(np.broadcast_to(height[:, None] ** 2, squares[0].shape))
+    areas = np.repeat(root_weights / (2 * count), count)
+    return np.stack(squares, axis=-1).reshape(-1, 3), areas
+
+
+@lru_cache(maxsize=1)
+def _chi_square_3_table() -> tuple[np.ndarray, np.ndarray]:
+    """Return roots and the distribution of χ² with 3 degrees of freedom at their squares."""
+    root = np.linspace(0.0, 8.0, 8001)
+    erf = np.array([math.erf(one / math.sqrt(2)) for one in root])
+    return root, erf - math.sqrt(2 / math.pi) * root * np.exp(-(root**2) / 2)
+
+
+def _chi_square_3(values: np.ndarray) -> np.ndarray:
+    """Return the distribution function of χ² with 3 degrees of freedom, to 10⁻⁷."""
+    return np.interp(np.sqrt(values), *_chi_square_3_table())
+
+
+def _ratio_distribution(weights: np.ndarray, dof: float) -> Callable[[float], float]:
+    """Return P(Σ wₖ zₖ² − value·χ²/dof ≤ 0) as a function of the value.
+
+    It is Imhof's inversion formula (1961). The integral runs over u = exp(s), where the
+    trapezoidal rule converges exponentially.
+    """
+    step = 0.025
+    u = np.exp(np.arange(-30.0, 30.0, step))
+    terms = weights[:, None] * u
+    angles = 0.5 * np.arctan(terms).sum(axis=0)
+    log_sizes = 0.25 * np.log1p(terms**2).sum(axis=0)
+
+    def probability_up_to(value: float) -> float:
+        term = value / dof * u
+        angle = angles - 0.5 * dof * np.arctan(term)
+        log_size = log_sizes + 0.25 * dof * np.log1p(term**2)
+        return 0.5 - step * float(np.sum(np.sin(angle) * np.exp(-log_size))) / math.pi
+
+    return probability_up_to

@@ -1,0 +1,1 @@
+"""The HTML of a report: its page and the elements in it."""

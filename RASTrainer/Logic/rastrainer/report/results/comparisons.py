@@ -1,0 +1,157 @@
+"""Modes compared on the means of the trainees who did both, free of what their order adds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.statistics.paired import PairedComparison, compare_paired, holm
+from rastrainer.study.outcomes import Outcome
+from rastrainer.study.study_data import StudyData, TrialRow
+
+CONFIRMATORY = ("completion_time_s", "rmse_mm", "score")
+"""These are corrected together for being several; the others are only described."""
+UNTESTED = {
+    "ctps": "not tested: CTPS compares with the best trial of each mode, and chance in this one "
+    "trial moves the mode's mean for all trainees alike"
+}
+"""A paired test would find a difference between equal modes in every second study of twelve."""
+
+
+@dataclass(frozen=True)
+class ModeComparison:
+    """One outcome in two modes.
+
+    Attributes:
+        outcome: Which.
+        first: Mode that is subtracted.
+        second: Mode that it is subtracted from.
+        trainees: Who did both.
+        first_means: Mean of each of them, (n,) float.
+        second_means: The same in the second mode.
+        order: By how many periods each of them did the second mode later than the first, (n,)
+            float; None where the order of the trials is unknown.
+        result: The tests; None where they cannot be computed.
+        adjusted_p: p of the t-test, adjusted by Holm's method; None for what is only described.
+        reason: Why there is no result; "" where there is.
+    """
+
+    outcome: Outcome
+    first: str
+    second: str
+    trainees: tuple[str, ...]
+    first_means: np.ndarray
+    second_means: np.ndarray
+    order: np.ndarray | None
+    result: PairedComparison | None
+    adjusted_p: float | None
+    reason: str = ""
+
+
+def compare_modes(
+    data: StudyData, outcomes: Sequence[Outcome], first: str, second: str
+) -> tuple[ModeComparison, ...]:
+    """Compare two modes on every outcome that trials of both have.
+
+    A trainee counts with the mean over the tasks that he or she did in both modes, so that a
+    missing trial does not make one mode look easier. Where trainees had different orders of the
+    modes, the effect of the period is taken out.
+    """
+    found = []
+    delays = mode_delays(data, first, second) if data.has_order else None
+    for outcome in outcomes:
+        means = paired_means(data, outcome.name, first, second)
+        if means:
+            order = None if delays is None else np.array([delays[trainee] for trainee in means])
+            found.append(_compared(outcome, first, second, means, order))
+    p_values = {
+        index: comparison.result.p
+        for index, comparison in enumerate(found)
+        if comparison.result is not None and comparison.outcome.name in CONFIRMATORY
+    }
+    adjusted = holm(np.array([*p_values.values()]))
+    for index, p in zip(p_values, adjusted, strict=True):
+        found[index] = replace(found[index], adjusted_p=float(p))
+    return tuple(found)
+
+
+def tested(
+    comparisons: Sequence[ModeComparison],
+) -> list[tuple[ModeComparison, PairedComparison]]:
+    """Return the comparisons that could be computed, each with its result."""
+    return [(one, one.result) for one in comparisons if one.result is not None]
+
+
+def paired_means(
+    data: StudyData, name: str, first: str, second: str
+) -> dict[str, tuple[float, float]]:
+    """Return for each trainee the means in both modes over the tasks done in both."""
+    of_first = _task_means(data.of_mode(first), name)
+    of_second = _task_means(data.of_mode(second), name)
+    means = {}
+    for trainee in data.trainees:
+        mine, others = of_first.get(trainee, {}), of_second.get(trainee, {})
+        common = sorted(set(mine) & set(others))
+        if common:
+            pair = [float(np.mean([values[task] for task in common])) for values in (mine, others)]
+            means[trainee] = (pair[0], pair[1])
+    return means
+
+
+def mode_delays(data: StudyData, first: str, second: str) -> dict[str, float]:
+    """Return for each trainee who did both modes how many periods later the second one was done.
+
+    A period is a run of trials in one mode: 1 for who did all of the first mode before the second,
+    -1 for the opposite order; where modes took turns, the difference of the mean periods.
+    """
+    periods: dict[str, dict[str, list[int]]] = {}
+    latest: dict[str, tuple[str, int]] = {}
+    for trial in data.trials:
+        if trial.mode not in (first, second):
+            continue
+        mode, period = latest.get(trial.trainee, ("", 0))
+        period += trial.mode != mode
+        latest[trial.trainee] = trial.mode, period
+        own = periods.setdefault(trial.trainee, {first: [], second: []})
+        own[trial.mode].append(period)
+    return {
+        trainee: float(np.mean(own[second]) - np.mean(own[first]))
+        for trainee, own in periods.items()
+        if own[first] and own[second]
+    }
+
+
+def _task_means(trials: Sequence[TrialRow], name: str) -> dict[str, dict[str, float]]:
+    """Return trainee → task → mean over the trainee's trials of that task."""
+    values: dict[str, dict[str, list[float]]] = {}
+    for trial in trials:
+        if name in trial.values:
+            of_trainee = values.setdefault(trial.trainee, {})
+            of_trainee.setdefault(trial.task, []).append(trial.values[name])
+    return {
+        trainee: {task: float(np.mean(found)) for task, found in tasks.items()}
+        for trainee, tasks in values.items()
+    }
+
+
+def _compared(
+    outcome: Outcome,
+    first: str,
+    second: str,
+    means: Mapping[str, tuple[float, float]],
+    order: np.ndarray | None,
+) -> ModeComparison:
+    both = np.array(list(means.values()))
+    result, reason = None, UNTESTED.get(outcome.name, "")
+    if not reason:
+        try:
+            result = compare_paired(both[:, 0], both[:, 1], order)
+        except InputError as error:
+            reason = str(error)
+    columns = both[:, 0], both[:, 1]
+    return ModeComparison(
+        outcome, first, second, tuple(means), *columns, order, result, None, reason
+    )

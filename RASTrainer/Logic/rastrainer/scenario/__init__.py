@@ -1,0 +1,1 @@
+"""What is trained on: tasks, plan, set-up, package and library."""

@@ -1,0 +1,194 @@
+"""A scenario as one zip file: packed, and unpacked from a file that nobody has checked."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import stat
+import tempfile
+import uuid
+import zipfile
+import zlib
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.volume import check_place, read_head_volume
+from rastrainer.progress import Progress
+from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario, load_scenario
+from rastrainer.scenario.writer import new_folder, write_scenario
+
+MOST_PACKED_BYTES = 64_000_000
+MOST_BYTES = 100_000_000
+MOST_FILES = 64
+MOST_TRIANGLES = 100_000
+"""More than what is built here has (60,000); what the views and the collisions can carry."""
+
+UNPACKING, CHECKING = "Unpacking the scenario", "Checking the scenario"
+UNPACKED_SHARE = 0.5
+
+_TIME = (2000, 1, 1, 0, 0, 0)
+_CHUNK = 1 << 20
+_NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}(/[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}){0,3}")
+_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+
+
+def pack(folder: Path, package: Path) -> Path:
+    """Write a scenario's folder as one zip file; the same scenario gives the same bytes.
+
+    What lies in the folder and belongs to no scenario stays out.
+
+    Raises:
+        InputError: the scenario cannot be used, or the file is there already or cannot be written.
+    """
+    scenario, package = checked_scenario(folder), Path(package)
+    if package.exists():
+        raise InputError(f"{package} is there already; name a file that is new.")
+    head = read_head_mesh(scenario.head_mesh)
+    skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    volume = read_head_volume(scenario.volume) if scenario.volume else None
+    partial = package.parent / f".{uuid.uuid4().hex}.partial"
+    try:
+        with tempfile.TemporaryDirectory() as temporary:
+            clean = Path(temporary)
+            write_scenario(clean, scenario, head, skull, volume)
+            if scenario.preview:
+                shutil.copyfile(scenario.preview, clean / PREVIEW_NAME)
+            _write_archive(partial, clean)
+        partial.replace(package)
+    except OSError as error:
+        raise InputError(f"{package} cannot be written: {error.strerror}.") from None
+    finally:
+        partial.unlink(missing_ok=True)
+    return package
+
+
+def unpack(package: Path, library: Path, progress: Progress = lambda _step, _share: None) -> Path:
+    """Unpack a scenario into a new folder of `library`, named as the scenario, and return it.
+
+    Nothing is left behind where the package cannot be used.
+
+    Args:
+        package: the zip file.
+        library: folder of folders.
+        progress: told the step's name and the share of the work done; may raise to cancel.
+
+    Raises:
+        InputError: the file is no package of a scenario, holds what no scenario holds, is larger
+            than a scenario may be, or the scenario is there already.
+    """
+    package, library = Path(package), Path(library).absolute()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
+        folder = Path(temporary) / "scenario"
+        folder.mkdir()
+        _read_archive(package, folder, progress)
+        progress(CHECKING, UNPACKED_SHARE)
+        scenario = _checked(package, folder)
+        goal = library / scenario.name
+        if goal.exists():
+            raise InputError(f"The scenario {scenario.name} is in {library} already.")
+        progress(CHECKING, 1.0)
+        with new_folder(goal) as made:
+            shutil.copytree(folder, made, dirs_exist_ok=True)
+    return goal
+
+
+def checked_scenario(folder: Path) -> Scenario:
+    """Load a scenario and look into its meshes and its volume.
+
+    Raises:
+        InputError: something of it cannot be used.
+    """
+    scenario = load_scenario(folder)
+    for path in filter(None, (scenario.head_mesh, scenario.skull_mesh)):
+        mesh = read_head_mesh(path)
+        if len(mesh.triangles) > MOST_TRIANGLES:
+            raise InputError(
+                f"The mesh {path} has {len(mesh.triangles)} triangles; a scenario's may have "
+                f"{MOST_TRIANGLES}."
+            )
+        if path == scenario.head_mesh and not mesh.is_closed:
+            raise InputError(f"The head mesh {path} is not closed: it has a hole.")
+    if scenario.volume is not None:
+        volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head_mesh)
+        check_place(volume, head, scenario.volume.path)
+    return scenario
+
+
+def _write_archive(path: Path, folder: Path) -> None:
+    with zipfile.ZipFile(path, "x", zipfile.ZIP_DEFLATED) as archive:
+        for file in sorted(entry for entry in folder.rglob("*") if entry.is_file()):
+            info = zipfile.ZipInfo(file.relative_to(folder).as_posix(), _TIME)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.external_attr = (stat.S_IFREG | 0o644) << 16
+            archive.writestr(info, file.read_bytes())
+
+
+def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
+    try:
+        if package.stat().st_size > MOST_PACKED_BYTES:
+            raise _refused(package, f"is larger than {MOST_PACKED_BYTES // 10**6} MB")
+        with zipfile.ZipFile(package) as archive:
+            _extract(package, archive, folder, progress)
+    except FileNotFoundError:
+        raise InputError(f"There is no file {package}.") from None
+    except OSError as error:
+        raise InputError(f"{package} cannot be unpacked: {error.strerror or error}.") from None
+    except InputError:
+        raise
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError):
+        raise _refused(package, "is no zip file, or a damaged one") from None
+
+
+def _extract(package: Path, archive: zipfile.ZipFile, folder: Path, progress: Progress) -> None:
+    members = [info for info in archive.infolist() if not info.is_dir()]
+    if not 1 <= len(members) <= MOST_FILES:
+        raise _refused(package, f"holds {len(members)} files; a scenario has 1 to {MOST_FILES}")
+    for info in members:
+        _check_member(package, info)
+    if len({info.filename.lower() for info in members}) != len(members):
+        raise _refused(package, "holds a file twice")
+    left = MOST_BYTES
+    for number, info in enumerate(members):
+        progress(UNPACKING, UNPACKED_SHARE * number / len(members))
+        left = _extract_member(package, archive, info, folder / info.filename, left)
+
+
+def _check_member(package: Path, info: zipfile.ZipInfo) -> None:
+    parts = info.filename.split("/")
+    if not _NAME.fullmatch(info.filename) or any(
+        _DEVICES.fullmatch(part) or part.endswith(".") for part in parts
+    ):
+        raise _refused(package, f"holds a file with the path {info.filename[:80]!a}")
+    kind = stat.S_IFMT(info.external_attr >> 16)
+    if kind not in (0, stat.S_IFREG):
+        raise _refused(package, f"holds a link or a device, {info.filename}")
+    if info.flag_bits & 0x1:
+        raise _refused(package, "is encrypted")
+
+
+def _extract_member(
+    package: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path, left: int
+) -> int:
+    """Write one member and return how many bytes the next may have; its header is not believed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with archive.open(info) as packed, path.open("xb") as file:
+        while chunk := packed.read(_CHUNK):
+            left -= len(chunk)
+            if left < 0:
+                raise _refused(package, f"holds more than {MOST_BYTES // 10**6} MB")
+            file.write(chunk)
+    return left
+
+
+def _checked(package: Path, folder: Path) -> Scenario:
+    try:
+        return checked_scenario(folder)
+    except InputError as error:
+        # The folder that is about to vanish tells people nothing.
+        sentence = str(error).replace(f"{folder.resolve()}/", "").replace(f"{folder}/", "")
+        raise InputError(f"{package} cannot be used: {sentence}") from None
+
+
+def _refused(package: Path, reason: str) -> InputError:
+    return InputError(f"{package} {reason}: it is no package of a scenario.")

@@ -1,0 +1,255 @@
+"""A scenario: a head, where it stands, the tasks on it, and how it is looked at.
+
+A scenario is a folder with `scenario.json`, the head's mesh, one `.mrk.json` file a task and, where
+there are, the images that the head was made of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.head.mesh import RAS_LIMIT_MM
+from rastrainer.head.pose import WIDEST, Perturbation, perturbed_pose
+from rastrainer.head.volume import VolumeFile, read_volume_file
+from rastrainer.protocol import WORLD_LIMIT_MM
+from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory, read_targets, read_trajectory
+from rastrainer.scenario.tasks import Task, is_task_name, read_task
+
+FILE_NAME = "scenario.json"
+PREVIEW_NAME = "preview.png"
+FORMAT_VERSION = 1
+CAMERAS = ("close-up", "far")
+MOST_TASKS = 20
+STAND_DIAMETERS_MM = (1.0, 500.0)
+SKULL_KINDS = ("bone", "approximation")
+UNKNOWN_LICENSE = "Not to be given away: nothing is known about its license."
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A view, in World, mm.
+
+    Attributes:
+        position: (3,) float, the eye.
+        focal_point: (3,) float, what is in the middle of the picture.
+        view_up: (3,) float, unit vector.
+        view_angle_deg: the picture's height as an angle.
+    """
+
+    position: np.ndarray
+    focal_point: np.ndarray
+    view_up: np.ndarray
+    view_angle_deg: float
+
+
+@dataclass(frozen=True)
+class Furniture:
+    """What the robot and the head stand on, in World, mm; the table's top is at z = 0.
+
+    Attributes:
+        table_center: (2,) float, x and y.
+        table_size: (3,) float, along x, along y, thickness.
+        stand_diameter: of the round stand from the table to the head's base.
+    """
+
+    table_center: np.ndarray
+    table_size: np.ndarray
+    stand_diameter: float
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where the head comes from.
+
+    Attributes:
+        source: the images, and who made them.
+        method: how the head was made of them.
+        license: under which it may be used, with the notice that it requires.
+    """
+
+    source: str
+    method: str
+    license: str
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Everything a trial needs; see the module's description.
+
+    Attributes:
+        folder: where it was read from.
+        name: short, for records; `title` is for people.
+        head_mesh: path of the head's mesh, read by `rastrainer.head.mesh.read_head_mesh`.
+        target_name: of the point at which the target error is told, such as the head's center.
+        target_position: (3,) float, RAS mm.
+        head_to_world: (4, 4) float, rigid, mm: the nominal pose.
+        perturbation: how far a trial's pose may be from it.
+        tasks: in the order of their difficulty.
+        cameras: by the names of the protocol, "close-up" (the default view) and "far".
+        furniture, provenance: see there.
+        skull_mesh: path of the skull's mesh, like the head's; None where there is none.
+        is_skull_approximate: whether it is only estimated from the skin, as it is of MRI.
+        targets: further points that are planned to be reached.
+        trajectory: the way that is planned into the head.
+        volume: the images, for whoever looks at them; None where there are none.
+    """
+
+    folder: Path
+    name: str
+    title: str
+    head_mesh: Path
+    target_name: str
+    target_position: np.ndarray
+    head_to_world: np.ndarray
+    perturbation: Perturbation
+    tasks: tuple[Task, ...]
+    cameras: Mapping[str, Camera]
+    furniture: Furniture
+    provenance: Provenance
+    skull_mesh: Path | None = None
+    is_skull_approximate: bool = False
+    targets: tuple[PlannedTarget, ...] = ()
+    trajectory: PlannedTrajectory | None = None
+    volume: VolumeFile | None = None
+
+    @property
+    def preview(self) -> Path | None:
+        """The picture that lists show; None where the folder has none."""
+        path = self.folder / PREVIEW_NAME
+        return path if path.is_file() and not path.is_symlink() else None
+
+    def task(self, name: str) -> Task:
+        """Return the task of that name.
+
+        Raises:
+            InputError: there is none; the sentence lists those there are.
+        """
+        for task in self.tasks:
+            if task.name == name:
+                return task
+        names = ", ".join(task.name for task in self.tasks)
+        raise InputError(f"The scenario {self.name} has no such task; it has {names}.")
+
+    def perturbed_head_to_world(self, seed: int) -> np.ndarray:
+        """Return the head's pose in the trial of that seed, (4, 4) float, mm.
+
+        The head is turned about its target, then moved. The same seed gives the same pose.
+        """
+        return perturbed_pose(self.head_to_world, self.target_position, self.perturbation, seed)
+
+
+def load_scenario(folder: Path | str) -> Scenario:
+    """Read a scenario's folder.
+
+    Raises:
+        InputError: a file is missing or cannot be used; the sentence names it and the field.
+    """
+    try:
+        return _load(Path(folder))
+    except OSError as error:
+        raise InputError(f"The scenario {folder} cannot be read: {error.strerror}.") from None
+
+
+def _load(folder: Path) -> Scenario:
+    if not folder.is_dir():
+        raise InputError(f"The scenario's folder {folder} does not exist.")
+    fields = read_fields(folder / FILE_NAME)
+    if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
+        raise fields.error("formatVersion", f"{FORMAT_VERSION}, which this version reads")
+    target = fields.fields("target")
+    name = fields.text("name", 40)
+    if not is_task_name(name):
+        raise fields.error("name", "lower-case letters, digits and hyphens")
+    return Scenario(
+        folder=folder,
+        name=name,
+        title=fields.text("title", 80),
+        head_mesh=fields.file("head"),
+        target_name=target.text("name", 60),
+        target_position=_array(target.numbers("positionRas", 3, RAS_LIMIT_MM)),
+        head_to_world=_rigid(fields, "headToWorld"),
+        perturbation=_perturbation(fields.fields("perturbation")),
+        tasks=_tasks(fields),
+        cameras={name: _camera(fields.fields("cameras").fields(name)) for name in CAMERAS},
+        furniture=_furniture(fields),
+        provenance=_provenance(fields.fields("provenance")),
+        **_skull(fields),
+        targets=read_targets(fields),
+        trajectory=read_trajectory(fields),
+        volume=read_volume_file(fields),
+    )
+
+
+def _skull(fields: Fields) -> dict[str, Any]:
+    if "skull" not in fields.names():
+        return {}
+    skull = fields.fields("skull")
+    kind = skull.one_of("kind", SKULL_KINDS)
+    return {"skull_mesh": skull.file("file"), "is_skull_approximate": kind == SKULL_KINDS[1]}
+
+
+def _tasks(fields: Fields) -> tuple[Task, ...]:
+    tasks: dict[str, Task] = {}
+    for entry in fields.list_of_fields("tasks", 1, MOST_TASKS):
+        name = entry.text("name", 40)
+        if not is_task_name(name) or name in tasks:
+            raise entry.error("name", "lower-case letters, digits and hyphens, each name once")
+        title, complexity = entry.text("title", 60), entry.number("complexity", 0, 1000)
+        is_measured = "shortestPathMm" in entry.names()
+        shortest = entry.number("shortestPathMm", 1, 1e5) if is_measured else None
+        tasks[name] = read_task(entry.file("file"), name, title, complexity, shortest)
+    return tuple(tasks.values())
+
+
+def _perturbation(fields: Fields) -> Perturbation:
+    return Perturbation(
+        fields.number("translationMm", 0, WIDEST.translation_mm),
+        fields.number("yawDeg", 0, WIDEST.yaw_deg),
+        fields.number("tiltDeg", 0, WIDEST.tilt_deg),
+    )
+
+
+def _camera(fields: Fields) -> Camera:
+    position, focal_point, up = (
+        _array(fields.numbers(name, 3, WORLD_LIMIT_MM))
+        for name in ("positionMm", "focalPointMm", "viewUp")
+    )
+    if np.linalg.norm(np.cross(focal_point - position, up)) < 1e-6:
+        raise fields.error("viewUp", "a direction across the line of sight")
+    view_up = _array(up / np.linalg.norm(up))
+    return Camera(position, focal_point, view_up, fields.number("viewAngleDeg", 1, 120))
+
+
+def _furniture(fields: Fields) -> Furniture:
+    table, stand = fields.fields("table"), fields.fields("stand")
+    return Furniture(
+        _array(table.numbers("centerMm", 2, WORLD_LIMIT_MM)),
+        _array(table.numbers("sizeMm", 3, WORLD_LIMIT_MM)),
+        stand.number("diameterMm", *STAND_DIAMETERS_MM),
+    )
+
+
+def _provenance(fields: Fields) -> Provenance:
+    return Provenance(*(fields.text(name, 4000) for name in ("source", "method", "license")))
+
+
+def _rigid(fields: Fields, name: str) -> np.ndarray:
+    matrix = _array(fields.numbers(name, 16, WORLD_LIMIT_MM)).reshape(4, 4)
+    rotation = matrix[:3, :3]
+    is_rotation = np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6)
+    if not is_rotation or np.linalg.det(rotation) < 0 or matrix[3].tolist() != [0, 0, 0, 1]:
+        raise fields.error(name, "a rigid transform, 4×4, row by row, in mm")
+    return matrix
+
+
+def _array(values: list[float] | np.ndarray) -> np.ndarray:
+    array = np.array(values, dtype=float)
+    array.setflags(write=False)
+    return array

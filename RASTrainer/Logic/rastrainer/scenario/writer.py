@@ -1,0 +1,174 @@
+"""Write a scenario's folder: whole, or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+import shutil
+import uuid
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.files.writing import make_private_folder, write_text
+from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.head.volume import HeadVolume, write_head_volume
+from rastrainer.scenario.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
+from rastrainer.scenario.tasks import Task, is_task_name
+
+HEAD_NAME, SKULL_NAME, VOLUME_NAME = "head.ply", "skull.ply", "volume.nrrd"
+_DECIMALS = 4
+
+
+@contextlib.contextmanager
+def new_folder(folder: Path) -> Iterator[Path]:
+    """Yield a folder beside `folder` that takes its place at the end, or goes where that fails.
+
+    Raises:
+        InputError: `folder` holds something already, or cannot be made.
+    """
+    folder = Path(folder).absolute()
+    if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
+        raise InputError(f"{folder} is there already; name a folder that is new or empty.")
+    partial = folder.parent / f".{uuid.uuid4().hex}.partial"
+    try:
+        # A head shows a face.
+        make_private_folder(folder.parent)
+        partial.mkdir()
+        yield partial
+        partial.replace(folder)
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be written: {error.strerror}.") from None
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def scenario_name(title: str) -> str:
+    """Return a name for commands and records, made of a title.
+
+    Raises:
+        InputError: none can be made of it.
+    """
+    name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40].strip("-")
+    if not is_task_name(name):
+        raise InputError(
+            f"{title!r} cannot be a scenario's title: it needs a Latin letter or digit."
+        )
+    return name
+
+
+def write_scenario(
+    folder: Path,
+    scenario: Scenario,
+    head: HeadMesh,
+    skull: HeadMesh | None = None,
+    volume: HeadVolume | None = None,
+) -> None:
+    """Write `scenario.json`, the meshes, the volume and the tasks into a folder that exists.
+
+    Args:
+        folder: such as `new_folder` yields.
+        scenario: what to write; its own paths do not matter.
+        head: its head's mesh.
+        skull: its skull's; None where it has none.
+        volume: its images; None where it has none.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    (folder / "tasks").mkdir(exist_ok=True)
+    write_head_mesh(folder / HEAD_NAME, head)
+    if skull is not None:
+        write_head_mesh(folder / SKULL_NAME, skull)
+    if volume is not None:
+        write_head_volume(folder / VOLUME_NAME, volume)
+    for task in scenario.tasks:
+        write_markups(folder / _file(task), PointList(task.labels, task.fiducials))
+    content = scenario_json(scenario, skull is not None, volume)
+    write_text(folder / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+
+
+def scenario_json(
+    scenario: Scenario, has_skull: bool, volume: HeadVolume | None = None
+) -> dict[str, Any]:
+    """Return the content of a scenario's `scenario.json`."""
+    limits, furniture, provenance = scenario.perturbation, scenario.furniture, scenario.provenance
+    content: dict[str, Any] = {
+        "formatVersion": FORMAT_VERSION,
+        "name": scenario.name,
+        "title": scenario.title,
+        "head": HEAD_NAME,
+        "target": _named_point(scenario.target_name, scenario.target_position),
+        "headToWorld": _listed(scenario.head_to_world.ravel(), 9),
+        "perturbation": {
+            "translationMm": limits.translation_mm,
+            "yawDeg": limits.yaw_deg,
+            "tiltDeg": limits.tilt_deg,
+        },
+        "tasks": [_task_entry(task) for task in scenario.tasks],
+        "cameras": {name: _camera(camera) for name, camera in scenario.cameras.items()},
+        "table": {
+            "centerMm": _listed(furniture.table_center),
+            "sizeMm": _listed(furniture.table_size),
+        },
+        "stand": {"diameterMm": furniture.stand_diameter},
+        "provenance": {
+            "source": provenance.source,
+            "method": provenance.method,
+            "license": provenance.license,
+        },
+    }
+    if has_skull:
+        kind = SKULL_KINDS[1 if scenario.is_skull_approximate else 0]
+        content["skull"] = {"file": SKULL_NAME, "kind": kind}
+    if volume is not None:
+        content["volume"] = volume_entry(volume)
+    if scenario.targets:
+        content["targets"] = [_named_point(t.name, t.position) for t in scenario.targets]
+    if scenario.trajectory is not None:
+        content["trajectory"] = {
+            "name": scenario.trajectory.name,
+            "entryRas": _listed(scenario.trajectory.entry),
+            "targetRas": _listed(scenario.trajectory.target),
+        }
+    return content
+
+
+def volume_entry(volume: HeadVolume) -> dict[str, Any]:
+    """Return what JSON says about a volume that `write_head_volume` has put beside it."""
+    return {"file": VOLUME_NAME, "window": volume.window, "level": volume.level}
+
+
+def _task_entry(task: Task) -> dict[str, Any]:
+    entry: dict[str, Any] = {"name": task.name, "title": task.title, "file": _file(task)}
+    entry["complexity"] = round(task.complexity, 2)
+    if task.shortest_path_mm is not None:
+        entry["shortestPathMm"] = round(task.shortest_path_mm, 1)
+    return entry
+
+
+def _file(task: Task) -> str:
+    return f"tasks/{task.name}.mrk.json"
+
+
+def _named_point(name: str, position: np.ndarray) -> dict[str, Any]:
+    return {"name": name, "positionRas": _listed(position)}
+
+
+def _camera(camera: Camera) -> dict[str, Any]:
+    return {
+        "positionMm": _listed(camera.position),
+        "focalPointMm": _listed(camera.focal_point),
+        "viewUp": _listed(camera.view_up, 9),
+        "viewAngleDeg": camera.view_angle_deg,
+    }
+
+
+def _listed(values: np.ndarray, decimals: int = _DECIMALS) -> list[float]:
+    return [round(float(value), decimals) + 0.0 for value in values]

@@ -1,0 +1,107 @@
+"""What a draft holds besides the skin: the images of the head, and its skull."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.volume import KEPT_MM, HeadVolume
+from rastrainer.slicer.head import mask, surface
+from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody
+from rastrainer.slicer.head.level_set import CT_AIR
+from rastrainer.slicer.head.volume import Volume, on_ras_grid, sampled
+
+HOUNSFIELD = (-1024.0, 3071.0)
+CT_WINDOW, CT_LEVEL = 400.0, 40.0
+"""Soft tissue, with bone white and air black."""
+
+BRIGHTEST_QUANTILE, WHITE_QUANTILE = 0.9995, 0.995
+"""Of the MRI's values in the head: what 255 stands for, and what is shown white."""
+
+_MOST_GRAY = 255.0
+
+
+def image_of(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
+    """Return a head's images on a grid of 1 mm along RAS, and a sentence on how they were made.
+
+    MRI becomes uint8: from the darkest value of the volume to the brightest of the head, unless
+    its values are such numbers already. CT becomes int16, Hounsfield units.
+
+    Args:
+        volume: what the head was found in.
+        head: as `find_head` has found it.
+    """
+    near = mask.squared_distances(head.body, KEPT_MM / SPACING_MM) <= (KEPT_MM / SPACING_MM) ** 2
+    near[:, :, : max(0, int(np.floor((head.base_mm - head.origin[2]) / SPACING_MM)))] = False
+    around = ndimage.find_objects(near.astype(np.uint8))[0]
+    near, body = near[around], head.body[around]
+    grid_to_ras = np.diag([SPACING_MM] * 3 + [1.0])
+    grid_to_ras[:3, 3] = head.origin + SPACING_MM * np.array([part.start for part in around])
+    values = np.where(near, sampled(volume, grid_to_ras, near.shape), volume.values.min())
+    if head.is_ct:
+        units = np.rint(np.clip(np.where(near, values, CT_AIR), *HOUNSFIELD)).astype(np.int16)
+        low, high = HOUNSFIELD
+        told = f"Images: CT, 1 mm, Hounsfield units from {low:g} to {high:g}."
+        return HeadVolume(units, grid_to_ras, CT_WINDOW, CT_LEVEL), told
+    grays, told = _grays(values, volume.values, body)
+    white = max(2.0, float(np.quantile(grays[body], WHITE_QUANTILE)))
+    return HeadVolume(grays, grid_to_ras, white, white / 2.0), told
+
+
+def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, str]:
+    """Return an MRI's values as uint8, and a sentence on what they stand for."""
+    low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
+    if low >= 0 and source.max() <= _MOST_GRAY and np.array_equal(source, np.rint(source)):
+        return np.rint(values).astype(np.uint8), "Images: MRI, 1 mm, its own values, 0 to 255."
+    scaled = np.clip((values - low) * (_MOST_GRAY / max(high - low, 1e-30)), 0.0, _MOST_GRAY)
+    told = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
+    return np.rint(scaled).astype(np.uint8), told
+
+
+CT_BONE = 300.0
+"""Hounsfield units; cortical bone has more, contrast in vessels may too."""
+
+CT_NOISE_MM = 0.7
+SCALP_MM = 7.0
+"""From the skin to the skull where MRI cannot tell: a usual thickness, not the patient's."""
+
+TRIANGLES = 30_000
+
+
+def skull_of(volume: Volume, head: HeadBody) -> HeadMesh:
+    """Return the skull above the head's base: bone of a CT, else the skin moved inward.
+
+    Raises:
+        InputError: there is none.
+    """
+    level = _bone(volume, head) if head.is_ct else _below_scalp(head)
+    heights = head.origin[2] + SPACING_MM * np.arange(level.shape[2])
+    level = np.where(heights >= head.base_mm, level, -1.0).astype(np.float32)
+    body = mask.largest_body(level > 0)
+    level = np.where(body | (level <= 0), level, -1.0)
+    skull = surface.smoothed(surface.surface_of(level, head.origin, SPACING_MM))
+    return surface.mesh_of(surface.decimated(skull, TRIANGLES, head.base_mm))
+
+
+def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
+    """Return the level set of bone on the head's grid."""
+    grid = on_ras_grid(volume, SPACING_MM)
+    smooth = ndimage.gaussian_filter(grid.values, CT_NOISE_MM / SPACING_MM, mode="nearest")
+    bone = np.full(head.level.shape, -1.0, np.float32)
+    first = np.rint((grid.ijk_to_ras[:3, 3] - head.origin) / SPACING_MM).astype(int)
+    # The head's grid has a margin, and begins where its base is.
+    into = tuple(slice(max(0, f), max(0, f + n)) for f, n in zip(first, smooth.shape, strict=True))
+    room = bone[into].shape
+    start = np.maximum(0, -first)
+    taken = smooth[tuple(slice(s, s + n) for s, n in zip(start, room, strict=True))]
+    bone[into] = np.clip(taken / CT_BONE - 1.0, -1.0, 1.0)
+    if not (bone > 0).any():
+        raise InputError("The CT shows no bone.")
+    return np.where(head.body, bone, -1.0)
+
+
+def _below_scalp(head: HeadBody) -> np.ndarray:
+    scalp = SCALP_MM / SPACING_MM
+    return np.clip(mask.depth_inside(head.body, scalp + 1.0) - scalp, -1.0, 1.0)

@@ -1,0 +1,233 @@
+"""Keeps one connector in the scene and connected, and knows how the simulator is.
+
+The scene may be cleared of the connector, the simulator restarted, the line cut without a word:
+`follow`, which is called about ten times a second, finds out and makes it good.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import slicer
+import vtk
+
+from rastrainer.protocol import DeviceName
+from rastrainer.slicer.link.heartbeat import (
+    RECONNECT_AFTER_S,
+    LinkObservation,
+    LinkStatus,
+    judge,
+    notInstalled,
+)
+from rastrainer.slicer.link.simulator_search import SimulatorSearch
+from rastrainer.slicer.scene.link_nodes import findIncomingNode
+
+
+@dataclass(frozen=True)
+class ConnectorKit:
+    """Makes the two objects that the link talks to.
+
+    Attributes:
+        makeConnector: returns a new `vtkMRMLIGTLConnectorNode`, or a stand-in.
+        makeCommand: returns a new `vtkSlicerOpenIGTLinkCommand`, or a stand-in.
+    """
+
+    makeConnector: Callable[[], Any]
+    makeCommand: Callable[[], Any]
+
+
+def desktopKit() -> ConnectorKit | None:
+    """Return what SlicerOpenIGTLink brings, or None where that extension is not installed."""
+    if not hasattr(slicer, "vtkMRMLIGTLConnectorNode"):
+        return None
+    return ConnectorKit(slicer.vtkMRMLIGTLConnectorNode, slicer.vtkSlicerOpenIGTLinkCommand)
+
+
+CONNECTOR_NAME = "RASTrainerLink"
+NOWHERE = 0
+"""The port that the connector is given once it is connected: nobody can listen there. By itself it
+would connect again 0.1 s after a loss, to whatever has the simulator's port by then."""
+CONNECT_WITHIN_S = 1.0
+"""How long the connector may connect to a simulator that has answered; then it is asked again."""
+
+
+class SlicerConnection:
+    """One connection to a simulator, for as long as it is wanted.
+
+    The connector is started only when a simulator has just answered, as anything else might end
+    Slicer: see `rastrainer.slicer.link.probe`. A Slicer that listens cannot ask who will connect.
+
+    Attributes:
+        kit: what the connector and its commands are made with; None where it is not installed.
+        connector: the connector in the scene; None while there is no simulator to connect to.
+        isOpen: there is a TCP connection.
+        peerVersion: version of the simulator's protocol; None as long as it is not known.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        findKit: Callable[[], ConnectorKit | None],
+        onCommand: Callable[[str | bytes, str | bytes], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """`onCommand(name, content)` is called from inside VTK: it must not raise."""
+        self.kit: ConnectorKit | None = None
+        self.connector: Any | None = None
+        self.isOpen = False
+        self.peerVersion: int | None = None
+        self._scene = scene
+        self._findKit = findKit
+        self._onCommand = onCommand
+        self._clock = clock
+        self._search = SimulatorSearch(clock)
+        self._observerTag = 0
+        self._address: tuple[str, int] | None = None
+        self._isListening = False
+        self._connectsUntil = 0.0
+        self._isHeard = False
+        self._lastSign = 0.0
+        self._heartbeatTime: int | None = None
+
+    @property
+    def status(self) -> LinkStatus:
+        """How the connection is, in words."""
+        if self._address is not None and self.kit is None:
+            return notInstalled()
+        host, port = self._address or ("", 0)
+        return judge(
+            LinkObservation(
+                address=f"{host}:{port}",
+                isWanted=self._address is not None,
+                isListening=self._isListening,
+                finding=self._search.finding,
+                isOpen=self.isOpen,
+                silenceS=self._clock() - self._lastSign,
+                isHeard=self._isHeard,
+                peerVersion=self.peerVersion,
+            )
+        )
+
+    def begin(self, address: tuple[str, int], isListening: bool) -> None:
+        """Want a connection: to the address, or from whoever connects to its port."""
+        self.end()
+        self.kit = self._findKit()
+        self._address = address
+        self._isListening = isListening
+        self._search.begin()
+
+    def end(self) -> None:
+        """Want no connection any more."""
+        self._address = None
+        self._search.end()
+        self._dropConnector()
+
+    def follow(self) -> bool:
+        """Make good what was lost; return whether the connection has just been opened."""
+        if self._address is None or self.kit is None:
+            return False
+        wasOpen = self.isOpen
+        if self.connector is not None and self.connector.GetScene() is None:
+            self._dropConnector()
+            self._search.begin()
+        self.isOpen = (
+            self.connector is not None
+            and self.connector.GetState() == self.connector.StateConnected
+        )
+        if not self.isOpen:
+            self._connect(*self._address, isLost=wasOpen)
+            return False
+        if not wasOpen:
+            self._noteOpened()
+        self._hearHeartbeat()
+        if self._clock() - self._lastSign > RECONNECT_AFTER_S:
+            # Half-open: nothing will ever come over this connection again, if anything ever did.
+            if self.connector is not None:
+                self.connector.Stop()
+            self._search.begin()
+            self.isOpen = False
+        return self.isOpen and not wasOpen
+
+    def _connect(self, host: str, port: int, isLost: bool) -> None:
+        """Let the connector connect, or listen; to a simulator alone, so look for one first."""
+        if self._clock() < self._connectsUntil and not isLost:
+            return
+        if self._isListening:
+            self._listen(port)
+            return
+        if self.connector is not None:
+            self.connector.SetServerPort(NOWHERE)
+        if isLost:
+            self._search.begin()
+        finding = self._search.process(host, port)
+        if finding is not None:
+            self._connectTo(finding.ip, port)
+
+    def _listen(self, port: int) -> None:
+        connector = self.connector
+        if connector is None:
+            connector = self._makeConnector()
+            connector.SetTypeServer(port)
+        if connector.GetState() == connector.StateOff:
+            connector.Start()
+        self._connectsUntil = self._clock() + CONNECT_WITHIN_S
+
+    def _connectTo(self, ip: str, port: int) -> None:
+        if self.connector is not None and self.connector.GetServerHostname() != ip:
+            self._dropConnector()
+        connector = self.connector or self._makeConnector()
+        if connector.GetState() == connector.StateOff:
+            connector.SetTypeClient(ip, port)
+            connector.Start()
+        else:
+            # `Stop` would block for as long as 0.1 s, and the connector tries by itself.
+            connector.SetServerPort(port)
+        self._connectsUntil = self._clock() + CONNECT_WITHIN_S
+
+    def _noteOpened(self) -> None:
+        """Begin with a connection that has just been opened."""
+        self._isHeard = False
+        self.peerVersion = None
+        self._lastSign = self._connectsUntil = self._clock()
+        if self.connector is not None and not self._isListening:
+            self.connector.SetServerPort(NOWHERE)
+
+    def _makeConnector(self) -> Any:
+        """Return the connector, new in the scene; only where there is a kit."""
+        assert self.kit is not None
+        self.connector = connector = self.kit.makeConnector()
+        connector.SetName(CONNECTOR_NAME)
+        connector.SetSaveWithScene(False)
+        self._scene.AddNode(connector)
+        self._observerTag = connector.AddObserver(
+            connector.CommandReceivedEvent, self._onCommandReceived
+        )
+        return connector
+
+    def _dropConnector(self) -> None:
+        self.isOpen = False
+        self._connectsUntil = self._clock()
+        if self.connector is None:
+            return
+        self.connector.RemoveObserver(self._observerTag)
+        self.connector.Stop()
+        if self.connector.GetScene() is not None:
+            self._scene.RemoveNode(self.connector)
+        self.connector = None
+        self._heartbeatTime = None
+
+    def _hearHeartbeat(self) -> None:
+        node = findIncomingNode(self.connector, DeviceName.SIM_SERVER)
+        if node is None or node.GetMTime() == self._heartbeatTime:
+            return
+        self._heartbeatTime = node.GetMTime()
+        self._isHeard = True
+        self._lastSign = self._clock()
+        self.peerVersion = node.GetSubCode()
+
+    @vtk.calldata_type(vtk.VTK_OBJECT)
+    def _onCommandReceived(self, _caller: Any, _event: str, command: Any) -> None:
+        self._onCommand(command.GetName(), command.GetCommandContent())

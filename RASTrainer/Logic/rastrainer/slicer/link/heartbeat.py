@@ -1,0 +1,156 @@
+"""Whether the simulator is there and well, in words, and what to do where it is not.
+
+An open connection proves little: it may be half open, or lead to another program. The simulator
+therefore sends a heartbeat every second, with the version of its protocol.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.slicer.link.peer import Peer, ProbeResult, remedyOf, sentenceOf
+from rastrainer.slicer.translation import _
+
+STALE_AFTER_S = 3.5
+RECONNECT_AFTER_S = 10.0
+"""Seconds of silence after which the link is called stale, and after which it is made anew."""
+
+
+class LinkState(str, Enum):
+    """Where the link stands."""
+
+    OFF = "off"
+    NOT_INSTALLED = "not installed"
+    LOOKING = "looking"
+    ABSENT = "absent"
+    OTHER_PROGRAM = "other program"
+    GREETING = "greeting"
+    CONNECTED = "connected"
+    STALE = "stale"
+    WRONG_VERSION = "wrong version"
+
+
+@dataclass(frozen=True)
+class LinkStatus:
+    """The state of the link, one sentence about it, and one about what to do (may be empty)."""
+
+    state: LinkState
+    sentence: str
+    remedy: str = ""
+
+
+@dataclass(frozen=True)
+class LinkObservation:
+    """What is known of the link.
+
+    Attributes:
+        address: as the user gave it, such as `127.0.0.1:18944`.
+        isWanted: the user has asked for a connection.
+        isListening: the simulator is to connect to this side.
+        finding: who answers there; None while nobody was asked, or the answer is awaited.
+        isOpen: there is a TCP connection.
+        silenceS: seconds since the last heartbeat, or since the connection was opened.
+        isHeard: a heartbeat has come over this connection.
+        peerVersion: version of the simulator's protocol; None as long as it is not known.
+    """
+
+    address: str
+    isWanted: bool
+    isListening: bool = False
+    finding: ProbeResult | None = None
+    isOpen: bool = False
+    silenceS: float = 0.0
+    isHeard: bool = False
+    peerVersion: int | None = None
+
+
+def judge(link: LinkObservation) -> LinkStatus:
+    """Return the state of the link in words."""
+    if not link.isWanted:
+        return LinkStatus(LinkState.OFF, _("Not connected."), _("Press Start and connect."))
+    if not link.isOpen:
+        return _noSimulatorYet() if link.isListening else _looking(link)
+    if link.peerVersion not in (None, PROTOCOL_VERSION):
+        return _wrongVersion(link.peerVersion)
+    if link.silenceS > STALE_AFTER_S:
+        return _stale(link)
+    if not link.isHeard:
+        return LinkStatus(
+            LinkState.GREETING,
+            _("{address} answers; waiting for its first heartbeat.").format(address=link.address),
+        )
+    return LinkStatus(
+        LinkState.CONNECTED,
+        _("Connected to the simulator at {address}.").format(address=link.address),
+    )
+
+
+def notInstalled() -> LinkStatus:
+    """Return the status of a Slicer without the extension that brings the connector."""
+    return LinkStatus(
+        LinkState.NOT_INSTALLED,
+        _("The extension SlicerOpenIGTLink is not installed."),
+        _("Install it in the Extensions Manager and restart Slicer."),
+    )
+
+
+def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
+    """Return in words who answers at an address where no connection is wanted."""
+    if finding.peer is not Peer.SIMULATOR:
+        isAbsent = finding.peer in (Peer.NOBODY, Peer.UNKNOWN_HOST)
+        return LinkStatus(
+            LinkState.ABSENT if isAbsent else LinkState.OTHER_PROGRAM,
+            sentenceOf(finding.peer, address),
+            remedyOf(finding.peer),
+        )
+    if finding.version != PROTOCOL_VERSION:
+        return _wrongVersion(finding.version)
+    return LinkStatus(LinkState.CONNECTED, sentenceOf(finding.peer, address), _("Press Connect."))
+
+
+def lookingAt(address: str) -> LinkStatus:
+    """Return the status while it is asked who answers."""
+    sentence = _("Looking for a simulator at {address}.").format(address=address)
+    return LinkStatus(LinkState.LOOKING, sentence)
+
+
+def _looking(link: LinkObservation) -> LinkStatus:
+    status = None if link.finding is None else judgeFinding(link.finding, link.address)
+    isFound = status is not None and status.state is LinkState.CONNECTED
+    return lookingAt(link.address) if status is None or isFound else status
+
+
+def _noSimulatorYet() -> LinkStatus:
+    return LinkStatus(
+        LinkState.ABSENT,
+        _("No simulator has connected yet."),
+        _("Start it so that it connects to this computer."),
+    )
+
+
+def _wrongVersion(theirs: int) -> LinkStatus:
+    return LinkStatus(
+        LinkState.WRONG_VERSION,
+        _("The simulator speaks version {theirs} of the protocol, this module {ours}.").format(
+            theirs=theirs, ours=PROTOCOL_VERSION
+        ),
+        _("Update the module.") if theirs > PROTOCOL_VERSION else _("Update the simulator."),
+    )
+
+
+def _stale(link: LinkObservation) -> LinkStatus:
+    if not link.isHeard:
+        return LinkStatus(
+            LinkState.STALE,
+            _("What answers at {address} is not a RASTrainer simulator.").format(
+                address=link.address
+            ),
+            _("Correct the host and port."),
+        )
+    return LinkStatus(
+        LinkState.STALE,
+        _("The simulator has been silent for {seconds:.0f} s.").format(seconds=link.silenceS),
+        _("Wait for it to come back; if it does not, restart the simulator. No touch is lost."),
+    )

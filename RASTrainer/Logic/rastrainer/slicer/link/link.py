@@ -1,0 +1,255 @@
+"""The link to the simulator: one class for desktop Slicer and for the headless side.
+
+Everything happens in `process`, which the host calls about ten times a second: nodes are polled
+rather than observed, since any of them may be deleted at any time. Only answers and commands are
+handed over sooner, where the host lends a hand.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import (
+    DEFAULT_HOST,
+    DEFAULT_PORT,
+    PROTOCOL_VERSION,
+    CommandName,
+    check_arguments,
+)
+from rastrainer.slicer.link.arrivals import Arrivals
+from rastrainer.slicer.link.connection import ConnectorKit, SlicerConnection
+from rastrainer.slicer.link.error_guard import ErrorGuard
+from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.link.pending_commands import OnReply, PendingCommands, Request
+from rastrainer.slicer.link.simulator_search import ConnectionCheck, checkedAddress, checkPort
+from rastrainer.slicer.scene.link_nodes import prepareNodes
+from rastrainer.slicer.signal import Signal
+
+CallSoon = Callable[[Callable[[], None]], None]
+"""Has something called in the host's next turn."""
+
+
+def neverSoon(_work: Callable[[], None]) -> None:
+    """Leave it to the next `process`: the host has no turns."""
+
+
+POSES_HZ = 30.0
+"""How often poses are asked for; software graphics renders them 20 times a second at best."""
+
+
+class Link:
+    """Sends commands, and hands over what the simulator tells.
+
+    Attributes:
+        statusChanged: emits the new `LinkStatus`.
+        opened: emits nothing, after the greeting of each connection has been answered.
+        pointsChanged: emits the list of touched points (`vtkMRMLMarkupsFiducialNode`).
+        stateChanged: emits what `SimState` says, a dict.
+        trialCompleted: emits the record that the simulator delivers, a dict not yet checked.
+        trialAborted: emits the record of an aborted trial, a dict not yet checked.
+        stepAnswered: emits the answers to a questionnaire of a study, a dict not yet checked.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        findKit: Callable[[], ConnectorKit | None],
+        client: str = "3D Slicer",
+        clock: Callable[[], float] = time.monotonic,
+        callSoon: CallSoon = neverSoon,
+    ) -> None:
+        """Make a link that is not connected.
+
+        Args:
+            scene: the scene.
+            findKit: returns what makes the connector; None where it is not installed.
+            client: name of this side, sent to the simulator.
+            clock: seconds that only rise.
+            callSoon: has something called in the host's next turn, so that answers and commands
+                need not wait for the next `process`; it is called from inside VTK.
+        """
+        self.statusChanged = Signal()
+        self.opened = Signal()
+        self.pointsChanged = Signal()
+        self.stateChanged = Signal()
+        self.trialCompleted = Signal()
+        self.trialAborted = Signal()
+        self.stepAnswered = Signal()
+        self._scene = scene
+        self._client = client
+        self._callSoon = callSoon
+        self._isCallDue = False
+        self._guard = ErrorGuard()
+        self._test = ConnectionCheck(self._guard, clock)
+        self._arrivals = Arrivals(
+            scene,
+            self._guard,
+            self.pointsChanged,
+            self.stateChanged,
+            {
+                CommandName.TRIAL_COMPLETED: self.trialCompleted,
+                CommandName.TRIAL_ABORTED: self.trialAborted,
+                CommandName.STEP_ANSWERED: self.stepAnswered,
+            },
+        )
+        self._connection = SlicerConnection(scene, findKit, self._keepCommand, clock)
+        self._pending = PendingCommands(self._guard, clock, self._hurry)
+        self._wantsPoses = False
+        self._preparedConnector: Any | None = None
+        self._status = self._connection.status
+
+    @property
+    def status(self) -> LinkStatus:
+        """The state of the link in words, as of the last `process`."""
+        return self._status
+
+    @property
+    def isOpen(self) -> bool:
+        """Whether there is a connection."""
+        return self._connection.isOpen
+
+    @property
+    def connector(self) -> Any | None:
+        """The connector; a host without Slicer's timer calls its `PeriodicProcess`."""
+        return self._connection.connector
+
+    def connectTo(self, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT) -> None:
+        """Connect to a simulator, and again whenever the connection is lost.
+
+        Raises:
+            InputError: no host, or a port that is none.
+        """
+        self._begin(checkedAddress(host, port), isListening=False)
+
+    def listenOn(self, port: int = DEFAULT_PORT) -> None:
+        """Wait for a simulator that was started with `--connect`.
+
+        Raises:
+            InputError: a port that is none.
+        """
+        checkPort(port)
+        self._begin(("", port), isListening=True)
+
+    def testConnection(
+        self, host: str, port: int, onFound: Callable[[LinkStatus], None]
+    ) -> LinkStatus:
+        """Ask once who answers at an address; `onFound` is called by a later `process`.
+
+        Returns:
+            What to say meanwhile.
+
+        Raises:
+            InputError: no host, or a port that is none.
+        """
+        return self._test.begin(*checkedAddress(host, port), onFound)
+
+    def disconnect(self) -> None:
+        """Close the connection and stay without one."""
+        self._connection.end()
+        self.process()
+
+    def wantPoses(self, areWanted: bool) -> None:
+        """Have the simulator send where the arm is while it moves, or nothing of it.
+
+        Slicer renders all its views for each pose, whoever looks: want them while somebody does.
+        """
+        if areWanted != self._wantsPoses:
+            self._wantsPoses = areWanted
+            if self.isOpen:
+                self._sayHello(isFirst=False)
+
+    def send(
+        self,
+        name: str,
+        arguments: Mapping[str, Any] | None = None,
+        onReply: OnReply = lambda _reply: None,
+        timeoutS: float = 5.0,
+    ) -> None:
+        """Send a command; `onReply` is called by a later `process`, exactly once.
+
+        Raises:
+            InputError: the command or its arguments are not those of the protocol.
+        """
+        check_arguments(name, arguments or {})
+        status = self._connection.status
+        if not self.isOpen or status.state is LinkState.WRONG_VERSION:
+            self._pending.refuse(onReply, status.sentence)
+            return
+        content = json.dumps(dict(arguments or {}), allow_nan=False)
+        self._pending.send(Request(name, content, timeoutS, onReply), self._transmit)
+
+    def process(self) -> None:
+        """Do what is due: connect, judge the heartbeat, hand over what has arrived."""
+        self._isCallDue = False
+        if self._scene.IsBatchProcessing():
+            return
+        self._test.process()
+        if self._guard.run("The connection", self._connection.follow):
+            self._sayHello(isFirst=True)
+        if self.connector is not self._preparedConnector:
+            self._preparedConnector = self.connector
+            if self.connector is not None:
+                prepareNodes(self._scene)
+        self._emitStatus()
+        self._pending.poll(self.isOpen, self._transmit)
+        if self.connector is not None:
+            self._arrivals.handOverNodes()
+        self._arrivals.handOverCommands()
+
+    def _begin(self, address: tuple[str, int], isListening: bool) -> None:
+        self._connection.begin(address, isListening)
+        self.process()
+
+    def _transmit(self, request: Request) -> Any:
+        """Return the connector's command for a request, sent."""
+        kit, connector = self._connection.kit, self.connector
+        # Commands are transmitted over an open connection only.
+        assert kit is not None
+        assert connector is not None
+        command = kit.makeCommand()
+        command.SetName(request.name)
+        command.SetCommandContent(request.content)
+        command.SetTimeoutSec(request.timeoutS)
+        connector.SendCommand(command)
+        return command
+
+    def _keepCommand(self, name: str | bytes, content: str | bytes) -> None:
+        """Keep a command of the simulator until it can be handled: this is inside VTK."""
+        self._arrivals.keepCommand(name, content)
+        self._guard.run("A command's event", self._hurry)
+
+    def _hurry(self) -> None:
+        """See to it that what has arrived is handed over soon; called from inside VTK."""
+        if not self._isCallDue:
+            self._isCallDue = True
+            self._callSoon(self._handOverArrivals)
+
+    def _handOverArrivals(self) -> None:
+        self._isCallDue = False
+        if not self._scene.IsBatchProcessing():
+            self._pending.poll(self.isOpen, self._transmit)
+            self._arrivals.handOverCommands()
+
+    def _sayHello(self, isFirst: bool) -> None:
+        """Greet the simulator and ask for poses; later again, to ask for others."""
+
+        def welcome(reply: Reply) -> None:
+            version = reply.data.get("protocolVersion")
+            if isinstance(version, int):
+                self._connection.peerVersion = version
+            if reply.ok and isFirst:
+                self._guard.emit("The opened link", self.opened)
+
+        hz = POSES_HZ if self._wantsPoses else 0.0
+        hello = {"protocolVersion": PROTOCOL_VERSION, "client": self._client}
+        self.send(CommandName.HELLO, {**hello, "toolTipHz": hz, "linksHz": hz}, welcome)
+
+    def _emitStatus(self) -> None:
+        status = self._connection.status
+        if status != self._status:
+            self._status = status
+            self._guard.emit("The link's status", self.statusChanged, status)

@@ -1,0 +1,146 @@
+"""Commands on their way to the simulator; each gets exactly one reply, whatever happens."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import decode_json_object
+from rastrainer.slicer.link.error_guard import ErrorGuard
+from rastrainer.slicer.scene.link_nodes import decodedText, shownText
+from rastrainer.slicer.translation import _
+
+OnReply = Callable[[Reply], None]
+
+MOST_AT_ONCE = 16
+"""Commands that wait for their answers; so many the simulator carries out at once."""
+SENDING_S = 0.01
+"""How long may be sent in one turn: to send blocks while the simulator does not read."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """A command that is to be sent.
+
+    Attributes:
+        name: of the command.
+        content: its arguments, JSON.
+        timeoutS: how long its answer is waited for once it is sent.
+        onReply: called with the reply.
+    """
+
+    name: str
+    content: str
+    timeoutS: float
+    onReply: OnReply
+
+
+@dataclass(frozen=True)
+class _Sent:
+    request: Request
+    command: Any
+    deadline: float
+
+
+class PendingCommands:
+    """Sends commands a few at a time, and hands over their answers.
+
+    An answer is noted at the connector's event, from which `arrived` is called, inside VTK: it must
+    do no more than see to it that `poll` is called soon, in another turn. The regular `poll` finds
+    what no event has reported. The connector's own time-out is not enough: without a connection it
+    neither sends a command nor lets one expire.
+    """
+
+    def __init__(
+        self,
+        guard: ErrorGuard,
+        clock: Callable[[], float] = time.monotonic,
+        arrived: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._guard = guard
+        self._clock = clock
+        self._arrived = arrived
+        self._waiting: deque[Request] = deque()
+        self._sendingS = 0.0
+        self._sent: list[_Sent] = []
+        self._abandoned: list[Any] = []
+        self._refused: list[tuple[OnReply, Reply]] = []
+
+    def send(self, request: Request, transmit: Callable[[Request], Any]) -> None:
+        """Send a command in its turn; the reply is handed over by `poll`, never from here.
+
+        `transmit` makes the connector's command of a request, and sends it.
+        """
+        self._waiting.append(request)
+        self._sendSome(transmit)
+
+    def refuse(self, onReply: OnReply, sentence: str) -> None:
+        """Let the next `poll` say why a command was not sent."""
+        self._refused.append((onReply, Reply(False, sentence)))
+
+    def poll(self, isOpen: bool, transmit: Callable[[Request], Any]) -> None:
+        """Hand over the replies that have come, or will not come any more; send what waits."""
+        self._sendingS = 0.0
+        replies, self._refused = self._refused, []
+        sent, self._sent = self._sent, []
+        for item in sent:
+            reply = self._replyTo(item, isOpen)
+            if reply is None:
+                self._sent.append(item)
+            else:
+                replies.append((item.request.onReply, reply))
+                self._abandoned.append(item.command)
+        # The connector may still report on one that was given up: it must live until then.
+        self._abandoned = [command for command in self._abandoned if command.IsInProgress()]
+        if isOpen:
+            self._sendSome(transmit)
+        else:
+            replies += [(request.onReply, _lost()) for request in self._waiting]
+            self._waiting.clear()
+        for onReply, reply in replies:
+            self._guard.run("The reply to a command", onReply, reply)
+
+    def _sendSome(self, transmit: Callable[[Request], Any]) -> None:
+        while self._waiting and len(self._sent) < MOST_AT_ONCE and self._sendingS < SENDING_S:
+            begin = self._clock()
+            request = self._waiting.popleft()
+            command = transmit(request)
+            command.AddObserver(command.CommandCompletedEvent, self._noteArrival)
+            now = self._clock()
+            self._sendingS += now - begin
+            self._sent.append(_Sent(request, command, now + request.timeoutS))
+        if self._waiting and len(self._sent) < MOST_AT_ONCE:
+            self._arrived()
+
+    def _noteArrival(self, _caller: Any, _event: str) -> None:
+        self._guard.run("A command's event", self._arrived)
+
+    def _replyTo(self, item: _Sent, isOpen: bool) -> Reply | None:
+        command = item.command
+        if command.GetCommandStatus() == command.CommandResponseReceived:
+            return _answer(command)
+        if not isOpen:
+            return _lost()
+        if not command.IsInProgress() or self._clock() > item.deadline:
+            sentence = _("The simulator did not answer {name}.")
+            return Reply(False, sentence.format(name=item.request.name))
+        return None
+
+
+def _lost() -> Reply:
+    return Reply(False, _("The connection to the simulator was lost."))
+
+
+def _answer(command: Any) -> Reply:
+    if not command.GetSuccessful():
+        sentence = shownText(command.GetErrorMessage())
+        return Reply(False, sentence or _("The simulator refused without giving a reason."))
+    try:
+        return Reply(True, "", decode_json_object(decodedText(command.GetResponseContent())))
+    except InputError:
+        return Reply(False, _("The simulator's answer cannot be read."))

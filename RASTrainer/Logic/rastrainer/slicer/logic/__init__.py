@@ -1,0 +1,1 @@
+"""What each section of the module does, without Qt."""

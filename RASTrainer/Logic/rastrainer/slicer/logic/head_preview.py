@@ -1,0 +1,127 @@
+"""The head that is found in a volume, shown before a scenario is made, to accept or to change."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rastrainer.errors import InputError
+from rastrainer.progress import Progress
+from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.head.own_process import in_own_process
+from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, trianglesPolyData
+from rastrainer.slicer.scene.scene import Role, findNode, findOrAddNode
+from rastrainer.slicer.translation import _
+
+if TYPE_CHECKING:
+    from rastrainer.head.mesh import HeadMesh
+    from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
+    from rastrainer.slicer.head.segment import SegmentImage
+
+FIND_SKIN = "rastrainer.slicer.head.head_draft:find_skin"
+PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
+SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
+
+
+def findSkin(
+    python: Path, volumeNode: Any, settings: HeadSettings | None, progress: Progress
+) -> tuple[HeadBody, HeadMesh, list[str]]:
+    """Return the head of a `vtkMRMLScalarVolumeNode`, its skin, and warnings.
+
+    Args:
+        python: runs the process that looks for it.
+        volumeNode: MRI or CT of a head.
+        settings: what to choose otherwise than usual.
+        progress: called with each step and the share of the work done, many times a second; it may
+            let the application draw, and may raise to cancel.
+
+    Raises:
+        InputError: the volume cannot be used, or there is no head in it.
+    """
+    from rastrainer.slicer.head.volume import image_of_node
+
+    image = image_of_node(volumeNode)
+
+    def find(report: Progress) -> tuple[HeadBody, HeadMesh, list[str]]:
+        found, skin, warnings = in_own_process(python, FIND_SKIN, report, image, settings)
+        # Whoever shows the segment finds them made.
+        _ = found.labels
+        return found, skin, warnings
+
+    return inBackground(find, progress)
+
+
+_DRAFT = (
+    ("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT),
+    ("vtkMRMLModelNode", Role.HEAD_PREVIEW),
+)
+
+
+class HeadPreview:
+    """A model of the head that is found, and a segment of it that the Segment Editor may change."""
+
+    def __init__(self, scene: Any, python: Path) -> None:
+        """`python` runs the process that looks for heads."""
+        self._scene = scene
+        self._python = python
+
+    def show(self, volumeNode: Any, settings: HeadSettings, progress: Progress) -> list[str]:
+        """Show the head in a `vtkMRMLScalarVolumeNode`; return warnings, one sentence each.
+
+        Raises:
+            InputError: the volume cannot be used, or there is no head in it.
+        """
+        from rastrainer.slicer.head.segment import show_segment
+
+        found, skin, warnings = findSkin(self._python, volumeNode, settings, progress)
+        node = self._node("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT, "Head to be edited")
+        show_segment(node, found)
+        node.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)
+        node.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
+        node.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
+        model = self._node("vtkMRMLModelNode", Role.HEAD_PREVIEW, "Head as found")
+        model.SetAndObservePolyData(trianglesPolyData(skin.vertices, skin.triangles))
+        model.GetDisplayNode().SetColor(SKIN_COLOR)
+        self._setVisible(True)
+        return warnings
+
+    def hide(self, volumeNode: Any) -> None:
+        """Hide the draft, and a rendering of its volume: what is made of them is shown instead."""
+        self._setVisible(False)
+        for index in range(volumeNode.GetNumberOfDisplayNodes()):
+            display = volumeNode.GetNthDisplayNode(index)
+            if display is not None and display.IsA("vtkMRMLVolumeRenderingDisplayNode"):
+                display.SetVisibility(False)
+
+    def segment(self, volumeNode: Any, settings: HeadSettings) -> SegmentImage | None:
+        """Return the segment of the head that is shown of a volume, None where none is.
+
+        Raises:
+            InputError: the head was found with other settings, or its segment cannot be used.
+        """
+        from rastrainer.slicer.head.segment import SEGMENT_NAME, read_segment
+
+        node = findNode(self._scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
+        if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volumeNode.GetID():
+            return None
+        if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):
+            raise InputError(
+                _(
+                    "The threshold or the cut has been changed since the head was found: find the "
+                    "head again, or set it back."
+                )
+            )
+        segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)
+        return read_segment(node, segment)
+
+    def _setVisible(self, visible: bool) -> None:
+        for className, role in _DRAFT:
+            node = findNode(self._scene, className, role)
+            if node is not None and node.GetDisplayNode() is not None:
+                node.SetDisplayVisibility(visible)
+
+    def _node(self, className: str, role: str, name: str) -> Any:
+        """Return a node that stands under no transform: what is found is where it is shown."""
+        node = findOrAddNode(self._scene, className, role, name)
+        node.SetAndObserveTransformNodeID(None)
+        return node

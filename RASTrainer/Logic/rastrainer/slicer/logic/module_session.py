@@ -1,0 +1,278 @@
+"""Everything that the module keeps while it is loaded: link, study, and the logic of each step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rastrainer.protocol import Phase
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.connection import ConnectorKit
+from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
+from rastrainer.slicer.logic.plan_logic import PlanLogic
+from rastrainer.slicer.logic.registration_logic import RegistrationLogic
+from rastrainer.slicer.logic.replay_logic import ReplayLogic
+from rastrainer.slicer.logic.scenario_cache import ScenarioCache
+from rastrainer.slicer.logic.scenario_files import ScenarioFiles
+from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
+from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
+from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
+from rastrainer.slicer.logic.slice_follower import SliceFollower
+from rastrainer.slicer.logic.study_logic import StudyLogic
+from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.slicer.logic.training_logic import TrainingLogic
+from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
+from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.main_turn import mainTurn
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.slicer.program.simulator_setup import SimulatorSetup
+from rastrainer.slicer.scene.registration_nodes import followPlacement
+from rastrainer.slicer.scene.scenario_volume import VolumeLoader
+from rastrainer.slicer.scene.views import BorrowedLayout
+from rastrainer.slicer.settings import Settings
+from rastrainer.slicer.signal import Signal
+from rastrainer.study.database.database import Patience
+from rastrainer.study.database.study import Study
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.ctps import read_trials
+
+ROBOT = Path("robots", "iiwa7")
+PUBLISHED_STUDY = Path("studies", "published.csv")
+
+
+@dataclass(frozen=True)
+class ModulePaths:
+    """Where the session reads and writes files.
+
+    Attributes:
+        assets: folder of scenarios, robots and published studies.
+        python: that sets the simulator up and runs it.
+        simulator: private folder of the simulator.
+        study: file of the study, until another is chosen.
+        records: folder of the journals of the simulator that is started from here.
+        library: folder of the user's own scenarios, which the simulator knows too.
+        package: the simulator as it comes with the module.
+    """
+
+    assets: Path
+    python: Path
+    simulator: Path
+    study: Path
+    records: Path
+    library: Path
+    package: SimulatorPackage
+
+
+class ModuleSession:
+    """Wires the parts together; `process` is to be called about ten times a second.
+
+    Attributes:
+        work: what is done in the background, one after the other.
+        link: to the simulator.
+        simulator: its set-up and process.
+        trainees: who trains.
+        scenario: head, tasks and robot in the scene.
+        images: brings the images of the scenario that is shown.
+        scenarioMaker: makes scenarios of volumes.
+        scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
+        training: trials under way.
+        slices: keeps the slice views at the next point, or at the tool.
+        study: leads through the protocol.
+        trials: where finished trials arrive.
+        aborted: where aborted trials arrive.
+        replay: feedback on stored trials, and their replay.
+        registration: that is looked at.
+        plan: of a target.
+        cohort: trials of the published study, with which CTPS compares.
+        studyPath: file of the present study.
+        task: name of the chosen task.
+        taskTitle: what people read.
+        isSeen: returns whether somebody may be looking at the module, at the 3D view, or (where
+            asked to count them) at the slice views; the module's widget sets it.
+        taskChosen: emits nothing, whenever another task is chosen.
+        scenarioMade: emits the name of a scenario that has just been made.
+        settings: what the user has chosen in the panels.
+        layout: of the views, while tables or plots are shown.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        places: ModulePaths,
+        findKit: Callable[[], ConnectorKit | None],
+        settings: Settings | None = None,
+        callSoon: CallSoon = neverSoon,
+    ) -> None:
+        """Open a session.
+
+        Args:
+            scene: the scene.
+            places: where things are.
+            findKit: returns what makes the connector; None where it is not installed.
+            settings: without them what the user chooses is forgotten at the end.
+            callSoon: has something called in the application's next turn.
+        """
+        self.places = places
+        self.settings = settings or Settings()
+        self.layout = BorrowedLayout(scene)
+        self.studyPath = places.study
+        self._scene = scene
+        self._patience = Patience.interactive()
+        cache = ScenarioCache.below(places.assets / "scenarios", places.library)
+        self.cohort = read_trials(places.assets / PUBLISHED_STUDY)
+        self.work = BackgroundWork()
+        self.link = Link(scene, findKit, callSoon=callSoon)
+        setup = SimulatorSetup(places.python, places.simulator, places.package)
+        self.simulator = SimulatorLogic(self.link, setup, places.records)
+        self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)
+        self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, places.python)
+        self.images = VolumeLoader(scene, self.work)
+        self.scenarioMaker = ScenarioMaker(
+            scene, self.simulator, cache, places.library, places.python
+        )
+        self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
+        self.training = TrainingLogic(scene, self.link, cache.find)
+        self.slices = SliceFollower(scene, self.training)
+        self.study = StudyLogic(self.trainees, self.training, self.link)
+        self.trials = TrialLogic(
+            scene,
+            self.link,
+            cache.find,
+            self.openStudyPatiently,
+            self.work,
+            self.cohort,
+            places.records,
+        )
+        self.aborted = AbortedTrialsLogic(self.link, self.openStudyPatiently, self.work)
+        self.replay = ReplayLogic(
+            scene,
+            self.openStudyPatiently,
+            self.work,
+            cache.find,
+            places.records,
+            places.assets / ROBOT,
+            self._isTrialOpen,
+        )
+        self.registration = RegistrationLogic(scene, self.work)
+        self.plan = PlanLogic(scene, self.link, self.registration)
+        self.task = ""
+        self.taskTitle = ""
+        self.isSeen: Callable[[bool], bool] = lambda _inSlices: False
+        self.taskChosen = Signal()
+        self.scenarioMade = Signal()
+        self._trial = ""
+        self.trials.trialKept.connect(self.study.countTrial)
+        self.trials.trialScored.connect(self._takeScored)
+        self.aborted.kept.connect(self._takeAborted)
+        self.link.stateChanged.connect(self._noticeNewTrial)
+        self.replay.shown.connect(self.registration.reset)
+
+    def openStudy(self) -> Study:
+        """Open the present study, or begin it; this thread draws the window and waits for no lock.
+
+        Raises:
+            InputError: the file is no study, or cannot be used.
+            StudyBusyError: another program has it locked.
+        """
+        return Study.open(self.studyPath, self._patience, make_folder=True)
+
+    def openStudyPatiently(self) -> Study:
+        """Open the present study in a thread that may wait for a lock; otherwise as `openStudy`."""
+        return Study.open(self.studyPath, make_folder=True)
+
+    def chooseStudy(self, path: Path) -> None:
+        """Continue with the study of another file, which is begun where there is none.
+
+        Raises:
+            InputError: the file is no study, or cannot be used; the present one stays.
+        """
+        Study.open(path, self._patience, make_folder=True).close()
+        self.studyPath = path
+        self.trials.forgetWaiting()
+        self.aborted.forgetWaiting()
+        self.trainees.reopen()
+
+    def chooseTask(self, name: str, title: str) -> None:
+        """Choose the task that is started next."""
+        self.task, self.taskTitle = name, title
+        self.taskChosen.emit()
+
+    def process(self) -> None:
+        """Do what is due; while a scene is loaded or cleared, nothing is."""
+        with mainTurn():
+            self._process()
+
+    def _process(self) -> None:
+        self.simulator.process()
+        if self._scene.IsBatchProcessing():
+            return
+        inSlices = self.slices.followsTool
+        areShown = self.scenario.isRobotShown or inSlices
+        self.link.wantPoses(areShown and self.isSeen(inSlices))
+        self.link.process()
+        self.work.process()
+        if self._patience.regained():
+            # What could not be read while the study was locked may be shown now.
+            self.trainees.changed.emit()
+        if self.trainees.hasChangedElsewhere():
+            self._showTrainees()
+        self.study.process()
+        self.registration.process()
+        self.replay.process()
+        self.images.process()
+        followPlacement(self._scene)
+        self.slices.process()
+
+    def giveTimeToWork(self) -> bool:
+        """Let work in the background run for a moment; return whether there still is any."""
+        self.work.giveTime()
+        if not self._scene.IsBatchProcessing():
+            with mainTurn():
+                self.work.process()
+        return self.work.isBusy
+
+    def sceneWasCleared(self) -> None:
+        """Forget what pointed into the old scene; a trial that runs is shown again."""
+        self.registration.reset()
+        self.training.forgetScene()
+        self.plan.points.forget()
+
+    def close(self) -> None:
+        """Disconnect, close the study, and end the simulator that was started from here."""
+        self.layout.giveBack()
+        self.study.close()
+        self.training.close()
+        self.trials.close()
+        self.aborted.close()
+        self.work.close()
+        self.link.disconnect()
+        self.trainees.close()
+        self.simulator.close()
+
+    def _isTrialOpen(self) -> bool:
+        return self.link.isOpen and self.training.progress.isOpen
+
+    def _showTrainees(self) -> None:
+        """Let each panel show what is new in the study, in a turn of its own."""
+        for listener in self.trainees.changed.listeners:
+            self.work.later(listener)
+
+    def _takeScored(self, analysis: TrialAnalysis) -> None:
+        record = analysis.record
+        self.plan.takeTruth(analysis)
+        self.replay.takeFeedback(record.trial_id, analysis.feedback)
+        self._showTrainees()
+
+    def _takeAborted(self, trial: AbortedTrial) -> None:
+        self.study.countAborted(trial)
+        self._showTrainees()
+
+    def _noticeNewTrial(self, state: dict[str, Any]) -> None:
+        trial = str(state.get("trialId", ""))
+        if trial != self._trial and state.get("phase") == Phase.RUNNING.value:
+            self._trial = trial
+            self.registration.reset()
+            self.plan.forgetTruth()

@@ -1,0 +1,123 @@
+"""Measures how long the trial run of a study is practiced, and ends its step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import TRIAL_RUN
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.slicer.logic.training_logic import TrainingLogic
+from rastrainer.study.protocol.progress import Progress
+from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.study.protocol.study_progress import StudyProgress
+
+KEPT_EVERY_S = 5.0
+"""What a crash may cost of the time that a trial run was practiced."""
+CLOCK_STEP_S = 0.001
+"""Resolution of the trial's time as the simulator sends it."""
+
+
+class PracticeWatch:
+    """Counts by the simulator's time of the trial, in which pauses are left out.
+
+    So the simulator, which shows the same minutes to the trainee, and the study agree when they
+    are over.
+    """
+
+    def __init__(
+        self,
+        trainees: TraineeLogic,
+        training: TrainingLogic,
+        link: Link,
+        changed: Callable[[str], None],
+    ) -> None:
+        """`changed` is called with the trainee whose trial run has ended or was left."""
+        self._trainees = trainees
+        self._training = training
+        self._link = link
+        self._changed = changed
+        self._practicing: tuple[str, str] | None = None
+        self._seen = self._kept = self._left = 0.0
+        self._isFirstSight = True
+        link.stateChanged.connect(self._follow)
+
+    def close(self) -> None:
+        """Stop listening, and keep what was practiced last."""
+        self._link.stateChanged.disconnect(self._follow)
+        self.keep()
+
+    def unsavedS(self, trainee: str, mode: str) -> float:
+        """Return how long the trial run was practiced in a mode since it was kept last; s."""
+        return self._seen - self._kept if self._practicing == (trainee, mode) else 0.0
+
+    def keep(self) -> None:
+        """Put what was practiced into the study's file; the step is done when its time is over."""
+        if self._practicing is None:
+            return
+        (name, _mode), seconds = self._practicing, self._seen - self._kept
+        self._kept = self._seen
+        asked = self._asked()
+        if asked is None:
+            self._left = KEPT_EVERY_S
+            return
+        progress, step = asked
+        try:
+            study = StudyProgress(self._trainees.study)
+            study.practice(name, step.name, seconds)
+            progress = replace(progress, practiced_s=progress.practiced_s + seconds)
+            self._left = progress.practice_left_s
+            if self._left < CLOCK_STEP_S:
+                minutes = max(progress.practiced_s / 60.0, step.minutes)
+                study.finish(name, step.name, {"minutes": minutes})
+                self._changed(name)
+        except InputError:
+            self._practicing = None
+
+    def _follow(self, _state: Mapping[str, Any]) -> None:
+        trial = self._training.progress
+        isPracticed = trial.isOpen and trial.task == TRIAL_RUN
+        practicing = (trial.trainee, trial.mode) if isPracticed else None
+        if practicing != self._practicing or (practicing and trial.elapsedS < self._seen):
+            self._end()
+            self._begin(practicing, trial.elapsedS)
+        elif practicing is not None:
+            self._seen = trial.elapsedS
+            if self._seen - self._kept >= min(KEPT_EVERY_S, self._left):
+                self.keep()
+        self._isFirstSight = False
+
+    def _begin(self, practicing: tuple[str, str] | None, elapsedS: float) -> None:
+        self._practicing, self._seen = practicing, elapsedS
+        # What was played before our time may have been counted by the Slicer before this one.
+        self._kept = elapsedS if self._isFirstSight else 0.0
+        asked = self._asked()
+        self._left = KEPT_EVERY_S if asked is None else asked[0].practice_left_s
+
+    def _end(self) -> None:
+        self.keep()
+        ended, self._practicing = self._practicing, None
+        if ended is not None:
+            self._changed(ended[0])
+
+    def _asked(self) -> tuple[Progress, Step] | None:
+        """Return the progress of who practices, and the trial run that the study asks for.
+
+        None where it asks for no such run.
+        """
+        if self._practicing is None:
+            return None
+        name, mode = self._practicing
+        try:
+            study = StudyProgress(self._trainees.study)
+            progress = study.progress(name) if name in study.enrolled() else None
+        except InputError:
+            return None
+        step = None if progress is None else progress.next_step
+        if progress is None or step is None:
+            return None
+        isAsked = (step.kind, step.mode) == (StepKind.TRIAL_RUN, mode)
+        return (progress, step) if isAsked else None

@@ -1,0 +1,204 @@
+"""Says what was good and bad in a trial, and replays it, or its worst touch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.journal.replay_track import find_track
+from rastrainer.progress import Progress
+from rastrainer.registration.registration import RIGID
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.background_work import BackgroundWork, inBackground
+from rastrainer.slicer.main_turn import giveWay
+from rastrainer.slicer.scene.robot_scene import URDF
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.trial_replay import (
+    TRIAL_ATTRIBUTE,
+    findReplay,
+    goTo,
+    isReplayOf,
+    moment,
+    showReplay,
+    stopReplay,
+)
+from rastrainer.slicer.scene.trial_scene import setTouchesVisible, showTouches
+from rastrainer.slicer.scene.urdf import read_arm_chain
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+from rastrainer.study.database.study import StoredTrial, Study
+from rastrainer.study.trial_review import trajectory_of, with_progress
+from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.trial_feedback import TrialFeedback
+
+
+class ReplayLogic:
+    """Feedback on stored trials, and their replay, for which the journals must be here.
+
+    Attributes:
+        feedbackFound: emits nothing, whenever the feedback on another trial is known.
+        shown: emits nothing, whenever another trial is shown, with its touches to be registered.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        openStudy: Callable[[], Study],
+        work: BackgroundWork,
+        findScenario: Callable[[str], Scenario],
+        records: Path,
+        robot: Path,
+        isTrialOpen: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Show trials again.
+
+        Args:
+            scene: the scene.
+            openStudy: opens the study, in any thread; it may wait for a lock there.
+            work: in which journals are read.
+            findScenario: gives the scenario of a name, in any thread.
+            records: folder of journals.
+            robot: folder of the URDF.
+            isTrialOpen: tells whether the scene shows a trial that is being played.
+        """
+        self.feedbackFound = Signal()
+        self.shown = Signal()
+        self._isTrialOpen = isTrialOpen
+        self._scene = scene
+        self._openStudy = openStudy
+        self._work = work
+        self._findScenario = findScenario
+        self._records = records
+        self._robot = robot
+        self._known: tuple[str, TrialFeedback | Exception] | None = None
+        self._asked = ""
+        self._until: float | None = None
+
+    def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
+        """Return what there is to say about a trial; None while that is worked out.
+
+        Raises:
+            InputError: its scenario is not here, or it cannot be registered.
+        """
+        trialId = trial.record.trial_id
+        if self._known is not None and self._known[0] == trialId:
+            if isinstance(self._known[1], Exception):
+                raise self._known[1]
+            return self._known[1]
+        if self._asked != trialId:
+            self._asked = trialId
+
+            def take(found: TrialFeedback | Exception) -> None:
+                if self._asked == trialId:
+                    self.takeFeedback(trialId, found)
+
+            self._work.do(lambda: self._judge(trial), take, take)
+        return None
+
+    def takeFeedback(self, trialId: str, feedback: TrialFeedback | Exception) -> None:
+        """Take what is known of a trial without having looked for it."""
+        self._known, self._asked = (trialId, feedback), ""
+        self.feedbackFound.emit()
+
+    def show(self, trial: StoredTrial, progress: Progress = lambda _step, _share: None) -> None:
+        """Show a trial again, from its beginning.
+
+        Args:
+            trial: as it is stored.
+            progress: called with each step and the share of the work done, many times a second; it
+                may let the application draw, and may raise to cancel: then nothing is shown.
+
+        Raises:
+            InputError: its journal or its scenario is not here, or it was not registered.
+        """
+        self._put(trial, progress)
+        self._play(None)
+
+    def showWorstTouch(
+        self, trial: StoredTrial, progress: Progress = lambda _step, _share: None
+    ) -> None:
+        """Show again how the worst touch came about; otherwise as `show`."""
+        if self._known is None or self._known[0] != trial.record.trial_id:
+            judged = inBackground(lambda _tell: self._judge(trial), progress)
+            self.takeFeedback(trial.record.trial_id, judged)
+        feedback = self.feedback(trial)
+        interval = None if feedback is None else feedback.worst.replay_s
+        if interval is None:
+            trialId = trial.record.trial_id
+            inBackground(lambda _tell: find_track(self._records, trialId, giveWay), progress)
+            raise InputError(_("The journal does not say when the worst touch was made."))
+        self._put(trial, progress)
+        goTo(self._scene, interval[0])
+        self._play(interval[1])
+
+    @property
+    def sentence(self) -> str:
+        """Where the replay stands; empty where there is none."""
+        now = moment(self._scene)
+        if now is None:
+            return ""
+        return _("{time:.1f} s, clearance {clearance}").format(time=now[0], clearance=now[1])
+
+    def process(self) -> None:
+        """Stop where the worst touch was made."""
+        now, browser = moment(self._scene), findReplay(self._scene)
+        if self._until is None or now is None or browser is None:
+            return
+        if now[0] >= self._until:
+            browser.SetPlaybackActive(False)
+            self._until = None
+
+    def _judge(self, trial: StoredTrial) -> TrialFeedback:
+        record = trial.record
+        with self._openStudy() as study:
+            scenario = self._findScenario(record.scenario)
+            trajectory = trajectory_of(record, self._records, giveWay)
+            analysis = analyze_trial(record, scenario, trajectory=trajectory)
+            # A score keeps its version, however it would be made today.
+            return with_progress(analysis.scored_as(trial.score), study).feedback
+
+    def _put(self, trial: StoredTrial, progress: Progress) -> None:
+        if self._isTrialOpen():
+            raise InputError(_("A trial is being played: look at another one when it is over."))
+        record, rigid = trial.record, trial.registrations.get(RIGID)
+        if rigid is None:
+            raise InputError(_("It is not known where the head was: the trial was not registered."))
+        stopReplay(self._scene)
+        isThere = isReplayOf(self._scene, record.trial_id)
+        track, chain, scenario = inBackground(
+            lambda _tell: (
+                None if isThere else find_track(self._records, record.trial_id, giveWay),
+                read_arm_chain(self._robot / URDF),
+                self._findScenario(record.scenario),
+            ),
+            progress,
+        )
+        if isThere and not isReplayOf(self._scene, record.trial_id):
+            raise InputError(_("The scene was changed before the trial could be shown."))
+        showScenario(self._scene, scenario)
+        showTask(self._scene, scenario, record.task)
+        showTouches(self._scene, record)
+        self.shown.emit()
+        if track is None:
+            goTo(self._scene, 0.0)
+        else:
+            # What shows the scenario has its turn before the states go into the scene.
+            progress(_("Showing"), 0.0)
+            name, matrix = f"{record.trainee}, {record.task}", np.reshape(rigid.matrix, (4, 4))
+            browser = showReplay(
+                self._scene, name, track, chain, matrix, lambda share: progress(_("Showing"), share)
+            )
+            browser.SetAttribute(TRIAL_ATTRIBUTE, record.trial_id)
+        # The replay shows them one by one, as they were made.
+        setTouchesVisible(self._scene, False)
+
+    def _play(self, until: float | None) -> None:
+        self._until = until
+        browser = findReplay(self._scene)
+        if browser is not None:
+            browser.SetPlaybackLooped(False)
+            browser.SetPlaybackActive(True)

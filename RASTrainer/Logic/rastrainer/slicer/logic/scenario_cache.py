@@ -1,0 +1,130 @@
+"""The scenarios at hand, found by the name that a trial's record gives."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Callable, Iterable
+from itertools import count
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.scenario.library import (
+    ListedScenario,
+    list_folder,
+    list_folders,
+    list_scenarios,
+    user_library,
+)
+from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
+from rastrainer.scenario.writer import scenario_name
+from rastrainer.slicer.translation import _
+
+LONGEST_STEM = 30
+"""Characters of a title to which a number is added: a name of 40 must have room for it."""
+
+
+class ScenarioCache:
+    """Reads scenarios when they are asked for, anew where they were built anew.
+
+    `refresh` looks what has come since. Any thread may ask.
+    """
+
+    def __init__(self, *folders: Path) -> None:
+        """Offer the scenarios of these folders."""
+        self._list: Callable[[], Iterable[ListedScenario]] = lambda: list_folders(
+            folders, self._listOne
+        )
+        self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
+        self._listed: tuple[ListedScenario, ...] | None = None
+        self._scenarios: dict[str, tuple[int, Scenario]] = {}
+
+    @classmethod
+    def below(cls, *libraries: Path) -> ScenarioCache:
+        """Return a cache of all scenarios in these folders of folders."""
+        cache = cls()
+        cache._list = lambda: list_scenarios(libraries, cache._listOne)
+        return cache
+
+    def listed(self) -> tuple[ListedScenario, ...]:
+        """Return the scenarios there are; one that cannot be used says why."""
+        listed = self._listed
+        if listed is None:
+            self._listed = listed = tuple(self._list())
+        return listed
+
+    def _listOne(self, folder: Path) -> ListedScenario:
+        """List a scenario, which takes long, only where one of its files has changed since."""
+        stamp, line = self._lines.get(folder, ((), None))
+        present = _fileStamps(folder)
+        if line is None or stamp != present:
+            line = list_folder(folder)
+            self._lines[folder] = present, line
+        return line
+
+    def refresh(self) -> None:
+        """Look anew at the next question."""
+        self._listed = None
+        self._scenarios.clear()
+
+    def find(self, name: str) -> Scenario:
+        """Return the scenario of that name, which may have come since it was last looked.
+
+        Raises:
+            InputError: there is none, or it cannot be used.
+        """
+        stamp, scenario = self._scenarios.get(name, (0, None))
+        if scenario is None or stamp != _stamp(scenario.folder):
+            self._listed = None
+            folder = self._folder(name)
+            stamp, scenario = _stamp(folder), load_scenario(folder)
+            self._scenarios[name] = stamp, scenario
+        return scenario
+
+    def newName(self, title: str) -> str:
+        """Return the name of a scenario of that title, which is not here yet.
+
+        Raises:
+            InputError: there is one of that name, or no name can be made of the title.
+        """
+        name = scenario_name(title)
+        self._listed = None
+        taken = {entry.name: entry.folder for entry in self.listed()}
+        if name not in taken:
+            return name
+        titles = (f"{title[:LONGEST_STEM]} {number}" for number in count(2))
+        free = next(each for each in titles if scenario_name(each) not in taken)
+        sentence = _(
+            "There is a scenario {name} already: give this one another title, such as {free}."
+        )
+        if taken[name].parent == user_library():
+            sentence = _(
+                "There is a scenario {name} already: give this one another title, such as {free}, "
+                "or first move the folder {folder} elsewhere."
+            )
+        raise InputError(sentence.format(name=name, free=free, folder=taken[name]))
+
+    def _folder(self, name: str) -> Path:
+        for entry in self.listed():
+            if entry.name == name:
+                return entry.folder
+        known = ", ".join(entry.name for entry in self.listed() if not entry.problem) or "none"
+        raise InputError(f"The scenario {json.dumps(name)} is not here; those that are: {known}.")
+
+
+def _stamp(folder: Path) -> int:
+    """Return when a scenario was written, ns; 0 where it is not there."""
+    try:
+        return (folder / FILE_NAME).stat().st_mtime_ns
+    except OSError:
+        return 0
+
+
+def _fileStamps(folder: Path) -> tuple:
+    """Return what tells whether any file of a scenario has changed."""
+    stamps = []
+    for path in sorted(folder.rglob("*")):
+        with contextlib.suppress(OSError):
+            status = path.stat()
+            stamps.append((str(path), status.st_mtime_ns, status.st_size))
+    return tuple(stamps)

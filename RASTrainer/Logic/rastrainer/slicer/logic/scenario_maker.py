@@ -1,0 +1,238 @@
+"""Makes scenarios of volumes in the scene."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rastrainer.errors import InputError
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.progress import Progress
+from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
+from rastrainer.scenario.setup import SetUp, write_setup
+from rastrainer.slicer.head.own_process import in_own_process
+from rastrainer.slicer.logic.head_preview import HeadPreview
+from rastrainer.slicer.logic.scenario_cache import ScenarioCache
+from rastrainer.slicer.logic.scenario_files import planWords
+from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
+from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scene.hand_placed import handPlacedLists
+from rastrainer.slicer.translation import _
+
+if TYPE_CHECKING:
+    from rastrainer.slicer.head.head_body import HeadSettings
+
+MAKE_DRAFT = "rastrainer.slicer.head.head_draft:make_draft"
+SOURCE = "The volume {name} in 3D Slicer."
+
+
+@dataclass(frozen=True)
+class NewScenarioOptions:
+    """What is wanted of a scenario besides its volume.
+
+    Attributes:
+        title: for people; empty takes the volume's name.
+        source: where the images come from; empty names the volume.
+        license: under which the scenario may be used; empty says that nothing is known.
+        threshold: value that parts air from skin; None finds it.
+        cutMm: height (S) of the flat base; None finds it.
+        hasSkull: whether the skull is wanted.
+        hasVolume: whether the scenario carries the images.
+        setUp: how the head stands before the robot.
+        targets: a `vtkMRMLMarkupsFiducialNode` of planned targets, or None.
+        trajectory: a `vtkMRMLMarkupsLineNode` from the entry to the target, or None.
+        isHandPlaced: whether the scene's own point lists of 15 are the tasks, in their order.
+    """
+
+    title: str = ""
+    source: str = ""
+    license: str = ""
+    threshold: float | None = None
+    cutMm: float | None = None
+    hasSkull: bool = True
+    hasVolume: bool = True
+    setUp: SetUp = field(default_factory=SetUp)
+    targets: Any = None
+    trajectory: Any = None
+    isHandPlaced: bool = False
+
+
+@dataclass(frozen=True)
+class _Planned:
+    """What the simulator is asked for.
+
+    Attributes:
+        title: of the scenario.
+        head: makes the head; see `make_draft`.
+        words: arguments of `rastrainer scenario tasks`.
+        warnings: what of the options is left out.
+        folder: of their files.
+    """
+
+    title: str
+    head: Callable[[Progress], tuple[Any, list[str]]]
+    words: list[str]
+    warnings: list[str]
+    folder: Path
+
+
+class ScenarioMaker:
+    """What the panel New scenario does."""
+
+    def __init__(
+        self,
+        scene: Any,
+        simulator: SimulatorLogic,
+        cache: ScenarioCache,
+        library: Path,
+        python: Path,
+    ) -> None:
+        """Make scenarios.
+
+        Args:
+            scene: the scene.
+            simulator: whose program plans the tasks.
+            cache: of the scenarios that there are.
+            library: into which they come, each into a folder of its own.
+            python: runs the process that makes the head.
+        """
+        self._scene = scene
+        self._simulator = simulator
+        self._cache = cache
+        self._library = library
+        self._python = python
+        self._preview = HeadPreview(scene, python)
+
+    def preview(
+        self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
+    ) -> list[str]:
+        """Show the head that is found, and return warnings, one sentence each.
+
+        The Segment Editor may change its segment; `make` then takes it as it is. Arguments are
+        those of `make`.
+
+        Raises:
+            InputError: there is no head in the volume.
+        """
+        return self._preview.show(_chosen(volumeNode), _settings(options), progress)
+
+    def make(
+        self,
+        volumeNode: Any,
+        options: NewScenarioOptions,
+        progress: Progress,
+        ownProgram: str = "",
+    ) -> tuple[Scenario, list[str]]:
+        """Make a scenario in the library and return it with warnings, one sentence each.
+
+        Args:
+            volumeNode: T1-weighted MRI or CT of a head; the segment that `preview` has made of it
+                is taken where there is one.
+            options: what else is wanted.
+            progress: called with each step and the share of the work done, many times a second; it
+                may let the application draw, and may raise to cancel: then nothing is left behind.
+            ownProgram: a `rastrainer` installed elsewhere; that of the simulator where empty.
+
+        Raises:
+            InputError: something cannot be used; the sentence says what.
+        """
+        from rastrainer.slicer.head.scenario_build import build_scenario
+
+        with self._planned(volumeNode, options) as planned:
+            folder = self._library / self._cache.newName(planned.title)
+            command = self._simulator.command([], ownProgram)
+            scenario, warnings = build_scenario(
+                planned.head, folder, planned.words, command, progress
+            )
+        self._preview.hide(volumeNode)
+        self._cache.refresh()
+        return scenario, [*planned.warnings, *warnings]
+
+    def check(
+        self,
+        volumeNode: Any,
+        options: NewScenarioOptions,
+        progress: Progress,
+        ownProgram: str = "",
+    ) -> list[str]:
+        """Find out whether set-up, plan and fiducials can be used, and make nothing of them.
+
+        Arguments, warnings and errors are those of `make`.
+        """
+        from rastrainer.slicer.head.scenario_build import plan_scenario
+
+        with self._planned(
+            volumeNode, replace(options, hasSkull=False, hasVolume=False)
+        ) as planned:
+            command = self._simulator.command([], ownProgram)
+            words = [*planned.words, "--check"]
+            warnings = plan_scenario(
+                planned.head, planned.folder / "none", words, command, progress
+            )
+        return [*planned.warnings, *warnings]
+
+    @contextmanager
+    def _planned(self, volumeNode: Any, options: NewScenarioOptions) -> Iterator[_Planned]:
+        """Yield what the simulator is asked for; its files are there as long as the context."""
+        from rastrainer.slicer.head.volume import image_of_node
+
+        image, settings = image_of_node(_chosen(volumeNode)), _settings(options)
+        segment = self._preview.segment(volumeNode, settings)
+        title = options.title.strip() or volumeNode.GetName()
+        source = options.source.strip() or SOURCE.format(name=volumeNode.GetName())
+        terms = options.license.strip() or UNKNOWN_LICENSE
+        words = [f"--title={title}", f"--source={source}", f"--license={terms}"]
+        lists: list[Any] = []
+        leftOut: list[str] = []
+        if options.isHandPlaced:
+            lists, leftOut = handPlacedLists(self._scene, options.targets)
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            yield _Planned(
+                title,
+                lambda report: in_own_process(
+                    self._python,
+                    MAKE_DRAFT,
+                    report,
+                    image,
+                    settings,
+                    options.hasSkull,
+                    segment=segment,
+                    has_volume=options.hasVolume,
+                ),
+                [*words, *self._words(options, folder), *_tasks(lists, folder)],
+                leftOut,
+                folder,
+            )
+
+    def _words(self, options: NewScenarioOptions, folder: Path) -> tuple[str, ...]:
+        """Return the arguments of `rastrainer scenario tasks`; files go into `folder`."""
+        setUp = folder / "setup.json"
+        write_setup(setUp, options.setUp)
+        words = ["--setup", str(setUp)]
+        return (*words, *planWords(options.targets, options.trajectory))
+
+
+def _chosen(volumeNode: Any) -> Any:
+    if volumeNode is None:
+        raise InputError(_("Choose a volume first."))
+    return volumeNode
+
+
+def _settings(options: NewScenarioOptions) -> HeadSettings:
+    from rastrainer.slicer.head.head_body import HeadSettings
+
+    return HeadSettings(threshold=options.threshold, base_mm=options.cutMm)
+
+
+def _tasks(lists: list[Any], folder: Path) -> list[str]:
+    """Return the arguments for fiducials that are placed by hand, whose files go into `folder`."""
+    paths = [folder / f"task-{index}.mrk.json" for index in range(len(lists))]
+    for path, node in zip(paths, lists, strict=True):
+        write_markups(path, PointList(labelsOf(node), worldPoints(node)))
+    return ["--tasks", *map(str, paths)] if paths else []

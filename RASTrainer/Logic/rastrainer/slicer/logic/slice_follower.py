@@ -1,0 +1,108 @@
+"""Keeps the slice views where something happens: at the next point of a trial, or at the tool."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rastrainer import transforms
+from rastrainer.protocol import OPEN_PHASES, DeviceName
+from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
+from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scene.registration_nodes import matrixOf
+from rastrainer.slicer.scene.scene import CONTENT_ATTRIBUTE, TASK_ATTRIBUTE, Role, findNode
+from rastrainer.slicer.scene.views import jumpTo
+
+TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
+LEAST_MOVE_MM = 0.5
+PERIOD_S = 0.1
+"""Between two jumps after the tool: each renders all slice views."""
+
+
+class SliceFollower:
+    """Moves the slices as far as they must to go through a place; where they look stays.
+
+    Attributes:
+        showsNextPoint: whether they jump to each point that is to be touched next.
+        followsTool: whether they stay at the tip of the tool, in the place of the next point.
+    """
+
+    def __init__(
+        self, scene: Any, training: TrainingLogic, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.showsNextPoint = True
+        self.followsTool = False
+        self._scene = scene
+        self._training = training
+        self._clock = clock
+        self._shownPoint: tuple[str, ...] = ()
+        self._place: np.ndarray | None = None
+        self._lastJump = -PERIOD_S
+
+    def show(self, place: ArrayLike) -> None:
+        """Show a place, (3,) float, RAS mm."""
+        self._place = np.array(place, dtype=float)
+        self._lastJump = self._clock()
+        jumpTo(self._scene, self._place.tolist())
+
+    def showAgain(self) -> None:
+        """Show the place that was shown last, after the views were moved."""
+        if self._place is not None:
+            self.show(self._place)
+
+    def process(self) -> None:
+        """Follow what has moved; called about ten times a second."""
+        if self.followsTool:
+            self._shownPoint = ()
+            self._followTool()
+        elif self.showsNextPoint:
+            self._showNextPoint()
+
+    def _followTool(self) -> None:
+        tip = toolTip(self._scene)
+        if tip is None or self._clock() < self._lastJump + PERIOD_S:
+            return
+        if self._place is None or np.linalg.norm(tip - self._place) >= LEAST_MOVE_MM:
+            self.show(tip)
+
+    def _showNextPoint(self) -> None:
+        status = self._training.progress
+        fixed = findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS)
+        point = _nextPoint(status, fixed)
+        if point == self._shownPoint:
+            return
+        self._shownPoint = point
+        if point and status.nextPoint in labelsOf(fixed):
+            self.show(worldPoints(fixed)[labelsOf(fixed).index(status.nextPoint)])
+
+
+def toolTip(scene: Any) -> np.ndarray | None:
+    """Return where the tip of the tool is on the head, (3,) float, RAS mm.
+
+    None where nothing is known of it, or of where the head is.
+    """
+    pose = findNode(scene, TRANSFORM, DeviceName.TOOL_TIP_TO_WORLD)
+    toHead = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
+    if pose is None or toHead is None:
+        return None
+    tipToWorld = matrixOf(pose)
+    if np.array_equal(tipToWorld, np.eye(4)):
+        return None  # No pose has come yet.
+    return transforms.apply(matrixOf(toHead), tipToWorld[:3, 3])
+
+
+def _nextPoint(status: TrialStatus, fixed: Any | None) -> tuple[str, ...]:
+    """Return what tells the next point of a running trial from others; empty where none is shown.
+
+    The fiducials of a trial that has just begun come a moment later than its first point.
+    """
+    if fixed is None or status.phase not in OPEN_PHASES or not status.nextPoint:
+        return ()
+    task = fixed.GetAttribute(TASK_ATTRIBUTE) or ""
+    if not task.endswith(f"/{status.task}"):
+        return ()
+    return (task, fixed.GetAttribute(CONTENT_ATTRIBUTE) or "", status.nextPoint)

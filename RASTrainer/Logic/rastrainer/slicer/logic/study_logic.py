@@ -1,0 +1,290 @@
+"""Leads each trainee through the study's protocol: what comes next, and what became of it."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.practice_watch import PracticeWatch
+from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.slicer.logic.training_logic import TrainingLogic
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.progress import Progress
+from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
+from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+
+TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
+
+
+class StudyLogic:
+    """What the Study panel does for the chosen trainee, and leading everybody who is enrolled.
+
+    All that is done stands in the study's file before anyone is informed, so that whoever opens it
+    again resumes where the trainee was. The simulator is sent what comes next for each trainee,
+    whoever is chosen here, so that its own menu begins nothing else. Trial runs and breaks end by
+    themselves; `process` is to be called about ten times a second.
+
+    Attributes:
+        changed: emits nothing, whenever a step may have been done.
+    """
+
+    def __init__(
+        self,
+        trainees: TraineeLogic,
+        training: TrainingLogic,
+        link: Link,
+        now: Callable[[], datetime] = lambda: datetime.now(timezone.utc),
+    ) -> None:
+        self.changed = Signal()
+        self._trainees = trainees
+        self._training = training
+        self._link = link
+        self._now = now
+        self._sentSteps: dict[str, StudyStep] = {}
+        self._ledStudy: Study | None = None
+        self._breaks: dict[str, datetime] = {}
+        self._watch = PracticeWatch(trainees, training, link, self._leadAgain)
+        trainees.changed.connect(self._followTrainees)
+        link.opened.connect(self._sendAll)
+        link.stepAnswered.connect(self._takeAnswers)
+
+    def close(self) -> None:
+        """Stop listening, and keep what was practiced last."""
+        self._trainees.changed.disconnect(self._followTrainees)
+        self._link.opened.disconnect(self._sendAll)
+        self._link.stepAnswered.disconnect(self._takeAnswers)
+        self._watch.close()
+
+    def process(self) -> None:
+        """End the breaks whose time is over."""
+        now = self._now()
+        for name in [name for name, end in self._breaks.items() if now >= end]:
+            del self._breaks[name]
+            with contextlib.suppress(InputError):
+                study = StudyProgress(self._trainees.study)
+                progress = study.progress(name)
+                minutes = progress.minutes_over(now)
+                if progress.next_step is not None:
+                    study.finish(name, progress.next_step.name, {"minutes": minutes})
+            self._leadOn(name)
+
+    def protocol(self) -> StudyProtocol | None:
+        """Return the study's protocol; None where trainees practice freely."""
+        return StudyProgress(self._trainees.study).protocol()
+
+    def begin(self, path: Path) -> StudyProtocol:
+        """Make a file's protocol that of the study, for good.
+
+        Raises:
+            InputError: the file is no protocol, or the study has another one.
+        """
+        protocol = read_study_protocol(path)
+        StudyProgress(self._trainees.study).begin(protocol)
+        self.changed.emit()
+        return protocol
+
+    def enroll(self) -> int:
+        """Give the chosen trainee the first free place in the study's order; the first is 0.
+
+        Raises:
+            InputError: nobody is chosen, or the study has no protocol.
+        """
+        if not self._trainees.chosen:
+            raise InputError(_("Choose a trainee in the section Trainees first."))
+        place = StudyProgress(self._trainees.study).enroll(self._trainees.chosen)
+        self._leadOn(self._trainees.chosen)
+        return place
+
+    def progress(self) -> Progress | None:
+        """Return where the chosen trainee stands; None for one who practices freely."""
+        name = self._trainees.chosen
+        study = StudyProgress(self._trainees.study)
+        if not name or study.protocol() is None or name not in study.enrolled():
+            return None
+        return study.progress(name)
+
+    def minutesOver(self, progress: Progress) -> float:
+        """Return how much of the chosen trainee's trial run or break is over; min."""
+        step, minutes = progress.next_step, progress.minutes_over(self._now())
+        if step is None or step.kind is not StepKind.TRIAL_RUN:
+            return minutes
+        return minutes + self._watch.unsavedS(self._trainees.chosen, step.mode) / 60.0
+
+    def startTrial(self, task: str, mode: str) -> None:
+        """Start a trial for the chosen trainee, unless the study asks for something else first.
+
+        Raises:
+            InputError: it does, or no trainee or task is chosen.
+        """
+        if self.protocol() is not None and self._trainees.chosen:
+            self._progress().check_start(mode, task)
+        self._training.start(self._trainees.chosen, task, mode)
+
+    def offProtocolSentence(self) -> str:
+        """Return a sentence while an enrolled trainee plays what the study has not asked for."""
+        trial = self._training.progress
+        if not trial.isOpen or trial.trainee not in StudyProgress(self._trainees.study).enrolled():
+            return ""
+        try:
+            progress = StudyProgress(self._trainees.study).progress(trial.trainee)
+            if progress.unexplained:
+                return _(
+                    "{trainee} plays an aborted trial again: it will count once there is a reason."
+                ).format(trainee=trial.trainee)
+            progress.check_start(trial.mode, trial.task)
+        except InputError:
+            return _(
+                "{trainee} plays {task} in the mode {mode}, which the study does not ask for now: "
+                "it will not count."
+            ).format(trainee=trial.trainee, task=trial.task, mode=trial.mode)
+        return ""
+
+    def startStep(self) -> None:
+        """Start the trial that comes next.
+
+        Raises:
+            InputError: no trial comes next.
+        """
+        step = self._next()
+        if step.kind not in TRIALS:
+            raise InputError(_("No trial comes next. {step}").format(step=step.sentence))
+        self.startTrial(step.task, step.mode)
+
+    def answer(self, answers: Sequence[int]) -> None:
+        """Keep the answers of the questionnaire that comes next.
+
+        Raises:
+            InputError: none comes next, or an answer is missing.
+        """
+        step = self._next()
+        details = {"answers": list(answers)}
+        StudyProgress(self._trainees.study).finish(self._trainees.chosen, step.name, details)
+        self._leadOn(self._trainees.chosen)
+
+    def skipStep(self, reason: str) -> None:
+        """Leave the next step out, for a reason that goes into the report.
+
+        Raises:
+            InputError: there is no reason of ten characters.
+        """
+        self._watch.keep()
+        step = self._next()
+        StudyProgress(self._trainees.study).skip(self._trainees.chosen, step.name, reason)
+        self._leadOn(self._trainees.chosen)
+
+    def explainRepeat(self, reason: str) -> None:
+        """Say why the next step is played again after it was aborted; it goes into the report.
+
+        Raises:
+            InputError: it was not aborted, or there is no reason of ten characters.
+        """
+        self._progress()
+        StudyProgress(self._trainees.study).explain_repeat(self._trainees.chosen, reason)
+        self._leadOn(self._trainees.chosen)
+
+    def countAborted(self, trial: AbortedTrial) -> None:
+        """Lead the trainee of an aborted trial that has just been stored: it may need a reason."""
+        self._leadOn(trial.trainee)
+
+    def countTrial(self, record: TrialRecord) -> None:
+        """Count a trial that has just been stored, if it is what the study asks its trainee for."""
+        self._leadOn(record.trainee)
+
+    def _progress(self) -> Progress:
+        progress = self.progress()
+        if progress is None:
+            raise InputError(_("Enroll the trainee in the study first."))
+        return progress
+
+    def _next(self) -> Step:
+        step = self._progress().next_step
+        if step is None:
+            raise InputError(_("All steps of the study are done."))
+        return step
+
+    def _takeAnswers(self, value: Mapping[str, Any]) -> None:
+        """Keep what was answered at the simulator, which repeats it until another step is sent."""
+        try:
+            answers = StepAnswers.from_json(value)
+            study = StudyProgress(self._trainees.study)
+            if answers.trainee not in study.enrolled():
+                return
+            progress = study.progress(answers.trainee)
+            step = progress.next_step
+            isAsked = answers.belong_to(StudyStep.of(answers.trainee, progress, self._now()))
+            if isAsked and step is not None:
+                study.finish(answers.trainee, step.name, {"answers": answers.answers})
+        except InputError as error:
+            logging.error("What was answered at the simulator is not kept: %s", error)
+        else:
+            self._leadAgain(answers.trainee)
+
+    def _leadOn(self, name: str) -> None:
+        """Lead one trainee, of whom something is new, and let all see it."""
+        with contextlib.suppress(InputError):
+            if name in StudyProgress(self._trainees.study).enrolled():
+                self._lead(name)
+        self.changed.emit()
+
+    def _leadAgain(self, name: str) -> None:
+        """Lead one trainee, and send the simulator even what it knows already."""
+        self._sentSteps.pop(name, None)
+        self._leadOn(name)
+
+    def _followTrainees(self) -> None:
+        """Lead the chosen trainee and who is new, or everybody where it is another study."""
+        # The section Trainees shows what is wrong with the study.
+        with contextlib.suppress(InputError):
+            enrolled = StudyProgress(self._trainees.study).enrolled()
+            for name in [name for name in self._sentSteps if name not in enrolled]:
+                self._send(StudyStep(name))
+                del self._sentSteps[name]
+                self._breaks.pop(name, None)
+            isSame = self._trainees.study is self._ledStudy
+            self._ledStudy = self._trainees.study
+            known = self._sentSteps.keys() - {self._trainees.chosen} if isSame else ()
+            for name in [name for name in enrolled if name not in known]:
+                with contextlib.suppress(InputError):
+                    self._lead(name)
+        self.changed.emit()
+
+    def _sendAll(self) -> None:
+        """Send the simulator, which may know nothing yet, what comes next for everybody."""
+        self._sentSteps.clear()
+        self._followTrainees()
+
+    def _lead(self, name: str) -> None:
+        """Count the trials of a trainee that have arrived, and send what comes next if it is new.
+
+        Raises:
+            InputError: the study cannot be read.
+        """
+        progress = StudyProgress(self._trainees.study).count_played(name)
+        self._noteBreak(name, progress)
+        step = StudyStep.of(name, progress, self._now())
+        if self._sentSteps.get(name) != step:
+            self._sentSteps[name] = step
+            self._send(step)
+
+    def _noteBreak(self, name: str, progress: Progress) -> None:
+        self._breaks.pop(name, None)
+        end = progress.break_end
+        if end is not None:
+            self._breaks[name] = end
+
+    def _send(self, step: StudyStep) -> None:
+        # Without a connection nothing is sent; whoever connects is sent everything.
+        self._link.send(CommandName.STUDY_STEP, step.arguments())

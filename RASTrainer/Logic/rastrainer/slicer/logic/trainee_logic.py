@@ -1,0 +1,205 @@
+"""The trainees of a study: who they are, what they have done, and their deletion."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.export.tidy_csv import write_histories, write_history
+from rastrainer.export.trainee_data import Erasure, erase_trainee, export_trainee
+from rastrainer.progress import Progress
+from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.signal import Signal
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.study import StoredTrial, Study, StudyBusyError, Trainee
+from rastrainer.study.tre_calibration import TreCalibration, calibration_of
+
+LOOK_EVERY_S = 1.0
+
+
+class TraineeLogic:
+    """What the Trainees panel does, on a study that is opened when it is first needed.
+
+    Attributes:
+        changed: emits nothing, whenever trainees or their trials may have changed.
+        chosen: pseudonym of the chosen trainee, empty where none is.
+    """
+
+    def __init__(
+        self,
+        openStudy: Callable[[], Study],
+        records: Path,
+        openPatiently: Callable[[], Study] | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Keep the trainees of a study.
+
+        Args:
+            openStudy: opens the study.
+            records: folder of the simulator's journals, if it is on this computer.
+            openPatiently: opens it in any thread, which may wait for a lock; as `openStudy` when
+                left out.
+            clock: seconds.
+        """
+        self._openPatiently = openPatiently or openStudy
+        self.changed = Signal()
+        self.chosen = ""
+        self._openStudy = openStudy
+        self._records = records
+        self._study: Study | None = None
+        self._clock = clock
+        self._lastLook = clock()
+        self._version: int | None = None
+
+    @property
+    def study(self) -> Study:
+        """The study.
+
+        Raises:
+            InputError: it cannot be opened.
+        """
+        if self._study is None:
+            self._study = self._openStudy()
+            self._version = self._study.database.version()
+        return self._study
+
+    def reopen(self) -> None:
+        """Continue with the study that is to be opened now, such as another file."""
+        self.close()
+        self.chosen = ""
+        self.changed.emit()
+
+    def close(self) -> None:
+        """Close the study; it is opened again when it is needed."""
+        if self._study is not None:
+            self._study.close()
+            self._study = self._version = None
+
+    def hasChangedElsewhere(self) -> bool:
+        """Tell, about once a second, whether somebody else has changed the study meanwhile.
+
+        Another Slicer may work with the same file; nobody waits for it here.
+        """
+        now = self._clock()
+        if self._study is None or now - self._lastLook < LOOK_EVERY_S:
+            return False
+        self._lastLook = now
+        version, before = self._study.database.version(), self._version
+        self._version = version or before
+        return version is not None and version != before
+
+    def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
+        """Return those who train, and the archived ones too where asked for, by pseudonym."""
+        listed = self.study.trainees()
+        return (*listed, *self.study.trainees(archived=True)) if archived else listed
+
+    def choose(self, pseudonym: str) -> None:
+        """Choose a trainee, or nobody by an empty pseudonym."""
+        if pseudonym != self.chosen:
+            self.chosen = pseudonym
+            self.changed.emit()
+
+    def chosenTrainee(self) -> Trainee | None:
+        """Return who is chosen; None where nobody is, or no longer there.
+
+        Raises:
+            StudyBusyError: another program has the study locked.
+        """
+        if not self.chosen:
+            return None
+        try:
+            return self.study.trainee(self.chosen)
+        except StudyBusyError:
+            raise
+        except InputError:
+            return None
+
+    def create(self, pseudonym: str, consent: bool) -> Trainee:
+        """Add a trainee, under the next free pseudonym where none is given, and choose them.
+
+        Raises:
+            InputError: the pseudonym is taken or cannot be one.
+        """
+        trainee = self.study.create_trainee(pseudonym.strip() or None, consent)
+        self.chosen = trainee.pseudonym
+        self.changed.emit()
+        return trainee
+
+    def setConsent(self, consent: bool) -> None:
+        """Note whether the chosen trainee agrees to research."""
+        self.study.set_consent(self.chosen, consent)
+        self.changed.emit()
+
+    def setArchived(self, archived: bool) -> None:
+        """Archive the chosen trainee, or bring them back."""
+        self.study.set_archived(self.chosen, archived)
+        self.changed.emit()
+
+    def delete(self) -> Erasure:
+        """Delete the chosen trainee with all trials and journals, for good; return what was."""
+        records = self._records if self._records.is_dir() else None
+        erased = erase_trainee(self.study, self.chosen, records)
+        self.chosen = ""
+        self.changed.emit()
+        return erased
+
+    def export(self, path: Path) -> int:
+        """Write everything about the chosen trainee into a JSON file; return the trials' number."""
+        return export_trainee(self.study, self.chosen, path)
+
+    def exportHistory(self, path: Path) -> int:
+        """Write the trials of the chosen trainee as a CSV file; return their number.
+
+        Aborted ones go into a second file beside it, see `write_history`.
+        """
+        return write_history(self.study, [self.chosen], path)
+
+    def exportHistories(
+        self, path: Path, progress: Progress = lambda _step, _share: None
+    ) -> tuple[int, int]:
+        """Write the trials of all who agreed to research as a CSV file.
+
+        Args:
+            path: of the file.
+            progress: called many times a second meanwhile; it may let the application draw.
+
+        Returns:
+            The number of trials, and of the trainees who are left out.
+
+        Raises:
+            InputError: nobody agreed, or the file cannot be written.
+        """
+
+        def write(_tell: Progress) -> tuple[int, int]:
+            with self._openPatiently() as study:
+                return write_histories(study, path)
+
+        return inBackground(write, progress)
+
+    def calibration(self, progress: Progress = lambda _step, _share: None) -> TreCalibration:
+        """Return true against expected TRE of all trials of the study, of whomever they are.
+
+        Args:
+            progress: called many times a second meanwhile; it may let the application draw.
+
+        Raises:
+            InputError: the study cannot be read.
+        """
+
+        def read(_tell: Progress) -> TreCalibration:
+            with self._openPatiently() as study:
+                everyone = (*study.trainees(), *study.trainees(archived=True))
+                histories = (study.history(trainee.pseudonym) for trainee in everyone)
+                return calibration_of(trial for history in histories for trial in history)
+
+        return inBackground(read, progress)
+
+    def aborted(self) -> tuple[StoredAborted, ...]:
+        """Return the aborted trials of the chosen trainee in the order they were started."""
+        return AbortedTrials(self.study).of(self.chosen) if self.chosenTrainee() else ()
+
+    def history(self) -> tuple[StoredTrial, ...]:
+        """Return the trials of the chosen trainee in the order they were started."""
+        return self.study.history(self.chosen) if self.chosenTrainee() else ()

@@ -1,0 +1,184 @@
+"""Starts and steers trials from Slicer, and shows the scene of the trial that is being played."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, CommandName, Phase
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.registration_nodes import showPlannedPlace
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.trial_scene import forgetStoredTouches, noteTouchedTask
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+
+
+@dataclass(frozen=True)
+class TrialStatus:
+    """Where the simulator's trial stands.
+
+    Attributes:
+        phase: of the trial, `idle` where there is none.
+        trainee: pseudonym.
+        task: name.
+        mode: `desktop` or `hmd`.
+        nextPoint: label of the fiducial to touch, empty where there is none.
+        touched: how many points are kept.
+        elapsedS: the trial's time, pauses left out.
+        clearanceMm: signed distance of the tool to the head; None where it is not known.
+        proximity: `free`, `proximity` or `contact`.
+        instruction: what the trainee reads.
+    """
+
+    phase: str = Phase.IDLE.value
+    trainee: str = ""
+    task: str = ""
+    mode: str = ""
+    nextPoint: str = ""
+    touched: int = 0
+    elapsedS: float = 0.0
+    clearanceMm: float | None = None
+    proximity: str = ""
+    instruction: str = ""
+
+    @property
+    def isOpen(self) -> bool:
+        """Whether a trial is being played, paused, or waits to be registered."""
+        return self.phase in OPEN_PHASES
+
+    @property
+    def total(self) -> int:
+        """How many points a trial has."""
+        return FIDUCIAL_COUNT
+
+
+class TrainingLogic:
+    """What the Training panel does; answers come by a later `process` of the link.
+
+    Attributes:
+        changed: emits nothing, whenever `progress` has changed.
+        answered: emits the sentence of a command that was refused, empty where it was accepted.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        link: Link,
+        findScenario: Callable[[str], Scenario],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.changed = Signal()
+        self.answered = Signal()
+        self._scene = scene
+        self._link = link
+        self._findScenario = findScenario
+        self._clock = clock
+        self._state: Mapping[str, Any] = {}
+        self._stateTime = 0.0
+        self._shownTrial = ""
+        link.stateChanged.connect(self._follow)
+        link.pointsChanged.connect(self._emitChange)
+
+    def close(self) -> None:
+        """Stop listening to the link."""
+        self._link.stateChanged.disconnect(self._follow)
+        self._link.pointsChanged.disconnect(self._emitChange)
+
+    @property
+    def progress(self) -> TrialStatus:
+        """Where the trial stands now; its time goes on between two messages."""
+        state = self._state
+        elapsed = _number(state.get("elapsedS")) or 0.0
+        if state.get("phase") == Phase.RUNNING.value:
+            elapsed += self._clock() - self._stateTime
+        return TrialStatus(
+            phase=str(state.get("phase", Phase.IDLE.value)),
+            trainee=str(state.get("trainee", "")),
+            task=str(state.get("task", "")),
+            mode=str(state.get("mode", "")),
+            nextPoint=str(state.get("nextPoint") or ""),
+            touched=capturedPointsNode(self._scene).GetNumberOfControlPoints() if state else 0,
+            elapsedS=elapsed,
+            clearanceMm=_number(state.get("clearanceMm")),
+            proximity=str(state.get("proximity", "")),
+            instruction=str(state.get("instruction", "")),
+        )
+
+    def start(self, trainee: str, task: str, mode: str) -> None:
+        """Start a trial.
+
+        Raises:
+            InputError: no trainee or no task is chosen.
+        """
+        if not trainee:
+            raise InputError(_("Choose a trainee in the section Trainees first."))
+        if not task:
+            raise InputError(_("Choose a task first."))
+        self._send(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": mode})
+
+    def pauseOrResume(self) -> None:
+        """Pause the trial, or resume it."""
+        isPaused = self._state.get("phase") == Phase.PAUSED.value
+        self._send(CommandName.RESUME if isPaused else CommandName.PAUSE)
+
+    def abort(self) -> None:
+        """End the trial; it is not registered."""
+        self._send(CommandName.ABORT)
+
+    def loadScenario(self, folder: str) -> None:
+        """Load another scenario into the simulator, between two trials."""
+        self._send(CommandName.LOAD_SCENARIO, {"folder": folder}, timeoutS=30.0)
+
+    def _send(
+        self, name: str, arguments: Mapping[str, Any] | None = None, timeoutS: float = 5.0
+    ) -> None:
+        self._link.send(
+            name, arguments, lambda reply: self.answered.emit(reply.error), timeoutS=timeoutS
+        )
+
+    def _follow(self, state: Mapping[str, Any]) -> None:
+        self._state, self._stateTime = state, self._clock()
+        trial = str(state.get("trialId", ""))
+        if state.get("phase") in OPEN_PHASES and trial != self._shownTrial:
+            self._shownTrial = trial
+            forgetStoredTouches(self._scene)
+            self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
+        self.changed.emit()
+
+    def _showTrialScene(self, reply: Reply) -> None:
+        """Show head and fiducials of the trial that runs, so that touches appear on them."""
+        if self._state.get("phase") not in OPEN_PHASES:
+            return
+        if not reply.ok:
+            self._shownTrial = ""
+            return
+        try:
+            scenario = self._findScenario(str(reply.data.get("scenario", "")))
+            showScenario(self._scene, scenario)
+            fixed = showTask(self._scene, scenario, str(self._state.get("task", "")))
+        except InputError as error:
+            self.answered.emit(str(error))
+            return
+        noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")))
+        showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
+        self.changed.emit()
+
+    def forgetScene(self) -> None:
+        """Show the running trial's scene again: the scene was cleared."""
+        self._shownTrial = ""
+        if self._state:
+            self._follow(self._state)
+
+    def _emitChange(self, _node: Any) -> None:
+        self.changed.emit()
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if isinstance(value, (int, float)) and value is not True else None

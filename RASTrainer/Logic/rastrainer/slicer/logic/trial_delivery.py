@@ -1,0 +1,172 @@
+"""Trials that the simulator delivers: stored one by one in the background, then acknowledged.
+
+Nothing is lost and nothing counts twice: the simulator offers a trial until it is acknowledged, and
+it is acknowledged only when it is in the study.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any, Generic, TypeVar
+
+from rastrainer.protocol import CommandName
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import DeletedTrialError, Study
+from rastrainer.trial.aborted_trial import AbortedTrial
+
+T = TypeVar("T")
+Delivery = Mapping[str, Any]
+"""The record of a trial as it was delivered, not yet checked."""
+
+MOST_WAITING = 32
+"""Trials that wait to be stored; a simulator that has more offers them again."""
+
+
+class DeliveryQueue(Generic[T]):
+    """Stores the trials that a signal delivers, in their order.
+
+    Attributes:
+        problemFound: emits a sentence about a trial that was not stored, or not scored.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        delivered: Signal,
+        work: BackgroundWork,
+        store: Callable[[Delivery], Callable[[], T]],
+        accept: Callable[[T], None],
+        refusal: str,
+        tooMany: str = "",
+    ) -> None:
+        """Take in what is delivered from now on.
+
+        Args:
+            link: to the simulator.
+            delivered: signal of the link that emits each delivery.
+            work: in which trials are stored.
+            store: returns what stores a delivery, called in the background.
+            accept: is given what that has returned, once the trial is acknowledged.
+            refusal: sentence about a trial that was not stored, with a place for its `{error}`.
+            tooMany: sentence where too many trials wait; without it nothing is said.
+        """
+        self.problemFound = Signal()
+        self._link = link
+        self._delivered = delivered
+        self._work = work
+        self._store = store
+        self._accept = accept
+        self._refusal = refusal
+        self._tooMany = tooMany
+        self._waiting: deque[Delivery] = deque()
+        self._isStoring = False
+        self._lastProblem = ""
+        delivered.connect(self._receive)
+
+    def close(self) -> None:
+        """Stop listening to the link, and begin nothing more."""
+        self._delivered.disconnect(self._receive)
+        self.forgetWaiting()
+
+    def forgetWaiting(self) -> None:
+        """Leave undone what has not begun: the simulator offers it again, for another study."""
+        self._waiting.clear()
+
+    def report(self, sentence: str) -> None:
+        """Report a problem once, though the trial is offered every two seconds."""
+        if sentence and sentence != self._lastProblem:
+            self._lastProblem = sentence
+            self.problemFound.emit(sentence)
+
+    def _receive(self, delivery: Delivery) -> None:
+        """Let a delivered trial wait for its turn; what is left out is offered again."""
+        trialId = delivery.get("trialId")
+        if any(waiting.get("trialId") == trialId for waiting in self._waiting):
+            return
+        if len(self._waiting) >= MOST_WAITING:
+            self.report(self._tooMany)
+            return
+        self._waiting.append(delivery)
+        self._storeNext()
+
+    def _storeNext(self) -> None:
+        if self._isStoring or not self._waiting:
+            return
+        self._isStoring = True
+        delivery = self._waiting[0]
+        self._work.do(
+            self._store(delivery),
+            lambda stored: self._finish(delivery, lambda: self._take(delivery, stored)),
+            lambda error: self._finish(delivery, lambda: self._refuse(delivery, error)),
+        )
+
+    def _finish(self, delivery: Delivery, conclude: Callable[[], None]) -> None:
+        self._isStoring = False
+        if self._waiting and self._waiting[0] is delivery:
+            self._waiting.popleft()
+        try:
+            conclude()
+        finally:
+            self._storeNext()
+
+    def _take(self, delivery: Delivery, stored: T) -> None:
+        self._acknowledge(delivery)
+        self._accept(stored)
+
+    def _refuse(self, delivery: Delivery, error: Exception) -> None:
+        if isinstance(error, DeletedTrialError):
+            # Its trainee was deleted for good: it must not be offered for ever.
+            self._acknowledge(delivery)
+        else:
+            self.report(self._refusal.format(error=error))
+
+    def _acknowledge(self, delivery: Delivery) -> None:
+        self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": delivery["trialId"]})
+
+
+class AbortedTrialsLogic:
+    """Stores the aborted trials that a link hands over.
+
+    Attributes:
+        kept: emits each `AbortedTrial` that comes in, once it is in the study.
+        problemFound: emits a sentence about one that could not be kept.
+    """
+
+    def __init__(self, link: Link, openStudy: Callable[[], Study], work: BackgroundWork) -> None:
+        """Take in the trials of a link.
+
+        Args:
+            link: to the simulator.
+            openStudy: opens the study, in any thread; it may wait for a lock there.
+            work: in which trials are kept.
+        """
+        self.kept = Signal()
+        self._openStudy = openStudy
+        self._queue: DeliveryQueue[AbortedTrial] = DeliveryQueue(
+            link,
+            link.trialAborted,
+            work,
+            lambda delivery: lambda: self._keep(delivery),
+            self.kept.emit,
+            _("An aborted trial could not be kept: {error}"),
+        )
+        self.problemFound = self._queue.problemFound
+
+    def close(self) -> None:
+        """Stop listening to the link, and begin nothing more."""
+        self._queue.close()
+
+    def forgetWaiting(self) -> None:
+        """Leave undone what has not begun: the simulator offers it again, for another study."""
+        self._queue.forgetWaiting()
+
+    def _keep(self, delivery: Delivery) -> AbortedTrial:
+        record = AbortedTrial.from_json(delivery)
+        with self._openStudy() as study:
+            AbortedTrials(study).add(record, delivery)
+        return record

@@ -1,0 +1,225 @@
+"""What happens when a finished trial arrives: registered, kept, acknowledged, scored, one by one.
+
+Checking, registering, scoring and storing is done in the background; the scene and the link are the
+main thread's.
+
+Nothing is lost and nothing counts twice, whatever is cut on the way. The simulator offers a trial
+until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
+without its truth is scored again over the next connection.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+from rastrainer.protocol import OPEN_PHASES
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.trial_delivery import Delivery, DeliveryQueue
+from rastrainer.slicer.logic.trial_scoring import TrialScoring
+from rastrainer.slicer.main_turn import giveWay
+from rastrainer.slicer.scene.trial_scene import showTrial
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+from rastrainer.study.database.study import Study
+from rastrainer.study.trial_review import DeliveredTrial, review, store_delivered
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.ctps import Trial
+from rastrainer.trial.record import TrialRecord
+
+
+class _Scoring(Enum):
+    """Where the scoring of a trial stands; it is begun again where neither is known."""
+
+    UNDER_WAY = "under way"
+    DONE = "done"
+
+
+class TrialLogic:
+    """Takes in the trials that a link hands over.
+
+    Attributes:
+        trialKept: emits each `TrialRecord` that comes in, once it is in the study.
+        trialScored: emits each `TrialAnalysis` with truth and score, once they are in the study.
+        problemFound: emits a sentence about a trial that could not be kept or scored.
+        received: UUIDs of the trials that came in and are safe, in their order.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        link: Link,
+        findScenario: Callable[[str], Scenario],
+        openStudy: Callable[[], Study],
+        work: BackgroundWork,
+        cohort: Sequence[Trial] = (),
+        records: Path | None = None,
+    ) -> None:
+        """Take in the trials of a link.
+
+        Args:
+            scene: the scene.
+            link: to the simulator.
+            findScenario: gives the scenario of a name, in any thread.
+            openStudy: opens the study, in any thread; it may wait for a lock there.
+            work: in which trials are scored and kept.
+            cohort: what CTPS compares with.
+            records: folder of the simulator's journals, if it is on this computer.
+        """
+        self.trialKept = Signal()
+        self.trialScored = Signal()
+        self.received: list[str] = []
+        self._scene = scene
+        self._link = link
+        self._findScenario = findScenario
+        self._openStudy = openStudy
+        self._work = work
+        self._cohort = cohort
+        self._records = records
+        self._scoring = TrialScoring(link, work, openStudy, self._review)
+        self._scored: dict[str, _Scoring] = {}
+        self._unscored: deque[TrialRecord] = deque()
+        self._state: Mapping[str, Any] = {}
+        self._queue: DeliveryQueue[DeliveredTrial] = DeliveryQueue(
+            link,
+            link.trialCompleted,
+            work,
+            self._storing,
+            self._accept,
+            _("A trial could not be kept: {error}"),
+            _("Trials arrive faster than they can be scored; they are offered again later."),
+        )
+        self.problemFound = self._queue.problemFound
+        link.stateChanged.connect(self._followTraining)
+        link.opened.connect(self._resume)
+
+    def close(self) -> None:
+        """Stop listening to the link, and begin nothing more."""
+        self._queue.close()
+        self._link.stateChanged.disconnect(self._followTraining)
+        self._link.opened.disconnect(self._resume)
+        self.forgetWaiting()
+
+    def forgetWaiting(self) -> None:
+        """Leave undone what has not begun: the simulator offers it again, for another study."""
+        self._queue.forgetWaiting()
+        self._unscored.clear()
+        for trialId in [each for each, state in self._scored.items() if state is _Scoring.DONE]:
+            del self._scored[trialId]
+
+    @property
+    def isScoring(self) -> bool:
+        """Whether a trial is being scored."""
+        return _Scoring.UNDER_WAY in self._scored.values()
+
+    def _followTraining(self, state: Mapping[str, Any]) -> None:
+        self._state = state
+
+    def _storing(self, delivery: Delivery) -> Callable[[], DeliveredTrial]:
+        """Return what checks, registers and stores a trial, in the background."""
+        isUnderWay = self._scored.get(delivery.get("trialId", "")) is _Scoring.UNDER_WAY
+
+        def store() -> DeliveredTrial:
+            with self._openStudy() as study:
+                return store_delivered(delivery, study, self._analyze, isUnderWay)
+
+        return store
+
+    def _accept(self, intake: DeliveredTrial) -> None:
+        """Score a trial that is stored and acknowledged."""
+        record, analysis = intake.record, intake.analysis
+        if intake.problem:
+            self._reportUnscored(intake.problem)
+        if record.trial_id not in self.received:
+            self.received.append(record.trial_id)
+            self.trialKept.emit(record)
+        if analysis is not None and self._scored.get(record.trial_id) is not _Scoring.UNDER_WAY:
+            self._score(analysis, self._queue.report)
+            self._work.later(lambda: self._show(analysis))
+
+    def _analyze(self, record: TrialRecord) -> TrialAnalysis:
+        # To register it nothing is needed of its journal, which takes long to read.
+        scenario = self._findScenario(record.scenario)
+        return analyze_trial(record, scenario, self._cohort, give_way=giveWay)
+
+    def _review(self, analysis: TrialAnalysis, study: Study, truth: RevealedTruth) -> TrialAnalysis:
+        scenario = self._findScenario(analysis.record.scenario)
+        return review(analysis, truth, scenario, study, self._records, giveWay)
+
+    def _resume(self) -> None:
+        """Score the trials that were not scored before the connection was lost."""
+
+        def take(records: tuple[TrialRecord, ...]) -> None:
+            self._unscored = deque(records)
+            self._resumeNext()
+
+        def unrevealed() -> tuple[TrialRecord, ...]:
+            with self._openStudy() as study:
+                return study.unrevealed()
+
+        self._work.do(unrevealed, take, lambda error: self._queue.report(str(error)))
+
+    def _resumeNext(self) -> None:
+        """Score one trial; the next follows when the simulator has answered.
+
+        If all were scored at once, a trial that arrives meanwhile would wait for all of them.
+        """
+        while self._unscored and self._link.isOpen:
+            record = self._unscored.popleft()
+            # Since the list was read it may have been scored.
+            if record.trial_id not in self._scored:
+                self._scoreAgain(record)
+                return
+
+    def _scoreAgain(self, record: TrialRecord) -> None:
+        self._scored[record.trial_id] = _Scoring.UNDER_WAY
+
+        def take(analysis: TrialAnalysis) -> None:
+            # A trial of another simulator is none of this one's business.
+            self._score(analysis, logging.info, self._resumeNext)
+
+        def refuse(error: Exception) -> None:
+            self._scored.pop(record.trial_id, None)
+            self._reportUnscored(error)
+            self._resumeNext()
+
+        self._work.do(lambda: self._analyze(record), take, refuse)
+
+    def _reportUnscored(self, reason: object) -> None:
+        self._queue.report(_("A trial is kept but cannot be scored: {error}").format(error=reason))
+
+    def _show(self, analysis: TrialAnalysis) -> None:
+        """Show a trial in the scene, unless another one is being played there."""
+        isOther = self._state.get("trialId") != analysis.record.trial_id
+        if isOther and self._state.get("phase") in OPEN_PHASES:
+            return
+        showTrial(self._scene, self._findScenario(analysis.record.scenario), analysis)
+
+    def _score(
+        self,
+        analysis: TrialAnalysis,
+        report: Callable[[str], None],
+        proceed: Callable[[], None] = lambda: None,
+    ) -> None:
+        trialId = analysis.record.trial_id
+        self._scored[trialId] = _Scoring.UNDER_WAY
+
+        def fail(error: Exception) -> None:
+            self._scored.pop(trialId, None)
+            report(_("The trial was not scored: {error}").format(error=error))
+            proceed()
+
+        def take(scored: TrialAnalysis) -> None:
+            self._scored[trialId] = _Scoring.DONE
+            try:
+                self.trialScored.emit(scored)
+            finally:
+                proceed()
+
+        self._scoring.begin(analysis, take, fail)

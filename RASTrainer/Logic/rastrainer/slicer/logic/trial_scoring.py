@@ -1,0 +1,147 @@
+"""From a trial's registration to its score, in the order in which nobody can cheat.
+
+First the registration is submitted, which makes it final; then the simulator tells the truth; then
+the score is made of it, sent, and kept. Wherever that is interrupted, the truth is not kept, and
+all of it is done again over the next connection, with the same outcome.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import CommandName
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.study.database.study import Study
+from rastrainer.study.trial_review import with_progress
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
+from rastrainer.trial.record import TrialRecord
+
+ANSWER_TIMEOUT_S = 60.0
+"""Nobody waits for these answers, and what is given up would be asked for again only over the next
+connection: a busy simulator gets the time it needs."""
+
+Score = Callable[[TrialAnalysis, Study, RevealedTruth], TrialAnalysis]
+End = Callable[[Exception], None]
+
+
+class TrialScoring:
+    """Has registered trials revealed and scored."""
+
+    def __init__(
+        self, link: Link, work: BackgroundWork, openStudy: Callable[[], Study], score: Score
+    ) -> None:
+        """Prepare.
+
+        Args:
+            link: to the simulator.
+            work: in which trials are scored and kept.
+            openStudy: opens the study, in any thread; it may wait for a lock there.
+            score: scores a registered trial whose truth is known.
+        """
+        self._link = link
+        self._work = work
+        self._openStudy = openStudy
+        self._score = score
+
+    def begin(
+        self, analysis: TrialAnalysis, take: Callable[[TrialAnalysis], None], end: End
+    ) -> None:
+        """Score a registered trial that is in the study.
+
+        Args:
+            analysis: its registration.
+            take: is given the analysis with truth and score, once they are in the study.
+            end: is given why it came to nothing.
+        """
+
+        def score(answer: Mapping[str, Any]) -> None:
+            truth = RevealedTruth.from_json(answer)
+            self._work.do(
+                lambda: self._scored(analysis, truth),
+                lambda scored: report(scored, truth),
+                lambda error: self._work.do(
+                    lambda: self._keepTruth(analysis.record, truth), lambda _none: end(error), end
+                ),
+            )
+
+        def report(scored: TrialAnalysis, truth: RevealedTruth) -> None:
+            self._ask(
+                CommandName.TRIAL_SCORED,
+                _scoreOf(scored),
+                lambda _answer: keep(scored, truth),
+                end,
+            )
+
+        def keep(scored: TrialAnalysis, truth: RevealedTruth) -> None:
+            self._work.do(
+                lambda: self._keepTruth(scored.record, truth),
+                lambda _none: take(scored),
+                end,
+            )
+
+        self._ask(CommandName.SUBMIT_REGISTRATION, _registrationOf(analysis), score, end)
+
+    def _ask(
+        self,
+        command: str,
+        arguments: dict[str, Any],
+        go: Callable[[Mapping[str, Any]], None],
+        end: End,
+    ) -> None:
+        def takeAnswer(reply: Reply) -> None:
+            try:
+                if not reply.ok:
+                    raise InputError(reply.error)
+                go(reply.data)
+            except InputError as error:
+                end(error)
+
+        self._link.send(command, arguments, takeAnswer, ANSWER_TIMEOUT_S)
+
+    def _scored(self, analysis: TrialAnalysis, truth: RevealedTruth) -> TrialAnalysis:
+        with self._openStudy() as study:
+            scored = self._score(analysis, study, truth)
+            study.add_results(scored.record.trial_id, score=scored.score)
+            return with_progress(scored, study)
+
+    def _keepTruth(self, record: TrialRecord, truth: RevealedTruth) -> None:
+        with self._openStudy() as study:
+            study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
+
+
+def _registrationOf(analysis: TrialAnalysis) -> dict[str, Any]:
+    return {
+        "trialId": analysis.record.trial_id,
+        "matrix": [float(value) for value in analysis.rigid.matrix.ravel()],
+        "freMm": analysis.rigid.fre_mm,
+        "expectedTreMm": analysis.expected_tre.expected_mm,
+    }
+
+
+def _scoreOf(analysis: TrialAnalysis) -> dict[str, Any]:
+    score, progress = analysis.score, analysis.feedback.progress
+    # What was analyzed with its truth has a score.
+    assert score is not None
+    published = analysis.published_score
+    return {
+        "trialId": analysis.record.trial_id,
+        "score": score.score,
+        "details": {
+            "residualsMm": analysis.rigid.residuals_mm.tolist(),
+            "treIntervalMm": list(analysis.expected_tre.interval_mm),
+            "regionTreMm": score.measures.tre_mm,
+            "timeDesirability": score.time_desirability,
+            "accuracyDesirability": score.accuracy_desirability,
+            "safetyDesirability": score.safety_desirability,
+            "isAccurate": score.is_accurate,
+            "isSafe": score.is_safe,
+            "ctps": None if published is None else published.published,
+            "warnings": [warning.message for warning in analysis.rigid.warnings],
+            "passMark": None if progress is None else progress.pass_mark,
+            "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
+        },
+    }

@@ -1,0 +1,1 @@
+"""The simulator as a program: its installation, its process and its end."""

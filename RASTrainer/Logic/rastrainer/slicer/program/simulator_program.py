@@ -1,0 +1,212 @@
+"""The simulator's process, as far as Slicer has started it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from enum import Enum
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.program.child_process import ChildProcess
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+
+_READY = re.compile(r"RASTrainer simulator ready on (\S+):(\d+)$")
+_VIEWS = re.compile(r"RASTrainer simulator serves views on (\S+), pairing code (\d+)$")
+_NETWORK = re.compile(
+    r"RASTrainer simulator serves the local network on (.+); the browser warns"
+    r"(?:.* fingerprint, (\S+))?$"
+)
+_KINEMATICS = re.compile(r"RASTrainer simulator computes the robot's kinematics by (.+)$")
+_NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: (\d+)$")
+
+
+class ProgramState(str, Enum):
+    """Where the simulator's process stands."""
+
+    STOPPED = "stopped"
+    STARTING = "starting"
+    READY = "ready"
+    STOPPING = "stopping"
+    FAILED = "failed"
+
+
+class SimulatorProgram:
+    """Starts and stops `rastrainer simulator`; `process` is to be called now and then.
+
+    Attributes:
+        state: where the process stands.
+        port: on which it listens, once it is ready.
+        sentence: what happened last, for people.
+        pageAddresses: where a browser or a headset finds the simulator's page.
+        fingerprint: SHA-256 of the certificate of the pages in the local network; empty without.
+        kinematics: what computes the robot's, such as "Pinocchio 3.9.0"; empty while not known.
+        pairingCode: that a browser or a headset is let in for; only whoever started it knows.
+        ready: emits nothing, once it is.
+        changed: emits nothing, whenever `state` or `sentence` has changed.
+        pairingChanged: emits nothing, whenever an address or the code has.
+        wroteLine: emits each line of its output.
+    """
+
+    def __init__(self) -> None:
+        self.state = ProgramState.STOPPED
+        self.port = 0
+        self.sentence = _("No simulator was started from here.")
+        self.pageAddresses: list[str] = []
+        self.fingerprint = ""
+        self.pairingCode = ""
+        self.kinematics = ""
+        self.ready = Signal()
+        self.changed = Signal()
+        self.pairingChanged = Signal()
+        self.wroteLine = Signal()
+        self._child: ChildProcess | None = None
+        self._lastLine = ""
+        self._isAskedToEnd = False
+        self._next: list[str] | None = None
+
+    @property
+    def isRunning(self) -> bool:
+        """Whether the process, or anything that it has started, is there."""
+        return self._child is not None
+
+    @property
+    def pairingSentence(self) -> str:
+        """How a browser or a headset is paired; empty while there is nothing to pair with."""
+        if not (self.isRunning and self.pairingCode):
+            return ""
+        sentence = _(
+            "In a browser or a headset open {addresses} and enter the code {code}."
+        ).format(addresses=_(" or ").join(self.pageAddresses), code=self.pairingCode)
+        if not self.fingerprint:
+            return sentence
+        warning = _(
+            "The browser warns of a certificate made here; its SHA-256 fingerprint is "
+            "{fingerprint}."
+        ).format(fingerprint=self.fingerprint)
+        return f"{sentence} {warning}"
+
+    def start(self, command: Sequence[str]) -> None:
+        """Start the process: soon, where the former one is ending; while it runs, do nothing.
+
+        Raises:
+            InputError: the program cannot be started.
+        """
+        if self.state is ProgramState.STOPPING:
+            self._next = list(command)
+            self._change(
+                ProgramState.STOPPING, _("The simulator is ending; it will then be started again.")
+            )
+        if self._child is not None:
+            return
+        self._child = ChildProcess(command)
+        self._lastLine = ""
+        self._isAskedToEnd = False
+        self._pair([], "")
+        self._change(ProgramState.STARTING, _("The simulator is starting."))
+
+    def stop(self) -> None:
+        """Ask the process to end; trials it has recorded stay with it and are offered next time.
+
+        `process` notices the end, and kills what does not end within seconds.
+        """
+        self._next = None
+        if self._child is None:
+            return
+        self._isAskedToEnd = True
+        self._child.end()
+        self._showEnding()
+
+    def process(self) -> None:
+        """Hand on its output, and notice that it is ready, is ending or has ended."""
+        if self._child is None:
+            return
+        isOver, child = self._child.poll(), self._child
+        self._handOnLines(child)
+        if isOver:
+            self._child = None
+            self._noteEnd(child.exitStatus)
+            self._startNext()
+        elif child.exitStatus is not None and self.state is not ProgramState.STOPPING:
+            # Its window, or the real Python of a launcher that was killed.
+            self._showEnding()
+
+    def close(self) -> None:
+        """End the process and all that it has started, at once if need be: Slicer quits."""
+        self._next = None
+        if self._child is not None:
+            self._child.close()
+            self._handOnLines(self._child)
+            self._child = None
+            self._pair([], "")
+            self._change(ProgramState.STOPPED, _("The simulator was stopped."))
+
+    def _showEnding(self) -> None:
+        self._pair([], "")
+        self._change(ProgramState.STOPPING, _("The simulator is ending."))
+
+    def _noteEnd(self, status: int | None) -> None:
+        self._pair([], "")
+        if self._isAskedToEnd:
+            self._change(ProgramState.STOPPED, _("The simulator was stopped."))
+        elif status == 0:
+            # As when the trainee's window is closed.
+            self._change(ProgramState.STOPPED, _("The simulator has ended."))
+        else:
+            reason = self._lastLine or _("it wrote nothing")
+            self._change(
+                ProgramState.FAILED,
+                _("The simulator ended by itself (status {status}): {reason}").format(
+                    status=status, reason=reason
+                ),
+            )
+
+    def _startNext(self) -> None:
+        """Start what was asked for while the former process was ending."""
+        command, self._next = self._next, None
+        if command is None:
+            return
+        try:
+            self.start(command)
+        except InputError as error:
+            self._change(ProgramState.FAILED, str(error))
+
+    def _handOnLines(self, child: ChildProcess) -> None:
+        for line in child.takeLines():
+            self._lastLine = line or self._lastLine
+            self.wroteLine.emit(line)
+            # What is ending may say for a moment that it is ready.
+            if self.state is not ProgramState.STOPPING:
+                self._read(line)
+                self._readPairing(line)
+
+    def _read(self, line: str) -> None:
+        if ready := _READY.match(line):
+            self.port = int(ready.group(2))
+            sentence = _("The simulator runs on port {port}.").format(port=self.port)
+            self._change(ProgramState.READY, sentence)
+            self.ready.emit()
+        elif said := _KINEMATICS.match(line):
+            self.kinematics = said.group(1)
+            sentence = _(
+                "The simulator runs on port {port}. {name} computes the robot's kinematics."
+            ).format(port=self.port, name=self.kinematics)
+            self._change(ProgramState.READY, sentence)
+
+    def _readPairing(self, line: str) -> None:
+        if views := _VIEWS.match(line):
+            self.fingerprint = ""
+            self._pair([views.group(1)], views.group(2))
+        elif network := _NETWORK.match(line):
+            self.fingerprint = network.group(2) or ""
+            self._pair([*self.pageAddresses, *network.group(1).split(" or ")], self.pairingCode)
+        elif code := _NEW_CODE.match(line):
+            self._pair(self.pageAddresses, code.group(1))
+
+    def _pair(self, addresses: list[str], code: str) -> None:
+        self.pageAddresses, self.pairingCode = addresses, code
+        self.pairingChanged.emit()
+
+    def _change(self, state: ProgramState, sentence: str) -> None:
+        self.state, self.sentence = state, sentence
+        self.changed.emit()

@@ -1,0 +1,259 @@
+"""Sets the simulator up in a folder of its own, by Slicer's own Python, once.
+
+Nothing is installed into Slicer: `pip install --target` puts everything into a private folder that
+only the simulator's process looks into, and what the simulator never opens is taken out again. A
+set-up that was broken off leaves nothing behind, and to remove the simulator is to remove the
+folder.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import shutil
+import threading
+import uuid
+from collections.abc import Sequence
+from pathlib import Path
+
+from rastrainer import __version__
+from rastrainer.errors import InputError
+from rastrainer.files.reading import read_json
+from rastrainer.files.writing import write_text
+from rastrainer.processes.private_folder import private_words
+from rastrainer.slicer.program.child_process import ChildProcess, childEnvironment
+from rastrainer.slicer.program.pip_install import SetupProgress, SetupSource, pipEnvironment
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.slicer.program.trim_packages import SIZES
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+
+MARK = "rastrainer-setup.json"
+REQUIREMENTS = "rastrainer-requirements.txt"
+CHECKOUT = "rastrainer-checkout.pth"
+MARK_LIMIT_BYTES = 4096
+PROGRAM, TRIMMER = "rastrainer_simulator.cli.main", "rastrainer.slicer.program.trim_packages"
+
+
+class SimulatorSetup:
+    """The private folder and the pip that fills it; `process` is to be called now and then.
+
+    Attributes:
+        folder: of the installed simulator.
+        package: what the module brings along for it.
+        progress: how far the set-up is that runs, or ran last.
+        progressed: emits each line that pip writes.
+        changed: emits nothing, whenever a set-up begins or ends, or the simulator is removed.
+        finished: emits an error's sentence, empty where the simulator is set up.
+    """
+
+    def __init__(self, python: Path, folder: Path, package: SimulatorPackage) -> None:
+        self.folder = folder
+        self.package = package
+        self.progress = SetupProgress("")
+        self.progressed = Signal()
+        self.changed = Signal()
+        self.finished = Signal()
+        self._python = python
+        self._partial = folder.with_name(folder.name + ".partial")
+        self._child: ChildProcess | None = None
+        self._isTrimming = False
+        self._isCanceled = False
+
+    @property
+    def isRunning(self) -> bool:
+        """Whether a set-up is under way."""
+        return self._child is not None
+
+    @property
+    def isEnding(self) -> bool:
+        """Whether a set-up is under way still, and was canceled."""
+        return self.isRunning and self._isCanceled
+
+    @property
+    def isInstalled(self) -> bool:
+        """Whether there is anything to remove."""
+        return self.folder.is_dir()
+
+    @property
+    def installedVersion(self) -> str:
+        """The version that is set up, empty where none is."""
+        return self._mark().get("version", "")
+
+    @property
+    def isCurrent(self) -> bool:
+        """Whether the simulator that came with this module is set up."""
+        mark = self._mark()
+        return (mark.get("version"), mark.get("origin")) == (__version__, self.package.origin())
+
+    @property
+    def installedMB(self) -> int | None:
+        """How much the private folder holds, in 10⁶ bytes; None where that is not known."""
+        try:
+            return int(read_json(self.folder / SIZES, MARK_LIMIT_BYTES)["keptBytes"]) // 10**6
+        except (InputError, KeyError, TypeError, ValueError):
+            return None
+
+    def begin(self, source: SetupSource) -> None:
+        """Begin to set up, in place of what is there.
+
+        Raises:
+            InputError: the simulator is missing in the module, there are no wheels, or the folder
+                or pip cannot be used.
+        """
+        if self.isRunning:
+            raise InputError(_("The simulator is being set up already."))
+        words = source.pipArguments()
+        requirements = self.package.requirements()
+        self._makeFolder(requirements)
+        words += ["--target", str(self._partial), "-r", str(self._partial / REQUIREMENTS)]
+        self.progress = SetupProgress(requirements)
+        self._isTrimming = self._isCanceled = False
+        self._child = ChildProcess(
+            [self._python, "-m", "pip", "install", *words], pipEnvironment(childEnvironment())
+        )
+        self.changed.emit()
+
+    def cancel(self) -> None:
+        """Cancel the set-up, which ends soon; what was set up before stays."""
+        if self._child is None:
+            return
+        self._isCanceled = True
+        self._child.end()
+        self.changed.emit()
+
+    def remove(self) -> None:
+        """Remove the private folder with all that was set up.
+
+        Raises:
+            InputError: a set-up is under way, or the folder cannot be removed.
+        """
+        if self.isRunning:
+            raise InputError(_("Cancel the set-up first."))
+        discard(self.folder)
+        self.changed.emit()
+
+    def process(self) -> None:
+        """Hand on what pip says, trim what it has installed, and finish."""
+        if self._child is None:
+            return
+        isOver, child = self._child.poll(), self._child
+        for line in child.takeLines():
+            self.progress.follow(line)
+            self.progressed.emit(line)
+        if not isOver:
+            return
+        self._child = None
+        if child.exitStatus == 0 and not self._isTrimming and not self._isCanceled:
+            self._isTrimming = True
+            self._child = ChildProcess(
+                private_words(self._python, self._partial, TRIMMER, str(self._partial))
+            )
+            return
+        error = self._finish(child.exitStatus)
+        self.changed.emit()
+        self.finished.emit(error)
+
+    def close(self) -> None:
+        """End the set-up that is under way: Slicer quits."""
+        if self._child is not None:
+            self._child.close()
+            self._child = None
+            self._dropPartial()
+
+    def command(self, arguments: Sequence[str]) -> list[str]:
+        """Return what starts the installed `rastrainer` with these arguments."""
+        return private_words(self._python, self.folder, PROGRAM, *arguments)
+
+    def _mark(self) -> dict[str, str]:
+        try:
+            mark = read_json(self.folder / MARK, MARK_LIMIT_BYTES)
+        except InputError:
+            return {}
+        return (
+            {str(key): str(value) for key, value in mark.items()} if isinstance(mark, dict) else {}
+        )
+
+    def _makeFolder(self, requirements: str) -> None:
+        discardLeftovers(self.folder)
+        discard(self._partial)
+        try:
+            self._partial.mkdir(parents=True)
+        except OSError as error:
+            raise InputError(
+                _("The folder {path} cannot be made: {reason}.").format(
+                    path=self._partial, reason=error.strerror
+                )
+            ) from None
+        write_text(self._partial / REQUIREMENTS, requirements)
+        sources = self.package.sourceFolders()
+        if sources:
+            write_text(self._partial / CHECKOUT, "".join(f"{path}\n" for path in sources))
+
+    def _dropPartial(self) -> None:
+        # What cannot be removed now is, before the next set-up.
+        with contextlib.suppress(InputError):
+            discard(self._partial)
+
+    def _finish(self, status: int | None) -> str:
+        """Put the new folder in place, and return an error's sentence, empty where all is well."""
+        if self._isCanceled or status != 0:
+            self._dropPartial()
+        if self._isCanceled:
+            return _("The set-up was canceled.")
+        if self._isTrimming and status != 0:
+            return _(
+                "What was installed cannot be run (status {status}); the last lines say why."
+            ).format(status=status)
+        if status != 0:
+            return _(
+                "The installation ended with status {status}; its last lines say why. Behind a "
+                "firewall, choose a folder of wheels or your own package index."
+            ).format(status=status)
+        mark = {"version": __version__, "origin": self.package.origin()}
+        try:
+            write_text(self._partial / MARK, json.dumps(mark) + "\n")
+            discard(self.folder)
+            self._partial.replace(self.folder)
+        except (InputError, OSError) as error:
+            return _("The folder {path} cannot be replaced: {error}").format(
+                path=self.folder, error=error
+            )
+        return ""
+
+
+REMOVED = ".removed-"
+"""In the name of a folder that is being removed."""
+
+
+def discard(folder: Path) -> None:
+    """Remove a folder: at once from its place, and soon from the disk; none is no error.
+
+    Raises:
+        InputError: something in it is in use, or it is not ours to remove.
+    """
+    if not folder.exists():
+        return
+    aside = folder.with_name(f"{folder.name}{REMOVED}{uuid.uuid4().hex}")
+    try:
+        folder.rename(aside)
+    except OSError as error:
+        raise InputError(
+            _("The folder {path} cannot be removed: {reason}.").format(
+                path=folder, reason=error.strerror
+            )
+        ) from None
+    _remove([aside])
+
+
+def discardLeftovers(folder: Path) -> None:
+    """Remove what an earlier removal of this folder has left, as Slicer had quit meanwhile."""
+    _remove(list(folder.parent.glob(f"{folder.name}*{REMOVED}*")))
+
+
+def _remove(folders: list[Path]) -> None:
+    def work() -> None:
+        for path in folders:
+            shutil.rmtree(path, ignore_errors=True)
+
+    threading.Thread(target=work, daemon=True).start()

@@ -1,0 +1,132 @@
+"""Takes out of a private folder of packages what the simulator never opens; a program of its own.
+
+    private_words(python, FOLDER, "rastrainer.slicer.program.trim_packages", FOLDER)
+
+Wheels bring C++ headers, manuals and tests, and VTK and Pinocchio a hundred libraries that the
+simulator does not use. What it uses is not guessed: every package that its sources import is
+imported, and a library that the loader has not opened then is one that nobody needs. Where
+something cannot be imported, or the system does not say what is loaded, the libraries stay.
+
+Prints one line and writes the sizes beside the packages, into SIZES.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import importlib.util
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+SIZES = "rastrainer-sizes.json"
+SOURCES = ("rastrainer_simulator", "rastrainer")
+SLICERS_OWN = ("slicer", "panels")
+"""Below `rastrainer`: what only Slicer runs."""
+NEVER_OPENED = (
+    "cmeel.prefix/include",
+    "cmeel.prefix/bin",
+    "cmeel.prefix/share",
+    "cmeel.prefix/lib/cmake",
+    "cmeel.prefix/lib/pkgconfig",
+    "pygame/docs",
+    "pygame/examples",
+    "pygame/tests",
+    "vtkmodules/test",
+    "vtk.data",
+)
+BUILDING_ONLY = ("*.a", "*.lib", "*.pyi", "*.pxd", "*.pyx")
+MANY_LIBRARIES = ("vtkmodules", "cmeel.prefix/lib")
+MAPPED = Path("/proc/self/maps")
+MEGABYTE = 10**6
+
+
+def trim(folder: Path) -> tuple[int, int]:
+    """Remove what is never opened; return the bytes that stay and those that were removed."""
+    before = size(folder)
+    for name in NEVER_OPENED:
+        shutil.rmtree(folder / name, ignore_errors=True)
+    for pattern in BUILDING_ONLY:
+        for path in list(folder.rglob(pattern)):
+            path.unlink()
+    loaded = loaded_libraries(folder)
+    if loaded:
+        for path in _libraries(folder):
+            if path.name not in loaded:
+                path.unlink()
+    after = size(folder)
+    return after, before - after
+
+
+def size(folder: Path) -> int:
+    """Return how many bytes the files of a folder have."""
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+
+
+def loaded_libraries(folder: Path) -> set[str]:
+    """Return the names of all libraries that are loaded once the simulator's packages are.
+
+    Empty where that is not known.
+    """
+    if not MAPPED.exists():
+        return set()
+    names = sorted(third_party_imports(folder))
+    try:
+        for name in names:
+            importlib.import_module(name)
+        lines = MAPPED.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
+    except Exception as error:  # a broken library may raise anything
+        print(f"The libraries stay as they are: {error}", flush=True)
+        return set()
+    return {Path(line.split(maxsplit=5)[5]).name for line in lines if "/" in line}
+
+
+def third_party_imports(folder: Path) -> set[str]:
+    """Return the installed modules that the simulator's sources import, wherever they do."""
+    names = {name for path in _sources(folder) for name in _imported(path)}
+    own = {*sys.stdlib_module_names, *SOURCES}
+    foreign = {name for name in names if name.partition(".")[0] not in own}
+    return {name for name in foreign if importlib.util.find_spec(name.partition(".")[0])}
+
+
+def _sources(folder: Path) -> Iterator[Path]:
+    for package in SOURCES:
+        found = importlib.util.find_spec(package)
+        root = Path(found.origin).parent if found and found.origin else folder / package
+        for path in root.rglob("*.py"):
+            if path.relative_to(root).parts[0] not in SLICERS_OWN:
+                yield path
+
+
+def _imported(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            yield node.module
+
+
+def _libraries(folder: Path) -> Iterator[Path]:
+    for name in MANY_LIBRARIES:
+        for path in list((folder / name).rglob("*")):
+            if path.is_file() and (path.suffix == ".so" or ".so." in path.name):
+                yield path
+
+
+def main() -> None:
+    """Trim the folder that the command line names."""
+    os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
+    folder = Path(sys.argv[1]).resolve()
+    kept, removed = trim(folder)
+    text = json.dumps({"keptBytes": kept, "removedBytes": removed})
+    (folder / SIZES).write_text(text + "\n", encoding="utf-8")
+    print(
+        f"{removed // MEGABYTE} MB that are never opened were removed; {kept // MEGABYTE} MB stay."
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,121 @@
+"""What is registered: two lists of points in the scene, with what the user has changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.point_list import PointList, pair
+from rastrainer.slicer.scene.control_points import labelsOf, localPoints, worldPoints
+from rastrainer.slicer.translation import _
+
+USUAL_FLE_MM = 1.0
+"""Of points that no localization error is stated for. Only ratios matter: the size of the errors is
+told from the residuals."""
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What the user has changed about the pairs.
+
+    Attributes:
+        excluded: labels of pairs that are left out.
+        renamed: label as it stands in the moving list → label that it belongs to.
+        fle: label → localization error, RMS length in mm, of points that do not have the usual one.
+    """
+
+    excluded: frozenset[str] = frozenset()
+    renamed: tuple[tuple[str, str], ...] = ()
+    fle: tuple[tuple[str, float], ...] = ()
+
+    def without(self, labels: tuple[str, ...]) -> Choices:
+        """Return the choices with some more pairs left out."""
+        return replace(self, excluded=self.excluded | set(labels))
+
+    def localized(self, label: str, fleMm: float) -> Choices:
+        """Return the choices with the localization error of a point, on top of before."""
+        sizes = {**dict(self.fle), label: fleMm}
+        if fleMm == USUAL_FLE_MM:
+            del sizes[label]
+        return replace(self, fle=tuple(sorted(sizes.items())))
+
+    def weights(self, labels: Sequence[str]) -> np.ndarray | None:
+        """Return the weight of each point, 1/FLE², (n,) float; None where all count alike."""
+        sizes = dict(self.fle)
+        fle = np.array([sizes.get(label, USUAL_FLE_MM) for label in labels])
+        return None if (fle == USUAL_FLE_MM).all() else 1.0 / fle**2
+
+    def rename(self, order: dict[str, str]) -> Choices:
+        """Return the choices with moving points given to other labels, on top of before."""
+        names = dict(self.renamed)
+        shown = {label: names.get(label, label) for label in {*order, *names}}
+        renamed = sorted((label, order.get(name, name)) for label, name in shown.items())
+        return replace(self, renamed=tuple(renamed))
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Paired points, mm.
+
+    Attributes:
+        labels: one for each pair, in the order of the moving list.
+        moving: (n, 3) float, in the moving list's own frame.
+        fixed: (n, 3) float, RAS.
+        missing: labels of fixed points that have no partner yet.
+        excluded: labels of the pairs that were left out.
+    """
+
+    labels: tuple[str, ...]
+    moving: np.ndarray
+    fixed: np.ndarray
+    missing: tuple[str, ...] = ()
+    excluded: tuple[str, ...] = ()
+
+
+def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
+    """Return the pairs of two `vtkMRMLMarkupsNode`, by label where both lists are labeled.
+
+    Fixed points that were not touched yet are no fault: a trial may be running.
+
+    Raises:
+        InputError: a list is empty, or its points do not pair up.
+    """
+    for node, words in ((moving, _("moving")), (fixed, _("fixed"))):
+        if node is None:
+            raise InputError(_("Choose the list of {which} points.").format(which=words))
+        if node.GetNumberOfControlPoints() == 0:
+            raise InputError(_("The list of {which} points is empty.").format(which=words))
+    movingList = PointList(_renamed(labelsOf(moving), choices), localPoints(moving))
+    fixedList = PointList(labelsOf(fixed), worldPoints(fixed))
+    missing: tuple[str, ...] = ()
+    if movingList.labels and fixedList.labels:
+        touched = set(movingList.labels)
+        missing = tuple(label for label in fixedList.labels if label not in touched)
+        kept = [row for row, label in enumerate(fixedList.labels) if label in touched]
+        if kept:
+            fixedList = PointList(tuple(fixedList.labels[r] for r in kept), fixedList.points[kept])
+    labels, movingPoints, fixedPoints = pair(movingList, fixedList)
+    rows = [row for row, label in enumerate(labels) if label not in choices.excluded]
+    return Pairs(
+        tuple(labels[row] for row in rows),
+        movingPoints[rows],
+        fixedPoints[rows],
+        missing,
+        tuple(label for label in labels if label in choices.excluded),
+    )
+
+
+def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> tuple:
+    """Return what tells whether a list has changed: its labels and where its points are."""
+    if node is None:
+        return ()
+    return node.GetID(), labelsOf(node), pointsOf(node).tobytes()
+
+
+def _renamed(labels: tuple[str, ...], choices: Choices) -> tuple[str, ...]:
+    names = dict(choices.renamed)
+    return tuple(names.get(label, label) for label in labels)

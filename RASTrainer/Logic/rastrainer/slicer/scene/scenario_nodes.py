@@ -1,0 +1,164 @@
+"""Shows a scenario in the scene: head, images, what is planned, and the fiducials of a task."""
+
+from __future__ import annotations
+
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.tasks import Task
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.scenario_volume import wantVolume
+from rastrainer.slicer.scene.scene import (
+    SCENARIO_ATTRIBUTE,
+    TASK_ATTRIBUTE,
+    Role,
+    findOrAddNode,
+    isShown,
+    noteShown,
+    removeNode,
+    stampOf,
+)
+
+
+def trianglesPolyData(vertices: np.ndarray, triangles: np.ndarray) -> vtk.vtkPolyData:
+    """Return a surface with smooth normals.
+
+    Args:
+        vertices: (n, 3) float.
+        triangles: (m, 3) int, counterclockwise seen from outside.
+    """
+    points = vtk.vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(vertices, dtype=np.float32), deep=True))
+    corners = np.ascontiguousarray(triangles, dtype=np.int64).ravel()
+    cells = vtk.vtkCellArray()
+    cells.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
+    surface = vtk.vtkPolyData()
+    surface.SetPoints(points)
+    surface.SetPolys(cells)
+    normals = vtk.vtkPolyDataNormals()
+    normals.SetInputData(surface)
+    normals.SplittingOff()
+    normals.ConsistencyOff()
+    normals.Update()
+    return normals.GetOutput()
+
+
+SKIN_COLOR = (0.87, 0.72, 0.62)
+SKULL_COLOR = (0.95, 0.92, 0.82)
+SKIN_OPACITY_OVER_SKULL = 0.5
+OUTLINE_PIXELS = 2
+"""Of head and skull in the slice views: one is hardly seen on an MRI."""
+
+FIDUCIAL_COLOR = (0.25, 0.55, 0.95)
+TARGET_COLOR = (0.2, 0.75, 0.35)
+
+
+def showScenario(scene: Any, scenario: Scenario) -> None:
+    """Show head, skull, targets and trajectory; called again, nothing is made twice.
+
+    The images come later, by a `VolumeLoader`. The first point of the list of targets is the
+    scenario's own, at which the error is told.
+
+    Raises:
+        InputError: a mesh of the scenario cannot be used.
+    """
+    _showHead(scene, scenario)
+    _showSkull(scene, scenario)
+    _showTargets(scene, scenario)
+    _showTrajectory(scene, scenario)
+    wantVolume(scene, scenario)
+
+
+def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
+    """Show the fiducials of a task, in RAS mm, and return their `vtkMRMLMarkupsFiducialNode`.
+
+    Raises:
+        InputError: the scenario has no task of that name.
+    """
+    task = scenario.task(taskName)
+    node = findOrAddNode(
+        scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
+    )
+    name, digest = taskKey(scenario.name, task.name), sha256(task.fiducials.tobytes()).hexdigest()
+    if not isShown(node, TASK_ATTRIBUTE, name, digest):
+        _fillFiducials(node, task)
+        noteShown(node, TASK_ATTRIBUTE, name, digest)
+    return node
+
+
+def taskKey(scenarioName: str, taskName: str) -> str:
+    """Return what `TASK_ATTRIBUTE` says of a list of points that belongs to a task."""
+    return f"{scenarioName}/{taskName}"
+
+
+def _fillFiducials(node: Any, task: Task) -> None:
+    node.SetName(f"{task.title} fiducials")
+    setPoints(node, task.labels, task.fiducials)
+    node.SetLocked(True)
+    display = node.GetDisplayNode()
+    display.SetSelectedColor(FIDUCIAL_COLOR)
+    display.SetGlyphScale(2.0)
+    display.SetTextScale(3.5)
+
+
+def _showHead(scene: Any, scenario: Scenario) -> None:
+    node = findOrAddNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL, "Head")
+    if _fill(node, scenario, scenario.head_mesh, SKIN_COLOR):
+        opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
+        node.GetDisplayNode().SetOpacity(opacity)
+
+
+def _showSkull(scene: Any, scenario: Scenario) -> None:
+    if scenario.skull_mesh is None:
+        removeNode(scene, "vtkMRMLModelNode", Role.SKULL)
+        return
+    node = findOrAddNode(scene, "vtkMRMLModelNode", Role.SKULL, "Skull")
+    if _fill(node, scenario, scenario.skull_mesh, SKULL_COLOR):
+        node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
+
+
+def _fill(node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]) -> bool:
+    """Show a mesh of a scenario, and tell whether something else was shown."""
+    # Asked before every trial: the file is read only when it is not the one that is shown.
+    stamp = stampOf(path)
+    if isShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp):
+        return False
+    mesh = read_head_mesh(path)
+    node.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
+    noteShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
+    display = node.GetDisplayNode()
+    display.SetColor(color)
+    display.SetVisibility2D(True)
+    display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
+    return True
+
+
+def _showTargets(scene: Any, scenario: Scenario) -> None:
+    node = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
+    names = [scenario.target_name, *(target.name for target in scenario.targets)]
+    places = [scenario.target_position, *(target.position for target in scenario.targets)]
+    setPoints(node, names, np.array(places, dtype=float))
+    _showAsPlanned(node)
+
+
+def _showTrajectory(scene: Any, scenario: Scenario) -> None:
+    planned = scenario.trajectory
+    if planned is None:
+        removeNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+        return
+    node = findOrAddNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY, planned.name)
+    node.SetName(planned.name)
+    setPoints(node, ("Entry", "Target"), np.array([planned.entry, planned.target], dtype=float))
+    _showAsPlanned(node)
+
+
+def _showAsPlanned(node: Any) -> None:
+    node.SetLocked(True)
+    node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)

@@ -1,0 +1,277 @@
+"""A recorded trial as a Sequence: the tool, the touches and the clearance over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import slicer
+import vtk
+
+from rastrainer.errors import InputError
+from rastrainer.journal.replay_track import ReplayTrack
+from rastrainer.motion.trajectory import Trajectory
+from rastrainer.number_text import fixed
+from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
+from rastrainer.slicer.scene.urdf import ArmChain
+
+SAMPLE_HZ = 10.0
+"""Of what is shown; the journal has 50 samples a second."""
+TRIAL_ATTRIBUTE = "RASTrainer.trial"
+"""On a replay's browser: UUID of the trial."""
+STATES_A_SLICE = 50
+"""So many states go into the scene before the application may draw again."""
+SAME_ROBOT_MM = 0.01
+TOOL_COLOR = (0.2, 0.45, 0.85)
+TOUCH_COLOR = (0.95, 0.55, 0.1)
+TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
+
+_PLACE, _TOOL, _TIP = "place", "tool", "tool model"
+_TOUCHES, _CLEARANCE = "touches", "clearance"
+
+
+def showReplay(
+    scene: Any,
+    name: str,
+    track: ReplayTrack,
+    chain: ArmChain,
+    worldToHead: np.ndarray,
+    rest: Callable[[float], None] = lambda _share: None,
+) -> Any:
+    """Put a trial into the scene as a Sequence in place of the one before.
+
+    It has nodes of its own, so that a running simulator does not disturb it.
+
+    Args:
+        scene: the scene.
+        name: of the trial, for people.
+        track: from its journal.
+        chain: of the robot that it was recorded with.
+        worldToHead: (4, 4) float, mm, registration of the trial.
+        rest: told the share of the work done after each slice of it; it may let the application
+            draw, and may raise to cancel: then nothing is left behind.
+
+    Returns:
+        The `vtkMRMLSequenceBrowserNode`, at the first sample.
+
+    Raises:
+        InputError: the trial was recorded with another robot, or the scene was closed meanwhile.
+    """
+    trajectory = track.trajectory
+    rows = _rows(trajectory.times_s)
+    poses = chain.tool_to_world(track.q[rows]) if chain.moving == track.q.shape[1] else None
+    tips = trajectory.tip_mm[rows]
+    if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
+        raise InputError("The trial was recorded with another robot than the one that is here.")
+    removeReplay(scene, rest)
+    try:
+        return _fillScene(scene, name, trajectory, rows, poses, worldToHead, rest)
+    except BaseException:
+        removeReplay(scene)
+        raise
+
+
+def _fillScene(
+    scene: Any,
+    name: str,
+    trajectory: Trajectory,
+    rows: np.ndarray,
+    poses: np.ndarray,
+    worldToHead: np.ndarray,
+    rest: Callable[[float], None],
+) -> Any:
+    placed = _node(scene, "vtkMRMLLinearTransformNode", _PLACE, f"{name}: WorldToHead")
+    placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
+    tool = _node(scene, "vtkMRMLLinearTransformNode", _TOOL, f"{name}: tool")
+    touches = _node(scene, "vtkMRMLMarkupsFiducialNode", _TOUCHES, f"{name}: touches")
+    clearance = _node(scene, "vtkMRMLTextNode", _CLEARANCE, f"{name}: clearance")
+    _showTool(scene, f"{name}: tool model", tool)
+    _prepareTouches(touches)
+    tool.SetAndObserveTransformNodeID(placed.GetID())
+    touches.SetAndObserveTransformNodeID(placed.GetID())
+    browser = _node(scene, "vtkMRMLSequenceBrowserNode", "browser", f"Replay of {name}")
+    browser.SetIndexDisplayMode(browser.IndexDisplayAsIndexValue)
+    browser.SetPlaybackRateFps(SAMPLE_HZ)
+    rest(0.0)
+    _checkIsThere(browser)
+    times = trajectory.times_s[rows]
+    total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
+    for proxy, states in (
+        (tool, zip(times, _toolStates(tool, poses), strict=True)),
+        (touches, _touchStates(touches, trajectory)),
+        (clearance, zip(times, _clearanceStates(trajectory.clearance_mm[rows]), strict=True)),
+    ):
+        sequence = _node(scene, "vtkMRMLSequenceNode", f"{proxy.GetName()} sequence", "")
+        sequence.SetName(f"{proxy.GetName()} sequence")
+        sequence.SetIndexName("time")
+        sequence.SetIndexUnit("s")
+        sequence.SetIndexType(sequence.NumericIndex)
+        # Whoever saves the states asks the scene that they are kept in for units.
+        sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
+        for time, state in states:
+            # The proxy becomes what the state is, with all its attributes.
+            state.SetAttribute(ROLE_ATTRIBUTE, proxy.GetAttribute(ROLE_ATTRIBUTE))
+            sequence.SetDataNodeAtValue(state, f"{time:.3f}")
+            done += 1
+            if done % STATES_A_SLICE == 0:
+                rest(done / total)
+                _checkIsThere(browser, sequence)
+        # Told of both at once, Slicer makes no proxy of its own.
+        wasModifying = browser.StartModify()
+        browser.AddSynchronizedSequenceNode(sequence)
+        browser.AddProxyNode(proxy, sequence, False)
+        browser.SetOverwriteProxyName(sequence, False)
+        browser.SetSaveChanges(sequence, False)
+        browser.EndModify(wasModifying)
+    browser.SetSelectedItemNumber(0)
+    return browser
+
+
+def _checkIsThere(*nodes: Any) -> None:
+    if any(node.GetScene() is None for node in nodes):
+        raise InputError("The scene was changed before the trial could be shown.")
+
+
+def goTo(scene: Any, timeS: float) -> None:
+    """Show the moment of the trial's time in s, as far as a replay is in the scene."""
+    browser = findReplay(scene)
+    if browser is None:
+        return
+    sequence = browser.GetMasterSequenceNode()
+    times = [float(sequence.GetNthIndexValue(n)) for n in range(sequence.GetNumberOfDataNodes())]
+    # Never after the moment, so that the touch that is looked at has not been made yet.
+    browser.SetSelectedItemNumber(max(0, int(np.searchsorted(times, timeS, side="right")) - 1))
+
+
+def moment(scene: Any) -> tuple[float, str] | None:
+    """Return the replay's time in s and what is said about the clearance; None without one."""
+    browser = findReplay(scene)
+    text = findNode(scene, "vtkMRMLTextNode", _role(_CLEARANCE))
+    if browser is None or text is None or browser.GetMasterSequenceNode() is None:
+        return None
+    if browser.GetSelectedItemNumber() < 0:
+        # It is still being put into the scene.
+        return None
+    value = browser.GetMasterSequenceNode().GetNthIndexValue(browser.GetSelectedItemNumber())
+    return float(value or 0.0), text.GetText()
+
+
+def findReplay(scene: Any) -> Any | None:
+    """Return the browser of the replay that is in the scene, or None."""
+    return findNode(scene, "vtkMRMLSequenceBrowserNode", _role("browser"))
+
+
+def isReplayOf(scene: Any, trialId: str) -> bool:
+    """Tell whether the replay that is in the scene is that of a trial, with all its nodes."""
+    browser = findReplay(scene)
+    parts = (
+        ("vtkMRMLLinearTransformNode", _PLACE),
+        ("vtkMRMLLinearTransformNode", _TOOL),
+        ("vtkMRMLModelNode", _TIP),
+        ("vtkMRMLMarkupsFiducialNode", _TOUCHES),
+        ("vtkMRMLTextNode", _CLEARANCE),
+    )
+    return (
+        browser is not None
+        and browser.GetAttribute(TRIAL_ATTRIBUTE) == trialId
+        and browser.GetMasterSequenceNode() is not None
+        and all(findNode(scene, className, _role(part)) is not None for className, part in parts)
+    )
+
+
+def stopReplay(scene: Any) -> None:
+    """Let a replay that plays stand still."""
+    browser = findReplay(scene)
+    if browser is not None:
+        browser.SetPlaybackActive(False)
+
+
+def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None) -> None:
+    """Take the replay and all its nodes out of the scene; `rest` is as of `showReplay`."""
+    nodes = scene.GetNodes()
+    ours = [nodes.GetItemAsObject(n) for n in range(nodes.GetNumberOfItems())]
+    ours = [n for n in ours if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(_role(""))]
+    # First what would show each change of the others.
+    ours.sort(key=lambda node: not node.IsA("vtkMRMLSequenceBrowserNode"))
+    for node in ours:
+        if node.GetScene() is None:
+            continue
+        if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
+            scene.RemoveNode(node.GetDisplayNode())
+        scene.RemoveNode(node)
+        if node.IsA("vtkMRMLSequenceNode"):
+            _empty(node, rest)
+
+
+def _empty(sequence: Any, rest: Callable[[float], None]) -> None:
+    """Take the states out of a sequence in slices: thousands at once would take too long."""
+    count = sequence.GetNumberOfDataNodes()
+    for index in reversed(range(count)):
+        sequence.RemoveDataNodeAtValue(sequence.GetNthIndexValue(index))
+        if index % STATES_A_SLICE == 0:
+            rest(0.0)
+
+
+def _rows(times: np.ndarray) -> np.ndarray:
+    """Return which samples are shown: about ten a second, the first and the last."""
+    wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
+    return np.unique([*np.searchsorted(times, wanted), len(times) - 1])
+
+
+def _toolStates(tool: Any, poses: np.ndarray) -> Any:
+    for pose in poses:
+        state = type(tool)()
+        state.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
+        yield state
+
+
+def _touchStates(touches: Any, trajectory: Trajectory) -> Any:
+    """Yield the touches so far, from the beginning and from each touch on."""
+    made = trajectory.touches
+    for count in range(len(made) + 1):
+        state = type(touches)()
+        state.SetLocked(True)
+        for touch in made[:count]:
+            state.AddControlPoint(vtk.vtkVector3d(*touch.position_mm), touch.label)
+        yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
+
+
+def _clearanceStates(clearance: np.ndarray) -> Any:
+    for value in clearance:
+        state = slicer.vtkMRMLTextNode()
+        state.SetText(f"{fixed(value, 1)} mm")
+        yield state
+
+
+def _showTool(scene: Any, name: str, tool: Any) -> None:
+    """Show a needle whose tip is the tool's: its shaft lies along −z."""
+    line = vtk.vtkLineSource()
+    line.SetPoint1(0.0, 0.0, 0.0)
+    line.SetPoint2(0.0, 0.0, -TOOL_LENGTH_MM)
+    tube = vtk.vtkTubeFilter()
+    tube.SetInputConnection(line.GetOutputPort())
+    tube.SetRadius(TOOL_RADIUS_MM)
+    tube.SetNumberOfSides(16)
+    tube.CappingOn()
+    tube.Update()
+    model = _node(scene, "vtkMRMLModelNode", _TIP, name)
+    model.SetAndObservePolyData(tube.GetOutput())
+    model.GetDisplayNode().SetColor(TOOL_COLOR)
+    model.SetAndObserveTransformNodeID(tool.GetID())
+
+
+def _prepareTouches(touches: Any) -> None:
+    touches.SetLocked(True)
+    display = touches.GetDisplayNode()
+    display.SetSelectedColor(TOUCH_COLOR)
+    display.SetGlyphScale(2.5)
+    display.SetTextScale(3.5)
+
+
+def _node(scene: Any, className: str, part: str, name: str) -> Any:
+    return findOrAddNode(scene, className, _role(part), name)
+
+
+def _role(part: str) -> str:
+    return f"{Role.REPLAY} {part}"

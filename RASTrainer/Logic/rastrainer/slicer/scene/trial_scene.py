@@ -1,0 +1,99 @@
+"""The trial that the scene shows: its touches and, once it is analyzed, its results."""
+
+from __future__ import annotations
+
+from hashlib import sha256
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.registration_nodes import showRegistration
+from rastrainer.slicer.scene.residual_glyphs import showResidualArrows
+from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE, showScenario, showTask, taskKey
+from rastrainer.slicer.scene.tables import showFits, showResiduals
+from rastrainer.slicer.translation import _
+from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.record import TrialRecord
+
+STORED_ATTRIBUTE = "RASTrainer.storedTouches"
+"""Stamp of the touches that were put there from a stored trial, which no simulator will clear."""
+
+
+def showTouches(scene: Any, record: TrialRecord) -> Any:
+    """Show the touches of a stored trial in place of those before; return their list."""
+    node = capturedPointsNode(scene)
+    setPoints(node, record.labels, record.positions_mm)
+    node.SetAttribute(STORED_ATTRIBUTE, _stamp(node))
+    noteTouchedTask(scene, record.scenario, record.task)
+    setTouchesVisible(scene, True)
+    return node
+
+
+def noteTouchedTask(scene: Any, scenario: str, task: str) -> None:
+    """Note which task the touches that are shown belong to."""
+    capturedPointsNode(scene).SetAttribute(TASK_ATTRIBUTE, taskKey(scenario, task))
+
+
+def setTouchesVisible(scene: Any, visible: bool) -> None:
+    """Show the list of touches, or hide it while a replay shows them one by one."""
+    display = capturedPointsNode(scene).GetDisplayNode()
+    if display is not None:
+        display.SetVisibility(visible)
+
+
+def showOnlyTouchesOf(scene: Any, scenario: str, task: str) -> None:
+    """Hide touches that belong to another task than the one that is shown."""
+    touched = capturedPointsNode(scene).GetAttribute(TASK_ATTRIBUTE)
+    setTouchesVisible(scene, touched in (None, taskKey(scenario, task)))
+
+
+def forgetStoredTouches(scene: Any) -> None:
+    """Empty the list if it holds a stored trial's touches: another trial has begun."""
+    node = capturedPointsNode(scene)
+    if node.GetAttribute(STORED_ATTRIBUTE) == _stamp(node):
+        node.RemoveAllControlPoints()
+    node.RemoveAttribute(STORED_ATTRIBUTE)
+    setTouchesVisible(scene, True)
+
+
+def checkSameTask(moving: Any | None, fixed: Any | None) -> None:
+    """Check that two lists do not belong to two tasks; of a list of the user's nothing is known.
+
+    Raises:
+        InputError: they do.
+    """
+    tasks = [node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed) if node is not None]
+    if len(tasks) == 2 and None not in tasks and tasks[0] != tasks[1]:
+        raise InputError(
+            _(
+                "The touches are of {touched}, the fiducials of {shown}: show the task that was "
+                "touched, or touch the one that is shown."
+            ).format(touched=tasks[0], shown=tasks[1])
+        )
+
+
+def _stamp(node: Any) -> str:
+    content = repr(labelsOf(node)).encode() + localPoints(node).tobytes()
+    return sha256(content).hexdigest()
+
+
+def showTrial(scene: Any, scenario: Scenario, analysis: TrialAnalysis) -> None:
+    """Replace what the scene shows by this trial; the touches are those of its record.
+
+    Raises:
+        InputError: the scenario's files cannot be used.
+    """
+    showScenario(scene, scenario)
+    fixed = showTask(scene, scenario, analysis.record.task)
+    moving = showTouches(scene, analysis.record)
+    showRegistration(scene, analysis.rigid, moving, fixed)
+    showResiduals(scene, analysis.rigid, analysis.rigid.leave_one_out_mm())
+    kinds = list(analysis.fits)
+    showFits(
+        scene,
+        [analysis.fits[kind] for kind in kinds],
+        [analysis.target_errors[kind] for kind in kinds],
+    )
+    showResidualArrows(scene, analysis.rigid)

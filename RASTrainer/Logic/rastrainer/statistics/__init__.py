@@ -1,0 +1,1 @@
+"""Paired tests, learning and clusters, without any knowledge of trials."""

@@ -1,0 +1,146 @@
+"""Two conditions one after the other: the difference, free of what the order adds.
+
+Who does a condition later has more practice, or is more tired. Where the order is balanced, half of
+the subjects gain by it in one condition and half in the other: the mean difference is right, but
+the subjects' differences scatter by twice the effect of the period, and a paired test that takes
+this for chance finds little. The regression here takes it out (for two sequences AB and BA it is
+the usual analysis of a crossover: Hills and Armitage 1979; Senn 2002, chapter 3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.statistics.effect_size import CONFIDENCE
+from rastrainer.statistics.scipy_modules import scipy_module
+
+FEWEST = 4
+"""Two are spent on difference and period, and a variance of one degree of freedom shows nothing."""
+
+
+@dataclass(frozen=True)
+class DifferenceFit:
+    """The mean of differences, and the effect of the period where it is separated.
+
+    All arrays have the shape of the data without its last axis.
+
+    Attributes:
+        mean: Difference for subjects whom the order neither helps nor hinders.
+        standard_error: Of it.
+        sd: Standard deviation of the differences about the fit.
+        dof: Of it.
+        later: What doing a condition one period later adds; None where it is not separated.
+        later_error: Standard error of it; None where it is not separated.
+    """
+
+    mean: np.ndarray
+    standard_error: np.ndarray
+    sd: np.ndarray
+    dof: int
+    later: np.ndarray | None = None
+    later_error: np.ndarray | None = None
+
+
+def is_separable(order: np.ndarray | None) -> bool:
+    """Return whether the effect of the period can be separated from that of the conditions.
+
+    Args:
+        order: (n,) float, by how many periods each subject did the second condition later than the
+            first: 1 for AB, -1 for BA; None where that is unknown.
+    """
+    if order is None or len(order) < FEWEST:
+        return False
+    return bool(np.ptp(order) > 0 and np.min(order) <= 0 <= np.max(order))
+
+
+def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) -> DifferenceFit:
+    """Return the mean of (…, n) float differences, second condition minus first.
+
+    Args:
+        differences: A study in the last axis.
+        order: As for `is_separable`; where it is not separable, the plain mean is returned.
+    """
+    n = differences.shape[-1]
+    means = differences.mean(axis=-1)
+    centered = differences - means[..., None]
+    if order is None or not is_separable(order):
+        sd = np.sqrt((centered**2).sum(axis=-1) / (n - 1))
+        return DifferenceFit(means, sd / np.sqrt(n), sd, n - 1)
+    offsets = order - order.mean()
+    squares = float(offsets @ offsets)
+    later = centered @ offsets / squares
+    residuals = centered - later[..., None] * offsets
+    sd = np.sqrt((residuals**2).sum(axis=-1) / (n - 2))
+    return DifferenceFit(
+        mean=means - later * order.mean(),
+        standard_error=sd * np.sqrt(1 / n + order.mean() ** 2 / squares),
+        sd=sd,
+        dof=n - 2,
+        later=later,
+        later_error=sd / np.sqrt(squares),
+    )
+
+
+FEWEST_OF_SEQUENCE = 2
+"""Subjects of a sequence, to estimate how much they scatter."""
+
+
+@dataclass(frozen=True)
+class Sequences:
+    """Subjects by the condition that they did first.
+
+    Attributes:
+        first_first: How many did the first condition first.
+        second_first: How many did the second one first.
+        later: What one period later adds.
+        later_interval: 95 % interval of it.
+        between: Mean over both conditions of those who did the second one first, minus that of
+            those who did the first one first; None with fewer than two subjects in one of both.
+            Without carry-over it is 0 but for chance.
+        between_interval: 95 % interval of it.
+    """
+
+    first_first: int
+    second_first: int
+    later: float
+    later_interval: tuple[float, float]
+    between: float | None
+    between_interval: tuple[float, float] | None
+
+
+def compare_sequences(
+    first: np.ndarray, second: np.ndarray, order: np.ndarray, fit: DifferenceFit
+) -> Sequences:
+    """Return what the order did, of (n,) float values of both conditions.
+
+    Args:
+        first: One condition.
+        second: The other one.
+        order: By how many periods each subject did the second condition later than the first.
+        fit: Of the differences, with the period.
+
+    Raises:
+        ValueError: the fit does not separate the period.
+    """
+    if fit.later is None or fit.later_error is None:
+        raise ValueError("The effect of the period is not separated.")
+    stats = scipy_module("stats")
+    reach = float(stats.t.ppf((1 + CONFIDENCE) / 2, fit.dof) * fit.later_error)
+    later = float(fit.later)
+    means = (first + second) / 2
+    groups = means[order < 0], means[order > 0]
+    between, between_interval = None, None
+    if min(map(len, groups)) >= FEWEST_OF_SEQUENCE and np.ptp(means) > 0:
+        between = float(groups[0].mean() - groups[1].mean())
+        limits = stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
+        between_interval = (float(limits.low), float(limits.high))
+    return Sequences(
+        first_first=len(groups[1]),
+        second_first=len(groups[0]),
+        later=later,
+        later_interval=(later - reach, later + reach),
+        between=between,
+        between_interval=between_interval,
+    )

@@ -1,0 +1,143 @@
+"""LC-CUSUM: when has a trainee reached competence? (Biau and Porcher 2010)
+
+The usual CUSUM starts from a competent operator. This one starts from the hypothesis that the
+trainee is not competent yet, and signals when the trials speak against that.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rastrainer.errors import InputError
+from rastrainer.number_text import percent
+
+FALSE_DISCOVERY = 0.05
+"""Largest share of inadequate trainees who are called competent within the training."""
+
+
+@dataclass(frozen=True)
+class LcCusum:
+    """The chart of a trainee.
+
+    Attributes:
+        scores: After each trial; a success adds, a failure takes off, never below 0.
+        limit: A score at or above it shows competence.
+        competent_at: Number of the trial (the first is 1) that showed it; None where none did.
+        false_discovery: Probability that a trainee with the inadequate failure rate gets this
+            signal within as many trials.
+    """
+
+    scores: tuple[float, ...]
+    limit: float
+    competent_at: int | None
+    false_discovery: float
+
+
+def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit: float) -> LcCusum:
+    """Return the chart of a trainee's failures.
+
+    Args:
+        failures: Whether each trial failed, in their order.
+        adequate: Failure rate of a competent trainee.
+        inadequate: Failure rate of one who is not.
+        limit: h, see `lc_cusum_limit`.
+
+    Raises:
+        InputError: the rates are not 0 < adequate < inadequate < 1, or the limit is not above 0.
+    """
+    success, failure = _steps(adequate, inadequate)
+    if not limit > 0:
+        raise InputError("The limit of an LC-CUSUM must be above 0.")
+    scores, score, competent_at = [], 0.0, None
+    for number, failed in enumerate(failures, start=1):
+        score = max(0.0, score + (failure if failed else success))
+        scores.append(score)
+        if competent_at is None and score >= limit:
+            competent_at = number
+    risk = signal_probability(inadequate, len(scores), adequate, inadequate, limit)
+    return LcCusum(tuple(scores), limit, competent_at, risk)
+
+
+@functools.lru_cache(maxsize=32)
+def lc_cusum_limit(
+    adequate: float, inadequate: float, trials: int, false_discovery: float = FALSE_DISCOVERY
+) -> float:
+    """Return the least limit that an incompetent trainee reaches too rarely.
+
+    Args:
+        adequate: Failure rate of a competent trainee.
+        inadequate: Failure rate of one who is not.
+        trials: How many trials the training has.
+        false_discovery: Largest probability that an inadequate trainee is called competent.
+
+    Raises:
+        InputError: as `lc_cusum`, or so few trials cannot show competence at that risk.
+    """
+    success, _ = _steps(adequate, inadequate)
+    if signal_probability(inadequate, trials, adequate, inadequate, trials * success) > (
+        false_discovery
+    ):
+        raise InputError(
+            f"{trials} trials cannot show competence at a risk of {percent(false_discovery)}: even "
+            "successes alone are too likely by chance."
+        )
+    low, high = 0.0, trials * success
+    while high - low > 1e-6:
+        middle = (low + high) / 2
+        risk = signal_probability(inadequate, trials, adequate, inadequate, middle)
+        low, high = (low, middle) if risk <= false_discovery else (middle, high)
+    return high
+
+
+def fewest_trials(adequate: float, inadequate: float, limit: float) -> int:
+    """Return how many trials show competence at the earliest: successes without a failure."""
+    success, _ = _steps(adequate, inadequate)
+    return math.ceil(limit / success - 1e-12)
+
+
+def chance_of_successes(count: int, trials: int, adequate: float, inadequate: float) -> float:
+    """Return how probable it is that an inadequate trainee reaches the score of so many successes.
+
+    Args:
+        count: Successes without a failure between them.
+        trials: Within how many.
+        adequate: Failure rate of a competent trainee.
+        inadequate: Failure rate of one who is not.
+    """
+    success, _ = _steps(adequate, inadequate)
+    return signal_probability(inadequate, trials, adequate, inadequate, count * success)
+
+
+def signal_probability(
+    failure_rate: float, trials: int, adequate: float, inadequate: float, limit: float
+) -> float:
+    """Return how probable a signal is within so many trials, exactly, by following every score."""
+    success, failure = _steps(adequate, inadequate)
+    # A score is a number of successes and of failures since it was last 0.
+    open_scores, signaled = {(0, 0): 1.0}, 0.0
+    for _ in range(trials):
+        following: dict[tuple[int, int], float] = {}
+        for (good, bad), probability in open_scores.items():
+            for is_failure, share in ((False, 1 - failure_rate), (True, failure_rate)):
+                state = (good, bad + 1) if is_failure else (good + 1, bad)
+                score = state[0] * success + state[1] * failure
+                if score >= limit - 1e-12:
+                    signaled += probability * share
+                else:
+                    state = state if score > 0 else (0, 0)
+                    following[state] = following.get(state, 0.0) + probability * share
+        open_scores = following
+    return min(1.0, signaled)
+
+
+def _steps(adequate: float, inadequate: float) -> tuple[float, float]:
+    """Return what a success adds and a failure takes off: log likelihood ratios."""
+    if not 0 < adequate < inadequate < 1:
+        raise InputError(
+            "A CUSUM needs an acceptable failure rate above 0 and a larger, unacceptable one "
+            "below 1."
+        )
+    return math.log((1 - adequate) / (1 - inadequate)), math.log(adequate / inadequate)

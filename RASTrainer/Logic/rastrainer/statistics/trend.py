@@ -1,0 +1,186 @@
+"""Do times or errors fall from trial to trial? A test that five trials are enough for.
+
+A curve with a free rate and plateau has as many parameters as the published protocol has trials
+to spare, and no criterion can prefer it. Two things are known beforehand, and make a test out of
+five trials: practice does not make slower or worse, so the test is one-sided; and what it gains is
+most at first, so the trials are set against the logarithm of their number. The p-value is the share
+of all orders of the same values that would fall as steeply: exact for every distribution of values
+that do not depend on each other, and skewed or heavy-tailed ones, too.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.statistics.effect_size import CONFIDENCE
+from rastrainer.statistics.scipy_modules import scipy_module
+
+ALPHA = 0.05
+FEWEST_TRIALS = 4
+"""Three trials have six orders: their smallest p is 1/6."""
+STEADY = 0.1
+"""A fall by less than this share of the mean is called none; our own convention."""
+MOST_ORDERS = 9999
+"""All orders of up to seven trials; of more, so many random ones."""
+
+
+class TrendVerdict(Enum):
+    """What a series of trials shows."""
+
+    FALLS = "falls"
+    STEADY = "steady"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True)
+class Trend:
+    """How a trainee's values change.
+
+    Attributes:
+        trials: How many.
+        change: From the first to the last trial on the fitted line over ln(trial); in the unit.
+        interval: 90 % interval of it (Student's t): both ends are one-sided limits at 5 %.
+        p: One-sided, of falling.
+        verdict: Falls where p is at most .05 (6 of the 120 orders of five trials); steady where
+            not, and the interval holds neither a fall nor a rise by a tenth of the mean; undecided
+            where it may be either.
+    """
+
+    trials: int
+    change: float
+    interval: tuple[float, float]
+    p: float
+    verdict: TrendVerdict
+
+
+def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
+    """Test whether (n,) times or errors of consecutive trials fall.
+
+    Raises:
+        InputError: fewer than four trials, or values that are not finite.
+    """
+    y = np.asarray(values, dtype=float)
+    if len(y) < FEWEST_TRIALS or not np.isfinite(y).all():
+        raise InputError(
+            f"Whether trials improve can be tested from {FEWEST_TRIALS} finite values on."
+        )
+    x, weights = np.log(np.arange(1, len(y) + 1)), change_weights(len(y))
+    change = float(weights @ y)
+    residuals = y - y.mean() - change * (x - x.mean()) / x[-1]
+    error = float(np.sqrt(residuals @ residuals / (len(y) - 2) * (weights @ weights)))
+    reach = float(scipy_module("stats").t.ppf(1 - ALPHA, len(y) - 2)) * error
+    p = _permuted_p(y, weights)
+    interval = (change - reach, change + reach)
+    return Trend(len(y), change, interval, p, _verdict(p, interval, float(np.abs(y).mean())))
+
+
+def change_weights(trials: int) -> np.ndarray:
+    """Return the (n,) float weights whose sum over the values of n trials is the change.
+
+    It is that of the least-squares line over ln(trial), from the first trial to the last.
+    """
+    x = np.log(np.arange(1, trials + 1))
+    offsets = x - x.mean()
+    return offsets * (x[-1] - x[0]) / (offsets @ offsets)
+
+
+def cohort_trend_p(rows: np.ndarray) -> float:
+    """Return the one-sided p that (m, n) values of m trainees fall over their n trials.
+
+    It is Page's test (1963), each trainee a block: only the ranks within trainees count, so that
+    slow and quick ones count alike.
+
+    Raises:
+        InputError: fewer than two trainees or three trials.
+    """
+    values = np.asarray(rows, dtype=float)
+    if values.ndim != 2 or values.shape[0] < 2 or values.shape[1] < 3:
+        raise InputError("Page's test needs at least two trainees with three trials each.")
+    falling = np.arange(values.shape[1], 0, -1)
+    return float(scipy_module("stats").page_trend_test(values, predicted_ranks=falling).pvalue)
+
+
+def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
+    """Return the share of the orders of y whose change is as far below 0."""
+
+    def change(ordered: np.ndarray, axis: int = -1) -> np.ndarray:
+        return (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1)
+
+    found = scipy_module("stats").permutation_test(
+        (y,),
+        change,
+        permutation_type="pairings",
+        alternative="less",
+        vectorized=True,
+        n_resamples=MOST_ORDERS,
+        random_state=np.random.default_rng(0),
+    )
+    return float(found.pvalue)
+
+
+def _verdict(p: float, interval: tuple[float, float], mean: float) -> TrendVerdict:
+    if p <= ALPHA + 1e-12:
+        return TrendVerdict.FALLS
+    if max(-interval[0], interval[1]) < STEADY * mean:
+        return TrendVerdict.STEADY
+    return TrendVerdict.UNDECIDED
+
+
+@dataclass(frozen=True)
+class CohortTrend:
+    """How one outcome of several trainees changes.
+
+    Attributes:
+        trainees: Those with four trials or more.
+        means: Of them at each trial, as far as all have come.
+        change: Mean over the trainees of the change from the first of these trials to the last;
+            None of a single one.
+        interval: 95 % interval of it; None of a single one.
+        p: One-sided, of all getting better (Page's test); None of a single one.
+        verdicts: How many trainees alone show what.
+    """
+
+    trainees: int
+    means: tuple[float, ...]
+    change: float | None
+    interval: tuple[float, float] | None
+    p: float | None
+    verdicts: Counter[TrendVerdict]
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether getting better is more than chance."""
+        if self.p is None:
+            return self.verdicts[TrendVerdict.FALLS] > 0
+        return self.p < ALPHA
+
+
+def cohort_trend(series: Sequence[Sequence[float]], better: int) -> CohortTrend | None:
+    """Return the trend of several trainees; None where nobody has four trials.
+
+    Args:
+        series: Of each trainee the values of all trials, in their order.
+        better: -1 where less is better, 1 where more is.
+    """
+    long = [np.asarray(own, dtype=float) for own in series if len(own) >= FEWEST_TRIALS]
+    if not long:
+        return None
+    common = min(map(len, long))
+    rows = np.array([own[:common] for own in long])
+    toward = -better
+    verdicts = Counter(falling_trend(toward * own).verdict for own in long)
+    change = interval = p = None
+    if len(rows) > 1:
+        changes = rows @ change_weights(common)
+        change = float(changes.mean())
+        error = float(changes.std(ddof=1)) / np.sqrt(len(rows))
+        reach = float(scipy_module("stats").t.ppf((1 + CONFIDENCE) / 2, len(rows) - 1)) * error
+        interval = (change - reach, change + reach)
+        p = cohort_trend_p(toward * rows)
+    return CohortTrend(len(rows), tuple(rows.mean(axis=0).tolist()), change, interval, p, verdicts)

@@ -1,0 +1,1 @@
+"""What was stored of all trainees, and what it shows."""

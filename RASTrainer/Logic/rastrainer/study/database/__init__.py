@@ -1,0 +1,1 @@
+"""The SQLite file that holds trainees, trials, scores and answers."""

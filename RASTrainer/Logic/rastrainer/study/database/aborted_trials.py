@@ -1,0 +1,168 @@
+"""Aborted trials in a study: stored once, deleted with their trainee, counted in their place."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.clock import moment, utc_now
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
+from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES, decoded, json_text
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.trainee_progress import PastTrial
+
+
+@dataclass(frozen=True)
+class StoredAborted:
+    """An aborted trial, and why it was repeated.
+
+    Attributes:
+        record: As the simulator delivered it.
+        step: Name of the study's step that it belonged to; "" where none or nothing was asked.
+        repeat_reason: Why that step was played again; "" as long as nobody has said it.
+    """
+
+    record: AbortedTrial
+    step: str = ""
+    repeat_reason: str = ""
+
+
+class AbortedTrials:
+    """The aborted trials of one study. One thread may use it."""
+
+    def __init__(self, study: Study) -> None:
+        self._database = study.database
+
+    def add(
+        self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
+    ) -> bool:
+        """Store an aborted trial; return whether it was new. Twice is once.
+
+        A trainee whom the study does not know is added without consent, as by `Study.add_trial`.
+
+        Args:
+            record: The trial, or the JSON object that holds it, which is checked.
+            delivered: The object that the record was read from; its unknown keys are kept, too.
+
+        Raises:
+            InputError: the object is no record, larger than 1 MiB, or another trial has its UUID.
+            DeletedTrialError: the trial was deleted with its trainee.
+        """
+        if not isinstance(record, AbortedTrial):
+            delivered = record
+            record = AbortedTrial.from_json(delivered)
+        text = json_text(delivered or record.to_json())
+        if len(text) > RECORD_LIMIT_BYTES:
+            raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+        with self._database.writing() as connection:
+            return _add(connection, record, text)
+
+    def of(self, pseudonym: str) -> tuple[StoredAborted, ...]:
+        """Return those of a trainee as they were started; `InputError` for an unknown one."""
+        with self._database.reading() as connection:
+            study_trainees.find(connection, pseudonym)
+            return stored_of(connection, pseudonym)
+
+    def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
+        """Return what progress is computed from, as started: scored trials and aborted failures.
+
+        Raises:
+            InputError: the study has no trainee of this pseudonym.
+        """
+        with self._database.reading() as connection:
+            scored = study_trials.past_trials(connection, pseudonym)
+            started = dict(
+                connection.execute(
+                    f"SELECT trial_id, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})",
+                    (pseudonym,),
+                )
+            )
+            timed = [(moment(started[trial.trial_id]), trial) for trial in scored]
+            timed += [
+                (moment(stored.record.started_utc), _failed(stored.record))
+                for stored in stored_of(connection, pseudonym)
+                if stored.record.counts_as_failed
+            ]
+            return tuple(trial for _when, trial in sorted(timed, key=lambda each: each[0]))
+
+
+def stored_of(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredAborted, ...]:
+    """Return the aborted trials of a trainee as they were started."""
+    rows = connection.execute(
+        "SELECT record_json, coalesce(step, ''), coalesce(reason, '') FROM aborted_trials "
+        "LEFT JOIN repeats USING (trial_id) "
+        f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY aborted_trials.rowid",
+        (pseudonym,),
+    ).fetchall()
+    found = [
+        StoredAborted(decoded(text, AbortedTrial.from_json), step, reason)
+        for text, step, reason in rows
+    ]
+    return tuple(sorted(found, key=lambda stored: moment(stored.record.started_utc)))
+
+
+def unexplained(
+    connection: sqlite3.Connection, pseudonym: str, mode: str, task: str, since: datetime
+) -> tuple[AbortedTrial, ...]:
+    """Return those of a task, started since a moment, for whose repeat no reason is given yet."""
+    return tuple(
+        stored.record
+        for stored in stored_of(connection, pseudonym)
+        if not stored.repeat_reason
+        and (stored.record.mode, stored.record.task) == (mode, task)
+        and moment(stored.record.started_utc) >= since
+    )
+
+
+def explain(connection: sqlite3.Connection, trial_id: str, step: str, reason: str) -> None:
+    """Store why a step is played again after an aborted trial."""
+    connection.execute(
+        "INSERT INTO repeats VALUES (?, ?, ?, ?)", (trial_id, step, reason, utc_now())
+    )
+
+
+def _add(connection: sqlite3.Connection, record: AbortedTrial, text: str) -> bool:
+    check_not_deleted(connection, record.trial_id)
+    row = connection.execute(
+        "SELECT record_json FROM aborted_trials WHERE trial_id = ?", (record.trial_id,)
+    ).fetchone()
+    is_other = row is not None and decoded(row[0], AbortedTrial.from_json) != record
+    if is_other or study_trials.exists(connection, record.trial_id):
+        raise InputError(
+            f"Another trial is stored under the UUID {record.trial_id}; the stored one is kept."
+        )
+    if row is not None:
+        return False
+    study_trainees.create_where_missing(connection, record.trainee, consent=False)
+    connection.execute(
+        f"INSERT INTO aborted_trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?)",
+        (
+            record.trial_id,
+            record.trainee,
+            record.task,
+            record.mode,
+            record.scenario,
+            record.started_utc,
+            text,
+            utc_now(),
+        ),
+    )
+    return True
+
+
+def _failed(record: AbortedTrial) -> PastTrial:
+    return PastTrial(
+        record.trial_id,
+        record.task,
+        record.mode,
+        record.elapsed_s,
+        score=0.0,
+        acceptable=False,
+        is_aborted=True,
+    )

@@ -1,0 +1,162 @@
+"""What a study's file knows of the virtual cohort that is played into it, so that it can resume.
+
+How many trials are planned and what they follow from is stored before the first is played, and that
+all are done after the last. An incomplete study is recognized as such, whatever interrupted it.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_finite_json
+from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.clock import utc_now
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.study_trainees import DeletedTrialError, check_not_deleted
+from rastrainer.study.database.study_trials import json_text
+from rastrainer.trial.analysis import TrialAnalysis
+
+
+class IncompleteStudyError(InputError):
+    """The study is a virtual cohort that was not played to its end."""
+
+
+@dataclass(frozen=True)
+class CohortState:
+    """How far a virtual cohort is played.
+
+    Attributes:
+        planned: Trials of the whole cohort.
+        stored: Trials that were finished and stored.
+        stuck: Trials in which the virtual trainee did not get to a fiducial.
+        is_finished: Whether all were played; trainees that were deleted since change nothing.
+    """
+
+    planned: int
+    stored: int
+    stuck: int
+    is_finished: bool
+
+    @property
+    def gap(self) -> str:
+        """What is missing, as a sentence; "" where the cohort is complete."""
+        if self.is_finished:
+            return ""
+        stuck = f", and {self.stuck} got stuck" if self.stuck else ""
+        return (
+            f"This virtual cohort was not played to its end: {self.stored} of {self.planned} "
+            f"trials are there{stuck}."
+        )
+
+
+class CohortStore:
+    """The virtual cohort of one study. One thread may use it."""
+
+    def __init__(self, study: Study) -> None:
+        self._database = study.database
+
+    def begin(self, plan: Mapping[str, Any], planned_trials: int) -> None:
+        """Note what will be played; the same again, to resume, changes nothing.
+
+        Args:
+            plan: All that the trials follow from; JSON.
+            planned_trials: How many there will be.
+
+        Raises:
+            InputError: the study is of something else, or of another plan.
+        """
+        with self._database.writing() as connection:
+            row = connection.execute("SELECT plan_json FROM cohort").fetchone()
+            if row is None:
+                _check_new(connection)
+                connection.execute(
+                    "INSERT INTO cohort VALUES (1, ?, ?, ?, NULL)",
+                    (json_text(plan), planned_trials, utc_now()),
+                )
+            elif row[0] != json_text(plan):
+                _refuse_other_plan(*map(decode_finite_json, (row[0], json_text(plan))))
+
+    def state(self) -> CohortState | None:
+        """Return how far the cohort is played; None where the study is no virtual cohort."""
+        with self._database.reading() as connection:
+            row = connection.execute("SELECT planned_trials, finished_utc FROM cohort").fetchone()
+            if row is None:
+                return None
+            stored, stuck = (
+                connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0]
+                for table in ("trials", "stuck_trials")
+            )
+        return CohortState(row[0], stored, stuck, row[1] is not None)
+
+    def has_played(self, trial_id: str) -> bool:
+        """Return whether a trial was played: stored, stuck, or deleted since."""
+        with self._database.reading() as connection:
+            query = "SELECT 1 FROM stuck_trials WHERE trial_id = ?"
+            if connection.execute(query, (trial_id,)).fetchone() is not None:
+                return True
+            try:
+                check_not_deleted(connection, trial_id)
+            except DeletedTrialError:
+                return True
+            return study_trials.exists(connection, trial_id)
+
+    def add(self, analysis: TrialAnalysis) -> None:
+        """Store a finished trial with all that is known of it, together or not at all.
+
+        Args:
+            analysis: Its record, fits, target errors, truth and score.
+
+        Raises:
+            ValueError: the truth is not known.
+        """
+        record, truth = analysis.record, analysis.truth
+        if truth is None:
+            raise ValueError("A virtual trial is stored with its truth.")
+        with self._database.writing() as connection:
+            study_trainees.create_where_missing(connection, record.trainee, consent=True)
+            # Not new where a second process plays the same cohort; its trial is the same.
+            if study_trials.add(connection, record, record.to_json()):
+                study_trials.add_results(
+                    connection,
+                    record.trial_id,
+                    analysis.fits.values(),
+                    analysis.target_errors,
+                    analysis.score,
+                )
+                study_trials.set_truth(
+                    connection, record.trial_id, truth.true_tre_mm, truth.head_to_world
+                )
+
+    def add_stuck(self, trial_id: str) -> None:
+        """Note that a trial was played, but not to its end."""
+        with self._database.writing() as connection:
+            connection.execute("INSERT OR IGNORE INTO stuck_trials VALUES (?)", (trial_id,))
+
+    def finish(self) -> None:
+        """Note that all trials were played."""
+        with self._database.writing() as connection:
+            connection.execute(
+                "UPDATE cohort SET finished_utc = ? WHERE finished_utc IS NULL", (utc_now(),)
+            )
+
+
+def _check_new(connection: sqlite3.Connection) -> None:
+    for table in ("trainees", "study_protocol"):
+        if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
+            raise InputError(
+                "The folder holds a study that is no virtual cohort, or one of an older "
+                "RASTrainer; choose an empty folder."
+            )
+
+
+def _refuse_other_plan(stored: Mapping[str, Any], plan: Mapping[str, Any]) -> None:
+    names = [name for name in {**stored, **plan} if stored.get(name) != plan.get(name)]
+    raise InputError(
+        f"The folder holds a virtual cohort that was started with other options (different: "
+        f"{', '.join(names)}). Resume it with the options that it was started with, or choose an "
+        "empty folder."
+    )

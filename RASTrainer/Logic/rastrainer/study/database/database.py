@@ -1,0 +1,247 @@
+"""The SQLite file under a study: opened with care, changed in transactions, errors in sentences.
+
+The rollback journal is used, not the write-ahead log: that one needs memory which the computers of
+a shared folder do not share, and a study on a hospital's network drive would be damaged without a
+word. Writers wait for each other; a trial takes milliseconds and comes once in minutes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sqlite3
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.files.writing import keep_others_out, open_private
+from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
+
+BUSY_TIMEOUT_S = 30.0
+INTERACTIVE_TIMEOUT_S = 0.05
+"""Nobody notices so short a wait in a window."""
+REST_S = 1.0
+
+
+class Patience:
+    """Waits for a lock, and after a timeout no more for a while.
+
+    A panel asks a study ten questions in a row: with a lock held elsewhere it waits once, not ten
+    times. Several connections may share one.
+    """
+
+    def __init__(
+        self,
+        most_s: float = BUSY_TIMEOUT_S,
+        rest_s: float = 0.0,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Wait `most_s` for a lock, but not within `rest_s` after a timeout."""
+        self._most_s, self._rest_s, self._clock = most_s, rest_s, clock
+        self._rests_until = float("-inf")
+        self._is_lost = False
+
+    @classmethod
+    def interactive(cls) -> Patience:
+        """Return that of a thread which draws a window."""
+        return cls(INTERACTIVE_TIMEOUT_S, REST_S)
+
+    @property
+    def timeout_s(self) -> float:
+        """How long to wait now."""
+        return 0.0 if self._clock() < self._rests_until else self._most_s
+
+    def lose(self) -> None:
+        """Note a timeout."""
+        self._is_lost = True
+        if self._clock() >= self._rests_until:
+            self._rests_until = self._clock() + self._rest_s
+
+    def regained(self) -> bool:
+        """Return whether, after a timeout, it is time to try again; true once."""
+        is_rested = self._is_lost and self._clock() >= self._rests_until
+        self._is_lost = self._is_lost and not is_rested
+        return is_rested
+
+
+_COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
+
+
+class StudyBusyError(InputError):
+    """Another program has the study locked; nothing has changed, and it may be tried again."""
+
+
+class StudyDatabase:
+    """A connection to one file; several processes and threads may have one each."""
+
+    def __init__(self, path: str | os.PathLike[str], patience: Patience | None = None) -> None:
+        """Open the file, create it if it is not there, and bring its tables up to date.
+
+        Args:
+            path: of the file.
+            patience: with a lock held elsewhere; half a minute when left out.
+
+        Raises:
+            InputError: no such folder, not a database, another program's, damaged, or made by a
+                newer RASTrainer.
+            StudyBusyError: another program has it locked.
+        """
+        self.path = Path(path)
+        self._patience = patience or Patience()
+        self._check_place()
+        with self._sentences():
+            self._connection = self._connect()
+        try:
+            with self._sentences():
+                self._prepare()
+        except BaseException:
+            self._connection.close()
+            raise
+
+    def close(self) -> None:
+        """Close the connection; nothing is pending outside a transaction."""
+        self._connection.close()
+
+    @contextmanager
+    def reading(self) -> Iterator[sqlite3.Connection]:
+        """Give the connection for several reads of one state."""
+        with self._transaction("BEGIN") as connection:
+            yield connection
+
+    @contextmanager
+    def writing(self) -> Iterator[sqlite3.Connection]:
+        """Give the connection for changes that are stored together or not at all.
+
+        Raises:
+            InputError: the file is read-only, or the disk is full.
+            StudyBusyError: another program has it locked.
+        """
+        with self._transaction("BEGIN IMMEDIATE") as connection:
+            yield connection
+
+    def version(self) -> int | None:
+        """Return a number that is another one once another connection has changed the file.
+
+        It waits for nobody, and is cheap enough to be asked every second. None while it cannot be
+        told, as in the moment of such a change.
+        """
+        try:
+            self._connection.execute("PRAGMA busy_timeout = 0")
+            return self._number("data_version")
+        except sqlite3.Error:
+            return None
+
+    @contextmanager
+    def _transaction(self, begin: str) -> Iterator[sqlite3.Connection]:
+        with self._sentences():
+            self._connection.execute(f"PRAGMA busy_timeout = {1000 * self._patience.timeout_s:.0f}")
+            self._connection.execute(begin)
+            try:
+                yield self._connection
+                self._connection.execute("COMMIT")
+            finally:
+                if self._connection.in_transaction:
+                    self._connection.execute("ROLLBACK")
+
+    def _connect(self) -> sqlite3.Connection:
+        self._keep_private()
+        # Only we begin transactions: `isolation_level=None`.
+        return sqlite3.connect(self.path, timeout=self._patience.timeout_s, isolation_level=None)
+
+    def _check_place(self) -> None:
+        if "\0" in str(self.path):
+            raise InputError("The name of a study database must not hold a null character.")
+        if self.path.is_dir():
+            raise InputError(f"{self.path} is a folder; a study database is a file.")
+        if not self.path.parent.is_dir():
+            raise InputError(f"There is no folder {self.path.parent} for the study database.")
+
+    def _keep_private(self) -> None:
+        """Keep others out of the file, and of what SQLite lays beside it and leaves in a crash."""
+        # Only a new one is opened: to close another would end the locks of our other connections.
+        with contextlib.suppress(OSError):
+            os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
+        for suffix in ("", "-journal", "-wal", "-shm"):
+            keep_others_out(f"{self.path}{suffix}")
+
+    def _prepare(self) -> None:
+        for pragma in (
+            "foreign_keys = ON",
+            # Deleted trainees leave no bytes behind in the file.
+            "secure_delete = ON",
+            # Also sync the folder: what was committed stays after a power failure, since the
+            # simulator forgets a trial that we have acknowledged.
+            "synchronous = EXTRA",
+            "journal_mode = DELETE",
+            "trusted_schema = OFF",
+        ):
+            self._connection.execute(f"PRAGMA {pragma}")
+        # In one transaction: another process may just be making the first tables.
+        with self.reading():
+            self._check_origin()
+            is_old = self._number("user_version") < len(MIGRATIONS)
+        if is_old:
+            self._migrate()
+        self._check_whole()
+
+    def _check_whole(self) -> None:
+        if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
+            raise sqlite3.DatabaseError("malformed")
+        if self._connection.execute("PRAGMA foreign_key_check").fetchone() is not None:
+            raise sqlite3.DatabaseError("malformed")
+
+    def _check_origin(self) -> None:
+        tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        # Ours has none: in a file from elsewhere they would act in our name.
+        if self._connection.execute(_COMMANDS).fetchone()[0]:
+            raise InputError(f"The study {self.path} holds triggers or views; ours has none.")
+        if self._number("application_id") != (APPLICATION_ID if tables else 0):
+            raise InputError(f"{self.path} is the database of another program.")
+        if self._number("user_version") > len(MIGRATIONS):
+            raise InputError(
+                f"The study {self.path} was made by a newer RASTrainer (format "
+                f"{self._number('user_version')}, this one knows {len(MIGRATIONS)}); update it."
+            )
+
+    def _migrate(self) -> None:
+        with self.writing() as connection:
+            # Another process may have migrated while this one waited for its turn.
+            for version in range(self._number("user_version"), len(MIGRATIONS)):
+                for statement in MIGRATIONS[version]:
+                    connection.execute(statement)
+                connection.execute(f"PRAGMA user_version = {version + 1}")
+            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+
+    def _number(self, pragma: str) -> int:
+        return self._connection.execute(f"PRAGMA {pragma}").fetchone()[0]
+
+    @contextmanager
+    def _sentences(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.IntegrityError, sqlite3.ProgrammingError, sqlite3.InterfaceError):
+            raise
+        except sqlite3.Error as error:
+            text = str(error).lower()
+            if "locked" in text:
+                self._patience.lose()
+                raise StudyBusyError(
+                    f"Another program has the study {self.path} locked; try again when it has "
+                    "finished."
+                ) from error
+            raise InputError(self._sentence(text)) from error
+
+    def _sentence(self, text: str) -> str:
+        reasons = {
+            "not a database": f"{self.path} is not a study database.",
+            "readonly": f"The study {self.path} is read-only; allow writing to it and its folder.",
+            "unable to open": f"The study {self.path} cannot be opened; check its permissions.",
+            "full": f"The study {self.path} cannot be written: the disk is full.",
+            "disk i/o": f"The study {self.path} cannot be read or written: the disk fails.",
+        }
+        for words, sentence in reasons.items():
+            if words in text:
+                return sentence
+        return f"The study {self.path} is damaged; restore it from a backup."

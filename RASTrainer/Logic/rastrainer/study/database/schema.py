@@ -1,0 +1,157 @@
+"""The tables of a study database, as the steps that led to them.
+
+A database knows how many steps it has taken (`user_version`). A step, once published, never
+changes: what comes next is a further step.
+"""
+
+from __future__ import annotations
+
+APPLICATION_ID = 0x52415354
+"""Written into the file's header (`RAST`), by which another program's database is recognized."""
+
+MIGRATIONS: tuple[tuple[str, ...], ...] = (
+    (
+        """
+        CREATE TABLE trainees (
+            id INTEGER PRIMARY KEY AUTOINCREMENT,
+            pseudonym TEXT NOT NULL UNIQUE,
+            consent INTEGER NOT NULL CHECK (consent IN (0, 1)),
+            archived INTEGER NOT NULL CHECK (archived IN (0, 1)),
+            created_utc TEXT NOT NULL
+        )
+        """,
+        """
+        CREATE TABLE trials (
+            trial_id TEXT PRIMARY KEY NOT NULL,
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            task TEXT NOT NULL,
+            mode TEXT NOT NULL,
+            scenario TEXT NOT NULL,
+            started_utc TEXT NOT NULL,
+            completion_time_s REAL NOT NULL,
+            record_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX trials_of_trainee ON trials (trainee_id)",
+        """
+        CREATE TABLE registrations (
+            id INTEGER PRIMARY KEY,
+            trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            kind TEXT NOT NULL,
+            fre_mm REAL NOT NULL,
+            registration_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX registrations_of_trial ON registrations (trial_id, kind)",
+        """
+        CREATE TABLE scores (
+            id INTEGER PRIMARY KEY,
+            trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            score REAL NOT NULL,
+            version TEXT NOT NULL,
+            score_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX scores_of_trial ON scores (trial_id)",
+        """
+        CREATE TABLE truths (
+            trial_id TEXT PRIMARY KEY NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            true_tre_mm REAL NOT NULL,
+            head_to_world_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+    ),
+    (
+        # So that a simulator that offers a deleted trial again does not bring its trainee back.
+        # A hash, not the UUID: it can be recognized but leads to nobody.
+        "CREATE TABLE deleted_trials (trial_sha256 TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
+        """
+        CREATE TABLE motions (
+            trial_id TEXT PRIMARY KEY NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            motion_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+    ),
+    (
+        # What the protocol asks of each trainee, and what became of it.
+        """
+        CREATE TABLE study_protocol (
+            id INTEGER PRIMARY KEY CHECK (id = 1),
+            protocol_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        """
+        CREATE TABLE enrollments (
+            trainee_id INTEGER PRIMARY KEY REFERENCES trainees (id) ON DELETE CASCADE,
+            place INTEGER NOT NULL UNIQUE CHECK (place >= 0),
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        """
+        CREATE TABLE steps (
+            id INTEGER PRIMARY KEY,
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            step TEXT NOT NULL,
+            outcome TEXT NOT NULL CHECK (outcome IN ('done', 'skipped')),
+            details_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL,
+            UNIQUE (trainee_id, step)
+        )
+        """,
+    ),
+    (
+        # How long a trial run has been practiced, so that an interruption does not begin it anew.
+        """
+        CREATE TABLE practice (
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            step TEXT NOT NULL,
+            seconds REAL NOT NULL CHECK (seconds >= 0),
+            PRIMARY KEY (trainee_id, step)
+        )
+        """,
+    ),
+    (
+        # A virtual cohort: what is planned, when it was finished, and who never got through.
+        """
+        CREATE TABLE cohort (
+            id INTEGER PRIMARY KEY CHECK (id = 1),
+            plan_json TEXT NOT NULL,
+            planned_trials INTEGER NOT NULL CHECK (planned_trials > 0),
+            stored_utc TEXT NOT NULL,
+            finished_utc TEXT
+        )
+        """,
+        "CREATE TABLE stuck_trials (trial_id TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
+    ),
+    (
+        # Trials that were aborted, and why the study's step was then played again.
+        """
+        CREATE TABLE aborted_trials (
+            trial_id TEXT PRIMARY KEY NOT NULL,
+            trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
+            task TEXT NOT NULL,
+            mode TEXT NOT NULL,
+            scenario TEXT NOT NULL,
+            started_utc TEXT NOT NULL,
+            record_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX aborted_trials_of_trainee ON aborted_trials (trainee_id)",
+        """
+        CREATE TABLE repeats (
+            trial_id TEXT PRIMARY KEY NOT NULL
+                REFERENCES aborted_trials (trial_id) ON DELETE CASCADE,
+            step TEXT NOT NULL,
+            reason TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        ) WITHOUT ROWID
+        """,
+    ),
+)

@@ -1,0 +1,159 @@
+"""Trainees in a study's database; every function works inside the caller's transaction."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sqlite3
+from collections.abc import Iterable
+
+from rastrainer import json_checks
+from rastrainer.errors import InputError
+from rastrainer.study.database.clock import utc_now
+from rastrainer.study.database.values import Trainee
+
+
+class DeletedTrialError(InputError):
+    """The trial was deleted from the study together with its trainee."""
+
+
+def mark_deleted(connection: sqlite3.Connection, trial_ids: Iterable[str]) -> None:
+    """Remember that these trials are deleted.
+
+    Kept are hashes of random UUIDs. They hold no name, no time and no number, and who does not have
+    the trial's record cannot learn from them that there was one.
+    """
+    connection.executemany(
+        "INSERT OR IGNORE INTO deleted_trials VALUES (?)",
+        ((_sha256(trial_id),) for trial_id in trial_ids),
+    )
+
+
+def check_not_deleted(connection: sqlite3.Connection, trial_id: str) -> None:
+    """Raise `DeletedTrialError` where the trial was deleted."""
+    query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
+    if connection.execute(query, (_sha256(trial_id),)).fetchone() is not None:
+        raise DeletedTrialError(
+            "The trial was deleted from the study with its trainee and is not stored again."
+        )
+
+
+def _sha256(trial_id: str) -> str:
+    return hashlib.sha256(trial_id.encode()).hexdigest()
+
+
+TRAINEE_ID = "SELECT id FROM trainees WHERE pseudonym = ?"
+_SELECT = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
+
+
+def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool) -> Trainee:
+    """Add a trainee, by default under the next free pseudonym.
+
+    Raises:
+        InputError: the pseudonym is taken, or cannot be one.
+    """
+    pseudonym = next_pseudonym(connection) if pseudonym is None else pseudonym
+    check_pseudonym(pseudonym)
+    if exists(connection, pseudonym):
+        raise InputError(f"The pseudonym {json.dumps(pseudonym)} is taken; choose another.")
+    connection.execute(
+        "INSERT INTO trainees (pseudonym, consent, archived, created_utc) VALUES (?, ?, 0, ?)",
+        (pseudonym, bool(consent), utc_now()),
+    )
+    return find(connection, pseudonym)
+
+
+def check_pseudonym(pseudonym: str) -> None:
+    """Raise `InputError` where a text cannot be a pseudonym, typed in or from the simulator."""
+    try:
+        json_checks.pseudonym()(pseudonym)
+    except ValueError as error:
+        raise InputError(f"A pseudonym must be {error}.") from None
+
+
+def create_where_missing(connection: sqlite3.Connection, pseudonym: str, consent: bool) -> None:
+    """Add the trainee of a record that arrives, unless the study has that one already.
+
+    Raises:
+        InputError: it cannot be a pseudonym.
+    """
+    if not exists(connection, pseudonym):
+        create(connection, pseudonym, consent)
+
+
+def exists(connection: sqlite3.Connection, pseudonym: str) -> bool:
+    """Return whether the study has a trainee of this pseudonym."""
+    return connection.execute(TRAINEE_ID, (pseudonym,)).fetchone() is not None
+
+
+def find(connection: sqlite3.Connection, pseudonym: str) -> Trainee:
+    """Return a trainee; raise `InputError` if the study has none of this pseudonym."""
+    row = connection.execute(f"{_SELECT} WHERE pseudonym = ?", (pseudonym,)).fetchone()
+    if row is None:
+        raise InputError(f"The study has no trainee {json.dumps(str(pseudonym)[:64])}.")
+    return _trainee(row)
+
+
+def listed(connection: sqlite3.Connection, archived: bool) -> tuple[Trainee, ...]:
+    """Return those who train, or those who are archived, by pseudonym."""
+    rows = connection.execute(
+        f"{_SELECT} WHERE archived = ? ORDER BY pseudonym", (bool(archived),)
+    ).fetchall()
+    return tuple(_trainee(row) for row in rows)
+
+
+def change(
+    connection: sqlite3.Connection,
+    pseudonym: str,
+    consent: bool | None = None,
+    archived: bool | None = None,
+) -> Trainee:
+    """Change what is not None; raise `InputError` if the study has no such trainee."""
+    trainee = find(connection, pseudonym)
+    connection.execute(
+        "UPDATE trainees SET consent = ?, archived = ? WHERE pseudonym = ?",
+        (
+            trainee.consent if consent is None else bool(consent),
+            trainee.archived if archived is None else bool(archived),
+            pseudonym,
+        ),
+    )
+    return find(connection, pseudonym)
+
+
+def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
+    """Delete a trainee with all that hangs on it; return how many finished trials that were.
+
+    The trials, aborted ones too, cannot be stored again.
+
+    Raises:
+        InputError: the study has no such trainee.
+    """
+    find(connection, pseudonym)
+    finished, aborted = (
+        [
+            trial_id
+            for (trial_id,) in connection.execute(
+                f"SELECT trial_id FROM {table} WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+            )
+        ]
+        for table in ("trials", "aborted_trials")
+    )
+    mark_deleted(connection, (*finished, *aborted))
+    connection.execute("DELETE FROM trainees WHERE pseudonym = ?", (pseudonym,))
+    return len(finished)
+
+
+def next_pseudonym(connection: sqlite3.Connection) -> str:
+    """Return the pseudonym of a trainee who is created without one."""
+    # Numbers of deleted trainees do not come back: someone else would get their name.
+    row = connection.execute("SELECT seq FROM sqlite_sequence WHERE name = 'trainees'").fetchone()
+    number = (row[0] if row else 0) + 1
+    while exists(connection, f"T{number:03d}"):
+        number += 1
+    return f"T{number:03d}"
+
+
+def _trainee(row: tuple[str, int, int, str]) -> Trainee:
+    pseudonym, consent, archived, created_utc = row
+    return Trainee(pseudonym, bool(consent), bool(archived), created_utc)

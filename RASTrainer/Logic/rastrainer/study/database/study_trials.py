@@ -1,0 +1,338 @@
+"""Trials in a study's database; every function works inside the caller's transaction."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from rastrainer import json_checks, protocol
+from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_finite_json
+from rastrainer.registration.registration import RIGID, Registration
+from rastrainer.registration.target_error import TargetError
+from rastrainer.study.database import study_trainees
+from rastrainer.study.database.clock import utc_now
+from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
+from rastrainer.study.database.values import StoredRegistration, StoredTrial, TrialOutcome
+from rastrainer.trial.ctps import Trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import TrialScore
+from rastrainer.trial.trainee_progress import PastTrial
+
+RECORD_LIMIT_BYTES = 2**20
+TRUTH_LIMIT = 1e6
+MOTION_LIMIT = 1e9
+
+_LATEST_SCORE = """
+    SELECT {} FROM scores WHERE scores.trial_id = trials.trial_id ORDER BY scores.id DESC LIMIT 1
+"""
+
+_STAMPED_TRIALS = f"""
+    SELECT trial_id, rowid, stored_utc,
+        (SELECT max(id) FROM registrations WHERE registrations.trial_id = trials.trial_id),
+        (SELECT max(id) FROM scores WHERE scores.trial_id = trials.trial_id),
+        (SELECT stored_utc FROM truths WHERE truths.trial_id = trials.trial_id),
+        (SELECT stored_utc FROM motions WHERE motions.trial_id = trials.trial_id)
+    FROM trials WHERE trainee_id = ({TRAINEE_ID}) ORDER BY started_utc, rowid
+"""
+"""Each trial of a trainee with what changes whenever something of it is stored."""
+
+Value = TypeVar("Value")
+
+
+def add(
+    connection: sqlite3.Connection, record: TrialRecord, json_object: Mapping[str, Any]
+) -> bool:
+    """Store a trial with its trainee; return False where it is already stored.
+
+    Args:
+        connection: In a transaction.
+        record: The trial.
+        json_object: As it was delivered, with keys that the record does not know.
+
+    Raises:
+        InputError: the object is larger than 1 MiB, or another trial has its UUID.
+        DeletedTrialError: the trial was deleted with its trainee.
+    """
+    text = json_text(json_object)
+    if len(text) > RECORD_LIMIT_BYTES:
+        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+    if not check(connection, record):
+        return False
+    study_trainees.create_where_missing(connection, record.trainee, consent=False)
+    connection.execute(
+        f"INSERT INTO trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?, ?)",
+        (
+            record.trial_id,
+            record.trainee,
+            record.task,
+            record.mode,
+            record.scenario,
+            record.started_utc,
+            record.completion_time_s,
+            text,
+            utc_now(),
+        ),
+    )
+    if record.motion:
+        set_motion(connection, record.trial_id, record.motion)
+    return True
+
+
+def check(connection: sqlite3.Connection, record: TrialRecord) -> bool:
+    """Return whether a trial would be new.
+
+    Raises:
+        InputError: another trial has its UUID, or its trainee's name is no pseudonym.
+        DeletedTrialError: the trial was deleted with its trainee.
+    """
+    check_not_deleted(connection, record.trial_id)
+    if exists(connection, record.trial_id):
+        _check_same(find_record(connection, record.trial_id), record)
+        return False
+    if not study_trainees.exists(connection, record.trainee):
+        study_trainees.check_pseudonym(record.trainee)
+    return True
+
+
+def add_results(
+    connection: sqlite3.Connection,
+    trial_id: str,
+    registrations: Iterable[Registration],
+    target_errors: Mapping[str, TargetError],
+    score: TrialScore | None,
+) -> None:
+    """Add what was computed from a trial; raise `InputError` if the study has no such trial."""
+    _check_exists(connection, trial_id)
+    for registration in registrations:
+        stored = StoredRegistration.of(registration, target_errors.get(registration.kind))
+        connection.execute(
+            "INSERT INTO registrations (trial_id, kind, fre_mm, registration_json, stored_utc) "
+            "VALUES (?, ?, ?, ?, ?)",
+            (trial_id, stored.kind, stored.fre_mm, json_text(stored.to_json()), utc_now()),
+        )
+    if score is not None:
+        connection.execute(
+            "INSERT INTO scores (trial_id, score, version, score_json, stored_utc) "
+            "VALUES (?, ?, ?, ?, ?)",
+            (trial_id, score.score, score.version, json_text(score.to_json()), utc_now()),
+        )
+
+
+def set_truth(
+    connection: sqlite3.Connection,
+    trial_id: str,
+    true_tre_mm: float,
+    head_to_world: Sequence[float],
+) -> None:
+    """Store what the simulator revealed; a second time changes nothing.
+
+    Raises:
+        InputError: the study has no such trial, or the truth is not 1 and 16 finite numbers.
+    """
+    _check_exists(connection, trial_id)
+    try:
+        true_tre_mm = json_checks.number(0, TRUTH_LIMIT)(true_tre_mm)
+        head_to_world = json_checks.numbers(16, TRUTH_LIMIT)(head_to_world)
+    except ValueError as error:
+        raise InputError(f"What the simulator reveals must be {error}.") from None
+    connection.execute(
+        "INSERT OR IGNORE INTO truths VALUES (?, ?, ?, ?)",
+        (trial_id, true_tre_mm, json_text(head_to_world), utc_now()),
+    )
+
+
+def set_motion(connection: sqlite3.Connection, trial_id: str, motion: Mapping[str, float]) -> None:
+    """Store the motion metrics of a trial; a second time changes nothing.
+
+    Raises:
+        InputError: the study has no such trial, or a metric is no finite number.
+    """
+    _check_exists(connection, trial_id)
+    try:
+        checked = {
+            json_checks.text()(name): json_checks.number(-MOTION_LIMIT, MOTION_LIMIT)(value)
+            for name, value in motion.items()
+        }
+    except ValueError as error:
+        raise InputError(f"A motion metric must be {error}.") from None
+    connection.execute(
+        "INSERT OR IGNORE INTO motions VALUES (?, ?, ?)", (trial_id, json_text(checked), utc_now())
+    )
+
+
+def exists(connection: sqlite3.Connection, trial_id: str) -> bool:
+    """Return whether the study has a trial of this UUID."""
+    query = "SELECT 1 FROM trials WHERE trial_id = ?"
+    return connection.execute(query, (trial_id,)).fetchone() is not None
+
+
+def is_revealed(connection: sqlite3.Connection, trial_id: str) -> bool:
+    """Return whether the simulator has revealed the truth of a trial."""
+    query = "SELECT 1 FROM truths WHERE trial_id = ?"
+    return connection.execute(query, (trial_id,)).fetchone() is not None
+
+
+def find_record(connection: sqlite3.Connection, trial_id: str) -> TrialRecord:
+    """Return the record of a trial; raise `InputError` if the study has no such trial."""
+    _check_exists(connection, trial_id)
+    (text,) = connection.execute(
+        "SELECT record_json FROM trials WHERE trial_id = ?", (trial_id,)
+    ).fetchone()
+    return decoded(text, TrialRecord.from_json)
+
+
+def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
+    """Return a trial with its latest results; raise `InputError` if there is no such trial."""
+    record = find_record(connection, trial_id)
+    registrations = connection.execute(
+        "SELECT kind, registration_json FROM registrations WHERE trial_id = ? ORDER BY id",
+        (trial_id,),
+    ).fetchall()
+    score = connection.execute(
+        "SELECT score_json FROM scores WHERE trial_id = ? ORDER BY id DESC", (trial_id,)
+    ).fetchone()
+    truth = connection.execute(
+        "SELECT true_tre_mm, head_to_world_json FROM truths WHERE trial_id = ?", (trial_id,)
+    ).fetchone()
+    motion = connection.execute(
+        "SELECT motion_json FROM motions WHERE trial_id = ?", (trial_id,)
+    ).fetchone()
+    return StoredTrial(
+        record=record,
+        registrations={
+            kind: decoded(text, StoredRegistration.from_json) for kind, text in registrations
+        },
+        score=None if score is None else decoded(score[0], TrialScore.from_json),
+        true_tre_mm=None if truth is None else truth[0],
+        head_to_world=None if truth is None else decoded(truth[1], tuple),
+        motion={} if motion is None else decoded(motion[0], dict),
+    )
+
+
+def history(
+    connection: sqlite3.Connection, pseudonym: str, known: dict[str, tuple[tuple, StoredTrial]]
+) -> tuple[StoredTrial, ...]:
+    """Return a trainee's trials as they were started; raise `InputError` for an unknown one.
+
+    Args:
+        connection: In a transaction.
+        pseudonym: Of the trainee.
+        known: Trials that were read before, with a stamp that changes with them;
+            becomes those of this trainee.
+    """
+    study_trainees.find(connection, pseudonym)
+    rows = connection.execute(_STAMPED_TRIALS, (pseudonym,)).fetchall()
+    read = {
+        trial_id: known[trial_id]
+        if trial_id in known and known[trial_id][0] == tuple(stamp)
+        else (tuple(stamp), find(connection, trial_id))
+        for trial_id, *stamp in rows
+    }
+    known.clear()
+    known.update(read)
+    return tuple(trial for _stamp, trial in read.values())
+
+
+def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTrial, ...]:
+    """Return a trainee's scored trials but the trial runs, as they were started."""
+    study_trainees.find(connection, pseudonym)
+    rows = connection.execute(
+        "SELECT trial_id, task, mode, completion_time_s, "
+        f"({_LATEST_SCORE.format('score_json')}) AS latest "
+        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND latest IS NOT NULL AND task != ? "
+        "ORDER BY started_utc, trials.rowid",
+        (pseudonym, protocol.TRIAL_RUN),
+    )
+    # Row by row: the texts of all trials of a busy trainee are never in memory together.
+    return tuple(_past_trial(*row) for row in rows)
+
+
+def _past_trial(trial_id: str, task: str, mode: str, seconds: float, latest: str) -> PastTrial:
+    score = decoded(latest, TrialScore.from_json)
+    return PastTrial(
+        trial_id,
+        task,
+        mode,
+        seconds,
+        score.score,
+        score.acceptable,
+        score_version=score.version,
+    )
+
+
+def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:
+    """Return the trials whose truth is not known yet, oldest first."""
+    rows = connection.execute(
+        "SELECT record_json FROM trials "
+        "WHERE trial_id NOT IN (SELECT trial_id FROM truths) ORDER BY rowid"
+    ).fetchall()
+    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
+
+
+def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
+    """Return what CTPS compares: registered trials but the trial runs, of one mode or all."""
+    rows = connection.execute(
+        """
+        SELECT mode, pseudonym, task, completion_time_s, fre_mm
+        FROM trials
+        JOIN trainees ON trainees.id = trainee_id
+        JOIN registrations ON registrations.id = (
+            SELECT max(id) FROM registrations AS latest
+            WHERE latest.trial_id = trials.trial_id AND kind = ?
+        )
+        WHERE task != ? AND (? IS NULL OR mode = ?)
+        ORDER BY trials.rowid
+        """,
+        (RIGID, protocol.TRIAL_RUN, mode, mode),
+    ).fetchall()
+    return [Trial(*row) for row in rows]
+
+
+def outcomes(connection: sqlite3.Connection, task: str, mode: str) -> tuple[TrialOutcome, ...]:
+    """Return the outcomes of all trials of a task and mode, in the order they were stored."""
+    rows = connection.execute(
+        f"""
+        SELECT trials.trial_id, pseudonym, completion_time_s,
+            ({_LATEST_SCORE.format("score")}), ({_LATEST_SCORE.format("version")}), true_tre_mm
+        FROM trials
+        JOIN trainees ON trainees.id = trainee_id
+        LEFT JOIN truths ON truths.trial_id = trials.trial_id
+        WHERE task = ? AND mode = ?
+        ORDER BY trials.rowid
+        """,
+        (task, mode),
+    ).fetchall()
+    return tuple(TrialOutcome(*row) for row in rows)
+
+
+def json_text(value: object) -> str:
+    """Return a value as ASCII JSON; raise `InputError` if it has no such form."""
+    try:
+        return json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError, RecursionError):
+        raise InputError("What a study stores must be JSON with finite numbers.") from None
+
+
+def decoded(text: str, read: Callable[[Any], Value]) -> Value:
+    """Return what stored JSON holds; raise `InputError` where it is not what was stored."""
+    try:
+        return read(decode_finite_json(text))
+    except (TypeError, ValueError, KeyError, AttributeError):
+        raise InputError("The study holds a value that RASTrainer did not write.") from None
+
+
+def _check_exists(connection: sqlite3.Connection, trial_id: str) -> None:
+    if not exists(connection, trial_id):
+        raise InputError(f"The study has no trial {json.dumps(str(trial_id)[:64])}.")
+
+
+def _check_same(stored: TrialRecord, delivered: TrialRecord) -> None:
+    # The seed is the simulator's secret at first and may be revealed later.
+    if replace(stored, seed=None) != replace(delivered, seed=None):
+        raise InputError(
+            f"Another trial is stored under the UUID {stored.trial_id}; the stored one is kept."
+        )

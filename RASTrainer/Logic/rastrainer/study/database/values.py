@@ -1,0 +1,131 @@
+"""What a study holds, as plain values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rastrainer.registration.registration import Registration
+from rastrainer.registration.target_error import TargetError
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import TrialScore
+
+
+@dataclass(frozen=True)
+class Trainee:
+    """A person who trains, known by a pseudonym only.
+
+    Attributes:
+        pseudonym: Unique in the study.
+        consent: Whether the trainee agreed that the data are used for research.
+        archived: Whether the trainee is hidden from the list of those who train.
+        created_utc: ISO 8601.
+    """
+
+    pseudonym: str
+    consent: bool
+    archived: bool
+    created_utc: str
+
+
+@dataclass(frozen=True)
+class StoredRegistration:
+    """One registration of a trial, as it was stored.
+
+    Attributes:
+        kind: `rigid`, `similarity` or `affine`.
+        labels: The points that were used; the trial's others were left out.
+        matrix: 16 numbers row by row, `World` to RAS, mm.
+        fre_mm: Fiducial registration error.
+        residuals_mm: One for each label.
+        warnings: Each with `code`, `points` and `message`.
+        target_mm: The target of the error below, in RAS; None with the next two where the fit
+            says nothing about targets.
+        expected_tre_mm: Expected error there.
+        tre_interval_mm: Where 95 of 100 such errors lie.
+        common_bias_sd_mm: The standard deviation on each axis of the offset common to all touches
+            that both allow for; 0 in what was stored before there was one.
+    """
+
+    kind: str
+    labels: tuple[str, ...]
+    matrix: tuple[float, ...]
+    fre_mm: float
+    residuals_mm: tuple[float, ...]
+    warnings: tuple[dict[str, Any], ...]
+    target_mm: tuple[float, float, float] | None
+    expected_tre_mm: float | None
+    tre_interval_mm: tuple[float, float] | None
+    common_bias_sd_mm: float = 0.0
+
+    @classmethod
+    def of(cls, registration: Registration, error: TargetError | None) -> StoredRegistration:
+        """Return what is stored of a registration and of its error at the target."""
+        return cls(
+            kind=registration.kind,
+            labels=registration.labels,
+            matrix=tuple(map(float, np.ravel(registration.matrix))),
+            fre_mm=registration.fre_mm,
+            residuals_mm=tuple(map(float, registration.residuals_mm)),
+            warnings=tuple(warning.to_json() for warning in registration.warnings),
+            target_mm=None if error is None else error.target_mm,
+            expected_tre_mm=None if error is None else error.expected_mm,
+            tre_interval_mm=None if error is None else error.interval_mm,
+            common_bias_sd_mm=0.0 if error is None else error.common_bias_sd_mm,
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `from_json` reads."""
+        return dict(vars(self))
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> StoredRegistration:
+        """Return the registration that `to_json` described."""
+        fields: dict[str, Any] = {
+            name: tuple(item) if isinstance(item, list) else item for name, item in value.items()
+        }
+        return cls(**fields)
+
+
+@dataclass(frozen=True)
+class TrialOutcome:
+    """What trials are compared by.
+
+    Attributes:
+        trial_id: UUID.
+        trainee: Pseudonym.
+        completion_time_s: As recorded.
+        score: The latest; None until the trial is scored.
+        score_version: Of that score; None without one.
+        true_tre_mm: None until the simulator reveals it.
+    """
+
+    trial_id: str
+    trainee: str
+    completion_time_s: float
+    score: float | None
+    score_version: str | None
+    true_tre_mm: float | None
+
+
+@dataclass(frozen=True)
+class StoredTrial:
+    """A trial with the latest of everything that was computed from it.
+
+    Attributes:
+        record: The trial as the simulator delivered it.
+        registrations: By kind.
+        score: None until the trial is scored.
+        true_tre_mm: True error at the target; None until the simulator reveals it.
+        head_to_world: 16 numbers row by row, RAS to `World`, mm; None until revealed.
+        motion: Motion metrics by name, with the unit at its end; empty where nobody watched.
+    """
+
+    record: TrialRecord
+    registrations: dict[str, StoredRegistration]
+    score: TrialScore | None
+    true_tre_mm: float | None
+    head_to_world: tuple[float, ...] | None
+    motion: dict[str, float] = field(default_factory=dict)

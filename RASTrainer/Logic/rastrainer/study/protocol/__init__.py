@@ -1,0 +1,1 @@
+"""The steps of a study, and how far each trainee has come."""

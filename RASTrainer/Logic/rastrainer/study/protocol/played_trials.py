@@ -1,0 +1,93 @@
+"""Which stored trials a study's next steps ask for; each works in the caller's transaction.
+
+A trial belongs to a step if it was started after the trainee was enrolled and after the last trial
+that counts; so does an aborted one.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from dataclasses import replace
+from datetime import datetime
+
+from rastrainer.study.database.aborted_trials import unexplained
+from rastrainer.study.database.clock import moment
+from rastrainer.study.database.study_trainees import TRAINEE_ID
+from rastrainer.study.protocol.progress import DONE, Progress, StepEntry
+from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.trial.aborted_trial import AbortedTrial
+
+
+def played_next(
+    connection: sqlite3.Connection, pseudonym: str, progress: Progress
+) -> list[StepEntry]:
+    """Return the entries of the next steps whose trials were played but not counted yet."""
+    entries = []
+    while (step := progress.next_step) is not None:
+        found = _played_for(connection, pseudonym, progress, step)
+        if found is None:
+            break
+        (stored_utc,) = connection.execute(
+            "SELECT stored_utc FROM trials WHERE trial_id = ?", (found,)
+        ).fetchone()
+        entry = StepEntry(step.name, DONE, {"trialId": found}, stored_utc)
+        entries.append(entry)
+        progress = replace(progress, entries=(*progress.entries, entry))
+    return entries
+
+
+def _played_for(
+    connection: sqlite3.Connection, pseudonym: str, progress: Progress, step: Step
+) -> str | None:
+    """Return the UUID of the trial that the next step asks for; None where none was played.
+
+    A repeat counts only once it is said why the aborted trials before it were repeated.
+    """
+    counted = set(progress.counted_trials)
+    if step.kind is not StepKind.TRIAL:
+        return None
+    since = _since(connection, pseudonym, progress)
+    found = next(
+        (
+            (when, trial)
+            for when, trial, mode, task in _trials_of(connection, pseudonym)
+            if (mode, task) == (step.mode, step.task) and trial not in counted and when >= since
+        ),
+        None,
+    )
+    if found is None:
+        return None
+    aborted = aborted_before(connection, pseudonym, progress)
+    is_repeat = any(moment(record.started_utc) <= found[0] for record in aborted)
+    return None if is_repeat else found[1]
+
+
+def _trials_of(
+    connection: sqlite3.Connection, pseudonym: str
+) -> list[tuple[datetime, str, str, str]]:
+    """Return start, UUID, mode and task of the finished trials of a trainee, as started."""
+    rows = connection.execute(
+        f"SELECT trial_id, mode, task, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})",
+        (pseudonym,),
+    ).fetchall()
+    return sorted((moment(started), trial, mode, task) for trial, mode, task, started in rows)
+
+
+def _since(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -> datetime:
+    """Return from when on a trial may be that of the next step."""
+    counted = set(progress.counted_trials)
+    after = [when for when, trial, _m, _t in _trials_of(connection, pseudonym) if trial in counted]
+    return max([*after, moment(progress.enrolled_utc)])
+
+
+def aborted_before(
+    connection: sqlite3.Connection, pseudonym: str, progress: Progress
+) -> tuple[AbortedTrial, ...]:
+    """Return the aborted trials of the next step that nobody has given a reason for."""
+    step = progress.next_step
+    if step is None or step.kind is not StepKind.TRIAL:
+        return ()
+    # What was left out took its aborted trials with it.
+    left_out = [moment(entry.stored_utc) for entry in progress.skipped]
+    since = max([_since(connection, pseudonym, progress), *left_out])
+    return unexplained(connection, pseudonym, step.mode, step.task, since)

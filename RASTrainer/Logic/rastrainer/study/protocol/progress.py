@@ -1,0 +1,220 @@
+"""A trainee's progress through a study, and what may come next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.study.questionnaires.catalog import find_questionnaire
+from rastrainer.trial.aborted_trial import AbortedTrial
+
+DONE, SKIPPED = "done", "skipped"
+SHORTEST_REASON, LONGEST_REASON = 10, 500
+
+
+@dataclass(frozen=True)
+class StepEntry:
+    """What became of a step: it was done, or skipped for a reason.
+
+    Attributes:
+        step: Its name.
+        outcome: `done` or `skipped`.
+        details: `trialId` of a trial, `answers` of a questionnaire, `minutes` of a trial run or a
+            break, `reason` of a skipped step.
+        stored_utc: ISO 8601.
+    """
+
+    step: str
+    outcome: str
+    details: Mapping[str, Any]
+    stored_utc: str
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A trainee's steps and what became of them; nothing is counted as done that is not said.
+
+    Attributes:
+        steps: The whole way.
+        entries: Of the first steps, in their order.
+        enrolled_utc: When the trainee was given their place, ISO 8601.
+        practiced_s: How long the next step, if it is a trial run, has been practiced so far, in s.
+        unexplained: Aborted trials of the next step; it is played again only with a reason.
+    """
+
+    steps: tuple[Step, ...]
+    entries: tuple[StepEntry, ...]
+    enrolled_utc: str = ""
+    practiced_s: float = 0.0
+    unexplained: tuple[AbortedTrial, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        steps: Sequence[Step],
+        entries: Sequence[StepEntry],
+        enrolled_utc: str = "",
+    ) -> Progress:
+        """Return the progress that a log describes.
+
+        Raises:
+            InputError: the log is not that of these steps.
+        """
+        if [step.name for step in steps[: len(entries)]] != [entry.step for entry in entries]:
+            raise InputError(
+                "What was done so far is not what this protocol asks for; use the protocol that "
+                "the study was started with."
+            )
+        return cls(tuple(steps), tuple(entries), enrolled_utc)
+
+    @property
+    def next_step(self) -> Step | None:
+        """What comes next; None when all is done."""
+        return self.steps[len(self.entries)] if len(self.entries) < len(self.steps) else None
+
+    @property
+    def since_utc(self) -> str:
+        """When the step before the next one was done, or the trainee enrolled; ISO 8601."""
+        return self.entries[-1].stored_utc if self.entries else self.enrolled_utc
+
+    def minutes_over(self, now: datetime) -> float:
+        """Return how much of the next step's time is over: of a trial run, or of a break; min."""
+        step = self.next_step
+        if step is None or step.kind not in (StepKind.TRIAL_RUN, StepKind.BREAK):
+            return 0.0
+        if step.kind is StepKind.TRIAL_RUN:
+            return self.practiced_s / 60.0
+        return max(0.0, (now - datetime.fromisoformat(self.since_utc)).total_seconds() / 60.0)
+
+    @property
+    def practice_left_s(self) -> float:
+        """How long the next step, a trial run, is still to be practiced, s; negative when over."""
+        return 0.0 if self.next_step is None else 60.0 * self.next_step.minutes - self.practiced_s
+
+    @property
+    def break_end(self) -> datetime | None:
+        """When the next step, a break, is over; None where it is no break."""
+        step = self.next_step
+        if step is None or step.kind is not StepKind.BREAK:
+            return None
+        return datetime.fromisoformat(self.since_utc) + timedelta(minutes=step.minutes)
+
+    @property
+    def counted_trials(self) -> tuple[str, ...]:
+        """UUIDs of the trials that count, in their order."""
+        return tuple(e.details["trialId"] for e in self.entries if "trialId" in e.details)
+
+    @property
+    def skipped(self) -> tuple[StepEntry, ...]:
+        """The steps that were left out, with their reasons."""
+        return tuple(entry for entry in self.entries if entry.outcome == SKIPPED)
+
+    @property
+    def sentence(self) -> str:
+        """The next step, for the trainee."""
+        step = self.next_step
+        if step is None:
+            return "All steps of the study are done. Thank you!"
+        return f"Step {len(self.entries) + 1} of {len(self.steps)}: {step.sentence}"
+
+    @property
+    def repeat_sentence(self) -> str:
+        """What is asked after an aborted trial; "" where nothing is."""
+        if not self.unexplained:
+            return ""
+        last = self.unexplained[-1]
+        return (
+            f"This trial was aborted with {len(last.points)} of {FIDUCIAL_COUNT} points touched. "
+            "It is played again only with a reason, which goes into the report."
+        )
+
+    def check_start(self, mode: str, task: str) -> Step:
+        """Return the step that a trial to be started belongs to.
+
+        Raises:
+            InputError: something else comes next, or it was aborted and nobody has said why it is
+                played again; the sentence says what.
+        """
+        step = self._next()
+        if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
+            mode,
+            task,
+        ):
+            raise InputError(f"Not yet: the study asks for something else first. {self.sentence}")
+        if self.unexplained:
+            raise InputError(self.repeat_sentence)
+        return step
+
+    def check_done(self, step: Step, details: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what is to be stored when a step is done; raise `InputError` where it lacks."""
+        if step.kind is StepKind.QUESTIONNAIRE:
+            if "answers" not in details:
+                raise InputError("A questionnaire is done only with its answers.")
+            questionnaire = find_questionnaire(step.questionnaire)
+            return {"answers": list(questionnaire.checked(details["answers"]))}
+        if step.kind is StepKind.TRIAL:
+            if not isinstance(details.get("trialId"), str):
+                raise InputError("A trial is done only with the trial that was stored.")
+            return {"trialId": details["trialId"]}
+        return {"minutes": _checked_minutes(step, details.get("minutes"))}
+
+    def check_skipped(self, step_name: str, reason: str) -> dict[str, Any]:
+        """Return what is to be stored when a step is skipped.
+
+        Raises:
+            InputError: it is not the next step, or no reason is given: nothing is skipped silently.
+        """
+        self.expected(step_name)
+        return {"reason": _checked_reason(reason, "A step is skipped")}
+
+    def check_repeat(self, reason: str) -> tuple[Step, str]:
+        """Return the aborted step and the reason to be stored when it is played again.
+
+        Raises:
+            InputError: it was not aborted, or no reason is given: nothing is repeated silently.
+        """
+        if not self.unexplained:
+            raise InputError("The next step was not aborted; it needs no reason to be played.")
+        return self._next(), _checked_reason(reason, "An aborted trial is played again")
+
+    def _next(self) -> Step:
+        if self.next_step is None:
+            raise InputError("All steps of the study are done; nothing comes after them.")
+        return self.next_step
+
+    def expected(self, step_name: str) -> Step:
+        """Return the next step; raise `InputError` where it is not the one of this name."""
+        step = self._next()
+        if step.name != step_name:
+            raise InputError(
+                f"The next step is {step.name}, not {step_name[:80]}. Steps are done in their "
+                "order; one that must be left out is skipped with a reason."
+            )
+        return step
+
+
+def _checked_reason(reason: Any, what: str) -> str:
+    is_text = isinstance(reason, str) and reason.strip().isprintable()
+    if not is_text or not SHORTEST_REASON <= len(reason.strip()) <= LONGEST_REASON:
+        raise InputError(
+            f"{what} only with a reason of {SHORTEST_REASON} to {LONGEST_REASON} characters; it "
+            "goes into the report."
+        )
+    return reason.strip()
+
+
+def _checked_minutes(step: Step, minutes: Any) -> float:
+    is_number = isinstance(minutes, (int, float)) and not isinstance(minutes, bool)
+    if not is_number or not step.minutes <= minutes < float("inf"):
+        what = "The trial run" if step.kind is StepKind.TRIAL_RUN else "The break"
+        took = f"{minutes:.1f}" if is_number else "none"
+        raise InputError(
+            f"{what} takes {step.minutes:g} minutes, of which {took} are over; to go on earlier, "
+            "skip it with a reason."
+        )
+    return float(minutes)

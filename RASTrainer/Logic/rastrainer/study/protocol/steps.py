@@ -1,0 +1,142 @@
+"""The steps of one trainee through a study, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rastrainer.protocol import TRIAL_RUN, Mode, StepKind
+from rastrainer.study.protocol.study_protocol import (
+    AFTER_ALL,
+    AFTER_MODE,
+    AFTER_TASK,
+    BALANCED,
+    BEFORE_ALL,
+    BEFORE_MODE,
+    StudyProtocol,
+)
+from rastrainer.study.questionnaires.catalog import QUESTIONNAIRES
+
+_IN_MODE = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step.
+
+    Attributes:
+        name: Unique on the trainee's way, such as `desktop/2/task-3`; it is stored.
+        kind: What is done.
+        mode: In which it is done; "" for what belongs to none.
+        task: That is played; "" where none is.
+        round: Of the task in this mode, from 1; 0 where none is played.
+        questionnaire: That is asked; "" where none is.
+        minutes: How long it takes (trial run) or at least takes (break); 0 where that is open.
+    """
+
+    name: str
+    kind: StepKind
+    mode: str = ""
+    task: str = ""
+    round: int = 0
+    questionnaire: str = ""
+    minutes: float = 0.0
+
+    @property
+    def sentence(self) -> str:
+        """What the trainee is asked to do."""
+        where = f" {_IN_MODE[self.mode]}" if self.mode else ""
+        if self.kind is StepKind.QUESTIONNAIRE:
+            return f"Answer the questionnaire {QUESTIONNAIRES[self.questionnaire].title}."
+        if self.kind is StepKind.BREAK:
+            return f"Take a break of at least {self.minutes:g} minutes."
+        if self.kind is StepKind.TRIAL_RUN:
+            return f"Get to know the trial run{where} for {self.minutes:g} minutes."
+        return f"Play {self.task.replace('-', ' ').capitalize()}{where}."
+
+
+def steps_for(protocol: StudyProtocol, place: int) -> tuple[Step, ...]:
+    """Return the way of the trainee who was enrolled at a place, the first is 0."""
+    return tuple(_steps(protocol, place))
+
+
+def mode_order(protocol: StudyProtocol, place: int) -> tuple[str, ...]:
+    """Return the modes in the order of a trainee."""
+    return _ordered(protocol.modes, protocol.mode_order, place)
+
+
+def task_order(
+    protocol: StudyProtocol, place: int, mode_index: int, round_: int
+) -> tuple[str, ...]:
+    """Return the tasks in the order of a trainee's round (from 0) in the mode done at an index.
+
+    Trainees with the same order of modes get all orders of tasks in turn.
+    """
+    rows = len(williams_design(len(protocol.modes))) if protocol.mode_order == BALANCED else 1
+    row = place // rows + mode_index * protocol.repetitions + round_
+    return _ordered(protocol.tasks, protocol.task_order, row)
+
+
+def _ordered(names: tuple[str, ...], order: str, row: int) -> tuple[str, ...]:
+    if order != BALANCED:
+        return names
+    design = williams_design(len(names))
+    return tuple(names[index] for index in design[row % len(design)])
+
+
+def _steps(protocol: StudyProtocol, place: int) -> Iterator[Step]:
+    yield from _questions(protocol, BEFORE_ALL, "", "before-all")
+    for index, mode in enumerate(mode_order(protocol, place)):
+        if index and protocol.break_between_modes_min:
+            minutes = protocol.break_between_modes_min
+            yield Step(f"{mode}/break", StepKind.BREAK, minutes=minutes)
+        yield from _in_mode(protocol, place, index, mode)
+    yield from _questions(protocol, AFTER_ALL, "", "after-all")
+
+
+def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iterator[Step]:
+    yield from _questions(protocol, BEFORE_MODE, mode, f"{mode}/before")
+    if protocol.trial_run_min:
+        yield Step(
+            f"{mode}/{TRIAL_RUN}",
+            StepKind.TRIAL_RUN,
+            mode,
+            TRIAL_RUN,
+            minutes=protocol.trial_run_min,
+        )
+    is_first = True
+    for round_ in range(protocol.repetitions):
+        for task in task_order(protocol, place, index, round_):
+            name = f"{mode}/{round_ + 1}/{task}"
+            if not is_first and protocol.break_between_tasks_min:
+                minutes = protocol.break_between_tasks_min
+                yield Step(f"{name}/break", StepKind.BREAK, mode, minutes=minutes)
+            is_first = False
+            yield Step(name, StepKind.TRIAL, mode, task, round_ + 1)
+            yield from _questions(protocol, AFTER_TASK, mode, name)
+    yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")
+
+
+def _questions(protocol: StudyProtocol, occasion: str, mode: str, prefix: str) -> Iterator[Step]:
+    for asked in protocol.asked:
+        if asked.occasion == occasion and (not asked.modes or mode in asked.modes):
+            name = asked.questionnaire
+            yield Step(f"{prefix}/{name}", StepKind.QUESTIONNAIRE, mode, questionnaire=name)
+
+
+def williams_design(count: int) -> tuple[tuple[int, ...], ...]:
+    """Return the rows of a balanced Latin square of conditions 0 … count − 1.
+
+    In all rows together, every condition is as often at every position, and follows every other
+    one equally often. An even count needs as many rows, an odd one twice as many: the square and
+    its mirror image.
+    """
+    first = [0]
+    low, high = 1, count - 1
+    while len(first) < count:
+        first.append(low if len(first) % 2 else high)
+        low, high = (low + 1, high) if len(first) % 2 == 0 else (low, high - 1)
+    square = [tuple((value + row) % count for value in first) for row in range(count)]
+    if count % 2:
+        square += [row[::-1] for row in square]
+    return tuple(square)

@@ -1,0 +1,295 @@
+"""A study's protocol and every trainee's progress, kept in the study's file.
+
+The module in Slicer and the simulator's flow ask `progress` what comes next and report what was
+done. All of it survives an interruption, since it is stored before it is reported.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.aborted_trials import explain
+from rastrainer.study.database.clock import utc_now
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.study_trainees import TRAINEE_ID
+from rastrainer.study.database.study_trials import decoded, json_text
+from rastrainer.study.protocol.played_trials import aborted_before, played_next
+from rastrainer.study.protocol.progress import DONE, SKIPPED, Progress, StepEntry
+from rastrainer.study.protocol.steps import Step, StepKind, steps_for
+from rastrainer.study.protocol.study_protocol import StudyProtocol, study_protocol_from_json
+from rastrainer.study.questionnaires.catalog import find_questionnaire
+
+
+@dataclass(frozen=True)
+class QuestionnaireAnswers:
+    """What a trainee answered, and its scores."""
+
+    trainee: str
+    step: Step
+    answers: tuple[int, ...]
+    scores: Mapping[str, float]
+    stored_utc: str
+
+
+class StudyProgress:
+    """The protocol of one study, and who stands where. One thread may use it."""
+
+    def __init__(self, study: Study) -> None:
+        self._database = study.database
+
+    def begin(self, protocol: StudyProtocol) -> None:
+        """Make this the study's protocol; the same one again changes nothing.
+
+        Raises:
+            InputError: the study has another one; a study is not changed while it runs.
+        """
+        with self._database.writing() as connection:
+            stored = _protocol(connection)
+            if stored is None:
+                text = json_text(protocol.to_json())
+                connection.execute("INSERT INTO study_protocol VALUES (1, ?, ?)", (text, utc_now()))
+            elif stored != protocol:
+                raise InputError(
+                    f"This study was started with another protocol, {stored.title!r}. Changing it "
+                    "half-way would spoil the study: begin a new one for the new protocol."
+                )
+
+    def protocol(self) -> StudyProtocol | None:
+        """Return the study's protocol; None where it has none and trainees practice freely."""
+        with self._database.reading() as connection:
+            return _protocol(connection)
+
+    def enroll(self, pseudonym: str) -> int:
+        """Give a trainee the first free place in the order, and return it; twice is once.
+
+        The place decides the order of modes and tasks. That of a deleted trainee is given again,
+        so that the orders stay balanced.
+
+        Raises:
+            InputError: there is no such trainee, or the study has no protocol.
+        """
+        with self._database.writing() as connection:
+            _require_protocol(connection)
+            study_trainees.find(connection, pseudonym)
+            place = _place(connection, pseudonym)
+            if place is None:
+                taken = {row[0] for row in connection.execute("SELECT place FROM enrollments")}
+                place = next(number for number in range(len(taken) + 1) if number not in taken)
+                connection.execute(
+                    f"INSERT INTO enrollments VALUES (({TRAINEE_ID}), ?, ?)",
+                    (pseudonym, place, utc_now()),
+                )
+            return place
+
+    def progress(self, pseudonym: str) -> Progress:
+        """Return where a trainee stands.
+
+        Raises:
+            InputError: the trainee is not enrolled, or the study has no protocol.
+        """
+        with self._database.reading() as connection:
+            return _progress(connection, pseudonym)
+
+    def finish(
+        self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
+    ) -> Progress:
+        """Note that the next step was done and return the new progress.
+
+        Args:
+            pseudonym: Of an enrolled trainee.
+            step: Name of the step, which must be the next one.
+            details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` that a
+                trial run or a break took.
+
+        Raises:
+            InputError: it is not the next step, or what belongs to it is missing or wrong.
+        """
+        with self._database.writing() as connection:
+            progress = _progress(connection, pseudonym)
+            expected = progress.expected(step)
+            checked = progress.check_done(expected, details or {})
+            if expected.kind is StepKind.TRIAL:
+                _check_trial(connection, pseudonym, progress, expected, checked["trialId"])
+            _store(connection, pseudonym, step, DONE, checked)
+            return _progress(connection, pseudonym)
+
+    def skip(self, pseudonym: str, step: str, reason: str) -> Progress:
+        """Leave out the next step for a reason and return the new progress.
+
+        Raises:
+            InputError: it is not the next step, or there is no reason of at least ten characters.
+        """
+        with self._database.writing() as connection:
+            checked = _progress(connection, pseudonym).check_skipped(step, reason)
+            _store(connection, pseudonym, step, SKIPPED, checked)
+            return _progress(connection, pseudonym)
+
+    def explain_repeat(self, pseudonym: str, reason: str) -> Progress:
+        """Say why the next step is played again after it was aborted; return the new progress.
+
+        Raises:
+            InputError: it was not aborted, or there is no reason of at least ten characters.
+        """
+        with self._database.writing() as connection:
+            progress = _progress(connection, pseudonym)
+            step, checked = progress.check_repeat(reason)
+            for record in progress.unexplained:
+                explain(connection, record.trial_id, step.name, checked)
+            return _progress(connection, pseudonym)
+
+    def practice(self, pseudonym: str, step: str, seconds: float) -> None:
+        """Add to the time for which the next step, a trial run, was practiced.
+
+        Raises:
+            InputError: it is not the next step, or no trial run.
+        """
+        with self._database.writing() as connection:
+            next_step = _progress(connection, pseudonym).next_step
+            if next_step is None or next_step.name != step or not _is_practice(next_step):
+                raise InputError(f"{step[:80]} is not a trial run that comes next.")
+            connection.execute(
+                f"INSERT INTO practice VALUES (({TRAINEE_ID}), ?, ?) "
+                "ON CONFLICT DO UPDATE SET seconds = seconds + excluded.seconds",
+                (pseudonym, step, float(seconds)),
+            )
+
+    def count_played(self, pseudonym: str) -> Progress:
+        """Count the stored trials that the next steps ask for, and return the new progress.
+
+        A trial counts that was started after the trainee was enrolled and after the last trial that
+        counts. So a trial that arrives late, or whose step an interruption left open, is found. A
+        repeat after an aborted trial counts once its reason is said.
+        """
+        with self._database.reading() as connection:
+            progress = _progress(connection, pseudonym)
+            if not played_next(connection, pseudonym, progress):
+                return progress
+        with self._database.writing() as connection:
+            progress = _progress(connection, pseudonym)
+            for entry in played_next(connection, pseudonym, progress):
+                _store(connection, pseudonym, entry.step, entry.outcome, dict(entry.details))
+            return _progress(connection, pseudonym)
+
+    def played(self, pseudonym: str) -> Progress:
+        """Return the progress as `count_played` would leave it, and store nothing."""
+        with self._database.reading() as connection:
+            progress = _progress(connection, pseudonym)
+            further = played_next(connection, pseudonym, progress)
+            entries = (*progress.entries, *further)
+            if not further:
+                return progress
+            progress = replace(progress, entries=entries)
+            return replace(progress, unexplained=aborted_before(connection, pseudonym, progress))
+
+    def enrolled(self) -> dict[str, int]:
+        """Return the place of each enrolled trainee, in the order of places."""
+        with self._database.reading() as connection:
+            return dict(
+                connection.execute(
+                    "SELECT pseudonym, place FROM enrollments "
+                    "JOIN trainees ON trainees.id = trainee_id ORDER BY place"
+                ).fetchall()
+            )
+
+    def answers(self) -> tuple[QuestionnaireAnswers, ...]:
+        """Return all answered questionnaires, by place and step."""
+        return tuple(
+            answered
+            for pseudonym in self.enrolled()
+            for answered in _answers(pseudonym, self.progress(pseudonym))
+        )
+
+
+def _answers(pseudonym: str, progress: Progress) -> list[QuestionnaireAnswers]:
+    found = []
+    for step, entry in zip(progress.steps, progress.entries, strict=False):
+        if step.kind is StepKind.QUESTIONNAIRE and entry.outcome == DONE:
+            answers = tuple(entry.details["answers"])
+            scores = find_questionnaire(step.questionnaire).score(answers)
+            found.append(QuestionnaireAnswers(pseudonym, step, answers, scores, entry.stored_utc))
+    return found
+
+
+def _progress(connection: sqlite3.Connection, pseudonym: str) -> Progress:
+    protocol = _require_protocol(connection)
+    place = _place(connection, pseudonym)
+    if place is None:
+        raise InputError(f"{json.dumps(str(pseudonym)[:64])} is not enrolled in the study yet.")
+    (enrolled_utc,) = connection.execute(
+        f"SELECT stored_utc FROM enrollments WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+    ).fetchone()
+    rows = connection.execute(
+        "SELECT step, outcome, details_json, stored_utc FROM steps "
+        f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
+        (pseudonym,),
+    ).fetchall()
+    entries = [
+        StepEntry(step, outcome, decoded(details, dict), utc)
+        for step, outcome, details, utc in rows
+    ]
+    progress = Progress.of(steps_for(protocol, place), entries, enrolled_utc)
+    return replace(
+        progress,
+        practiced_s=_practiced(connection, pseudonym, progress.next_step),
+        unexplained=aborted_before(connection, pseudonym, progress),
+    )
+
+
+def _practiced(connection: sqlite3.Connection, pseudonym: str, step: Step | None) -> float:
+    row = connection.execute(
+        f"SELECT seconds FROM practice WHERE trainee_id = ({TRAINEE_ID}) AND step = ?",
+        (pseudonym, "" if step is None else step.name),
+    ).fetchone()
+    return 0.0 if row is None else row[0]
+
+
+def _is_practice(step: Step) -> bool:
+    return step.kind is StepKind.TRIAL_RUN
+
+
+def _protocol(connection: sqlite3.Connection) -> StudyProtocol | None:
+    row = connection.execute("SELECT protocol_json FROM study_protocol").fetchone()
+    return None if row is None else decoded(row[0], study_protocol_from_json)
+
+
+def _require_protocol(connection: sqlite3.Connection) -> StudyProtocol:
+    protocol = _protocol(connection)
+    if protocol is None:
+        raise InputError("The study has no protocol yet; begin it with a protocol's file.")
+    return protocol
+
+
+def _place(connection: sqlite3.Connection, pseudonym: str) -> int | None:
+    row = connection.execute(
+        f"SELECT place FROM enrollments WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
+    ).fetchone()
+    return None if row is None else row[0]
+
+
+def _check_trial(
+    connection: sqlite3.Connection, pseudonym: str, progress: Progress, step: Step, trial_id: str
+) -> None:
+    record = study_trials.find_record(connection, trial_id)
+    if (record.trainee, record.mode, record.task) != (pseudonym, step.mode, step.task):
+        raise InputError(
+            f"The trial {trial_id} is not the one that the step {step.name} asks for: it was "
+            f"{record.task} in the mode {record.mode}."
+        )
+    if any(entry.details.get("trialId") == trial_id for entry in progress.entries):
+        raise InputError(f"The trial {trial_id} already counts for an earlier step.")
+
+
+def _store(
+    connection: sqlite3.Connection, pseudonym: str, step: str, outcome: str, details: dict[str, Any]
+) -> None:
+    connection.execute(
+        "INSERT INTO steps (trainee_id, step, outcome, details_json, stored_utc) "
+        f"VALUES (({TRAINEE_ID}), ?, ?, ?, ?)",
+        (pseudonym, step, outcome, json_text(details), utc_now()),
+    )

@@ -1,0 +1,205 @@
+"""The protocol of a study, as its file says it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.protocol import TRIAL_RUN, Mode
+from rastrainer.scenario.tasks import is_task_name
+from rastrainer.study.questionnaires.catalog import find_questionnaire
+from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
+
+FORMAT_VERSION = 1
+FIXED, BALANCED = "fixed", "balanced"
+BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
+    "before-all",
+    "before-mode",
+    "after-task",
+    "after-mode",
+    "after-all",
+)
+MOST_STEPS = 1000
+READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, SCORE_VERSION)
+"""A study started with the first continues with the present one; each score holds its own."""
+_KEYS = (
+    *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
+    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
+)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A questionnaire, when it is asked and in which modes (all where the tuple is empty)."""
+
+    questionnaire: str
+    occasion: str
+    modes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class StudyProtocol:
+    """What every trainee of a study does.
+
+    Attributes:
+        name: Short; `title` is for people.
+        modes: Conditions, `desktop` and `hmd`.
+        mode_order: `fixed` as listed, or `balanced` over the trainees.
+        tasks: Names of the tasks.
+        task_order: `fixed` or `balanced`.
+        repetitions: How often each task is done in each mode, round by round.
+        trial_run_min: Length of the trial run at the start of each mode, in min; 0 for none.
+        break_between_modes_min: At least so long, in min; 0 for none.
+        break_between_tasks_min: The same between tasks.
+        asked: Questionnaires.
+        references: Of the score, by task; a task without one has that of the scenario.
+        score_version: Version of the score that the study was planned with.
+        pass_mark: Score that passes; None where the protocol sets none and the default holds.
+    """
+
+    name: str
+    title: str
+    modes: tuple[str, ...]
+    mode_order: str
+    tasks: tuple[str, ...]
+    task_order: str
+    repetitions: int = 1
+    trial_run_min: float = 0.0
+    break_between_modes_min: float = 0.0
+    break_between_tasks_min: float = 0.0
+    asked: tuple[Asked, ...] = ()
+    references: Mapping[str, ScoreReference] = field(default_factory=dict)
+    score_version: str = SCORE_VERSION
+    pass_mark: float | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the object that the file holds."""
+        mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
+        return {
+            "formatVersion": FORMAT_VERSION,
+            "name": self.name,
+            "title": self.title,
+            "modes": list(self.modes),
+            "modeOrder": self.mode_order,
+            "tasks": list(self.tasks),
+            "taskOrder": self.task_order,
+            "repetitions": self.repetitions,
+            "trialRun": {"minutes": self.trial_run_min},
+            "breaks": {
+                "betweenModesMinutes": self.break_between_modes_min,
+                "betweenTasksMinutes": self.break_between_tasks_min,
+            },
+            "questionnaires": [
+                {"name": asked.questionnaire, "when": asked.occasion, "modes": list(asked.modes)}
+                for asked in self.asked
+            ],
+            "scoring": {
+                "version": self.score_version,
+                **mark,
+                "references": {
+                    task: {"timeS": r.time_s, "treMm": r.tre_mm, "limitMm": r.limit_mm}
+                    for task, r in self.references.items()
+                },
+            },
+        }
+
+
+def pass_mark_of(protocol: StudyProtocol | None) -> float:
+    """Return the score that passes: the protocol's, or the default where there is none."""
+    return PASS_MARK if protocol is None or protocol.pass_mark is None else protocol.pass_mark
+
+
+def read_study_protocol(path: Path | str) -> StudyProtocol:
+    """Read a protocol file.
+
+    Raises:
+        InputError: the file cannot be used; the sentence names the field and what it must be.
+    """
+    return _protocol(read_fields(Path(path)))
+
+
+def study_protocol_from_json(value: Any) -> StudyProtocol:
+    """Return the protocol that `to_json` gave; raise `InputError` where it is not one."""
+    if not isinstance(value, dict):
+        raise InputError("A study protocol must be one JSON object.")
+    return _protocol(Fields(value, Path("study protocol")))
+
+
+def protocol_text(protocol: StudyProtocol) -> str:
+    """Return the text of a protocol's file."""
+    return json.dumps(protocol.to_json(), indent=2, ensure_ascii=False) + "\n"
+
+
+def _protocol(fields: Fields) -> StudyProtocol:
+    unknown = sorted(set(fields.names()) - set(_KEYS))
+    if unknown:
+        raise fields.error(unknown[0], f"left out; a protocol has {', '.join(_KEYS)}")
+    if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
+        raise fields.error("formatVersion", f"{FORMAT_VERSION}, which this version reads")
+    name = fields.text("name", 40)
+    if not is_task_name(name):
+        raise fields.error("name", "lower-case letters, digits and hyphens")
+    modes = fields.texts("modes", 1, len(Mode), choices=tuple(mode.value for mode in Mode))
+    tasks = fields.texts("tasks", 1, 20)
+    if not all(is_task_name(task) and task != TRIAL_RUN for task in tasks):
+        raise fields.error("tasks", "names of tasks, such as task-1; the trial run is not one")
+    breaks, scoring = fields.fields("breaks"), fields.fields("scoring")
+    version = scoring.text("version", 20)
+    if version not in READABLE_SCORE_VERSIONS:
+        raise scoring.error("version", f"{SCORE_VERSION}, the score that this version computes")
+    protocol = StudyProtocol(
+        name=name,
+        title=fields.text("title", 120),
+        modes=modes,
+        mode_order=fields.one_of("modeOrder", (FIXED, BALANCED)),
+        tasks=tasks,
+        task_order=fields.one_of("taskOrder", (FIXED, BALANCED)),
+        repetitions=fields.whole_number("repetitions", 1, 50),
+        trial_run_min=fields.fields("trialRun").number("minutes", 0, 120),
+        break_between_modes_min=breaks.number("betweenModesMinutes", 0, 30 * 24 * 60),
+        break_between_tasks_min=breaks.number("betweenTasksMinutes", 0, 24 * 60),
+        asked=tuple(
+            _asked(entry, modes) for entry in fields.list_of_fields("questionnaires", 0, 20)
+        ),
+        # Those of the first version are of the expected TRE, which is scored no more.
+        references=_references(scoring.fields("references"), tasks)
+        if version == SCORE_VERSION
+        else {},
+        score_version=version,
+        pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
+    )
+    if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:
+        raise fields.error("repetitions", f"so few that there are at most {MOST_STEPS} trials")
+    return protocol
+
+
+def _asked(entry: Fields, modes: tuple[str, ...]) -> Asked:
+    name = entry.text("name", 40)
+    try:
+        find_questionnaire(name)
+    except InputError as error:
+        raise entry.error("name", f"a questionnaire ({error})") from None
+    occasion = entry.one_of("when", OCCASIONS)
+    chosen = entry.texts("modes", 0, len(modes), choices=modes)
+    if chosen and occasion in (BEFORE_ALL, AFTER_ALL):
+        raise entry.error("modes", f"empty, since {occasion} belongs to no mode")
+    return Asked(name, occasion, chosen)
+
+
+def _references(fields: Fields, tasks: tuple[str, ...]) -> dict[str, ScoreReference]:
+    references = {}
+    for task in fields.names():
+        if task not in (*tasks, TRIAL_RUN):
+            raise fields.error(task[:40], f"one of the study's tasks, {', '.join(tasks)}")
+        entry = fields.fields(task)
+        references[task] = ScoreReference(
+            entry.number("timeS", 1, 1e4),
+            entry.number("treMm", 0.01, 100),
+            entry.number("limitMm", 0.01, 100),
+        )
+    return references

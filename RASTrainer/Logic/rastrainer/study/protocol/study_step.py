@@ -1,0 +1,127 @@
+"""What a study asks of a trainee next (`StudyStep`), and the answers to it (`StepAnswered`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from rastrainer.files.json_fields import Fields
+from rastrainer.protocol import ALL_DONE, FREE, REPEAT, StepKind
+from rastrainer.study.protocol.progress import Progress
+from rastrainer.study.questionnaires.catalog import find_questionnaire
+
+
+@dataclass(frozen=True)
+class StudyStep:
+    """The step that comes next for a trainee.
+
+    Attributes:
+        trainee: Pseudonym.
+        kind: A `StepKind`, `REPEAT` where an aborted trial waits for a reason, `ALL_DONE` after
+            the last step, or `FREE` where no study leads.
+        number: Of the step, from 1; 0 where there is none.
+        count: Of all steps; 0 where there are none.
+        task: That is played; "" where none is.
+        mode: In which it is done; "" for what belongs to none.
+        questionnaire: That is asked; "" where none is.
+        minutes: How long it takes; 0 where that is open.
+        over: How many of these minutes are over when it is sent. It is not compared: a step is the
+            same step whenever it is sent.
+    """
+
+    trainee: str
+    kind: str = FREE
+    number: int = 0
+    count: int = 0
+    task: str = ""
+    mode: str = ""
+    questionnaire: str = ""
+    minutes: float = 0.0
+    over: float = field(default=0.0, compare=False)
+
+    @classmethod
+    def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:
+        """Return what comes next for a trainee who stands there."""
+        step, count = progress.next_step, len(progress.steps)
+        if step is None:
+            return cls(trainee, ALL_DONE, count, count)
+        return cls(
+            trainee=trainee,
+            kind=REPEAT if progress.unexplained else step.kind.value,
+            number=len(progress.entries) + 1,
+            count=count,
+            task=step.task,
+            mode=step.mode,
+            questionnaire=step.questionnaire,
+            minutes=step.minutes,
+            over=min(progress.minutes_over(now), step.minutes),
+        )
+
+    @classmethod
+    def from_arguments(cls, arguments: Mapping[str, Any]) -> StudyStep:
+        """Return what checked arguments of the command say."""
+        return cls(**arguments)
+
+    @property
+    def is_played(self) -> bool:
+        """Whether a trial or a trial run is started for it."""
+        return self.kind in (StepKind.TRIAL.value, StepKind.TRIAL_RUN.value)
+
+    def left_s(self, passed_s: float = 0.0) -> float:
+        """Return how long it still takes, s, when so much has passed since it was sent."""
+        return max(0.0, 60.0 * (self.minutes - self.over) - passed_s)
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments of the command; what is empty is left out."""
+        return {name: value for name, value in asdict(self).items() if value not in ("", 0)}
+
+
+MOST_STEPS = 100_000
+
+
+@dataclass(frozen=True)
+class StepAnswers:
+    """The answers, and the step that asked for them.
+
+    Attributes:
+        trainee: Pseudonym.
+        number: Of the step, from 1.
+        questionnaire: Its name.
+        answers: One for each item, in their order.
+    """
+
+    trainee: str
+    number: int
+    questionnaire: str
+    answers: tuple[int, ...]
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> StepAnswers:
+        """Return the answers that a JSON object holds.
+
+        Raises:
+            InputError: it does not hold one allowed answer for each item of a questionnaire.
+        """
+        fields = Fields(dict(value), Path("StepAnswered"))
+        questionnaire = find_questionnaire(fields.text("questionnaire", 40))
+        answers = value.get("answers")
+        if not isinstance(answers, list):
+            raise fields.error("answers", "a list of whole numbers")
+        return cls(
+            fields.text("trainee", 64),
+            fields.whole_number("number", 1, MOST_STEPS),
+            questionnaire.name,
+            questionnaire.checked(answers),
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `from_json` reads."""
+        return asdict(self) | {"answers": list(self.answers)}
+
+    def belong_to(self, step: StudyStep) -> bool:
+        """Return whether this is the step that they answer."""
+        answered = (self.trainee, self.number, self.questionnaire)
+        return answered == (step.trainee, step.number, step.questionnaire)

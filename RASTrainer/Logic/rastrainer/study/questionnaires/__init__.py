@@ -1,0 +1,1 @@
+"""NASA-TLX, SSQ and SUS: their items and scores."""

@@ -1,0 +1,274 @@
+"""What a report is about: the trials of a study, from its database or from a CSV file."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import TRIAL_RUN
+from rastrainer.registration.registration import RIGID
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
+from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.study.study_notes import StudyNotes, read_notes
+from rastrainer.trial.ctps import Trial, read_trials
+from rastrainer.trial.scoring import FIRST_SCORE_VERSION, TrialScore
+
+
+@dataclass(frozen=True)
+class TrialRow:
+    """One trial of a report.
+
+    Attributes:
+        trainee: Pseudonym.
+        mode: Such as `desktop`.
+        task: Its name.
+        number: Which of the trainee's trials in this mode it was, from 1; 0 for a trial run.
+        values: What was measured, by name; see `rastrainer.study.outcomes`.
+        trial_id: UUID; "" in files that know none.
+        started_utc: ISO 8601; "" where unknown.
+        scenario: In which it was played; "" where unknown.
+        score_version: Of our score; "" without one.
+        acceptable: Whether it was within all limits of its score; False without a score.
+        completed_utc: When the last kept touch was made, ISO 8601; "" where unknown.
+    """
+
+    trainee: str
+    mode: str
+    task: str
+    number: int
+    values: Mapping[str, float]
+    trial_id: str = ""
+    started_utc: str = ""
+    scenario: str = ""
+    score_version: str = ""
+    acceptable: bool = False
+    completed_utc: str = ""
+
+
+@dataclass(frozen=True)
+class StudyData:
+    """Everything a report is about.
+
+    Attributes:
+        title: For people.
+        trials: But the trial runs; of a trainee who follows the protocol, those that it asks for.
+        mean_ct_s: Mean completion times that CTPS shall use instead of the trials' own, by mode.
+        notes: What is known about the study beside its numbers; None where nothing is.
+        protocol: None where trainees practiced freely.
+        answers: Answered questionnaires.
+        skipped: Trainee, step and reason of each step that was left out.
+        outside_protocol: How many trials the protocol has not asked for; they are left out.
+        without_consent: How many trainees are left out because they did not agree to research.
+        versions: Of the programs that made the records, name → different versions.
+        has_order: Whether the order of the trials is known.
+        gap: What is missing of a virtual cohort that was not played to its end, as a sentence; ""
+            of a whole one and of any other study.
+        aborted: Trials that were aborted, trial runs too, by trainee as they were started.
+    """
+
+    title: str
+    trials: tuple[TrialRow, ...]
+    mean_ct_s: Mapping[str, float] = field(default_factory=dict)
+    notes: StudyNotes | None = None
+    protocol: StudyProtocol | None = None
+    answers: tuple[QuestionnaireAnswers, ...] = ()
+    skipped: tuple[tuple[str, str, str], ...] = ()
+    outside_protocol: int = 0
+    without_consent: int = 0
+    versions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    has_order: bool = False
+    gap: str = ""
+    aborted: tuple[StoredAborted, ...] = ()
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Modes in the order of their first trial."""
+        return tuple(dict.fromkeys(trial.mode for trial in self.trials))
+
+    @property
+    def trainees(self) -> tuple[str, ...]:
+        """Pseudonyms in the order of their first trial."""
+        return tuple(dict.fromkeys(trial.trainee for trial in self.trials))
+
+    @property
+    def tasks(self) -> tuple[str, ...]:
+        """Tasks by name; numbers in them count as numbers."""
+        return tuple(sorted({trial.task for trial in self.trials}, key=_by_number))
+
+    def with_mean_times(self, mean_ct_s: Mapping[str, float]) -> StudyData:
+        """Return the study with further mean completion times for CTPS, by mode."""
+        return replace(self, mean_ct_s={**self.mean_ct_s, **mean_ct_s})
+
+    def of_mode(self, mode: str) -> list[TrialRow]:
+        """Return the trials of a mode."""
+        return [trial for trial in self.trials if trial.mode == mode]
+
+    def ctps_trials(self, mode: str) -> list[Trial]:
+        """Return the trials of a mode as CTPS takes them; those without a registration lack."""
+        return [
+            Trial(t.mode, t.trainee, t.task, t.values["completion_time_s"], t.values["rmse_mm"])
+            for t in self.of_mode(mode)
+            if "rmse_mm" in t.values
+        ]
+
+
+def read_study_data(path: Path, allow_incomplete: bool = False) -> StudyData:
+    """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
+
+    Beside a CSV file `NAME.csv`, notes are read from `NAME.json` if it is there.
+
+    Args:
+        path: Of the file.
+        allow_incomplete: Read a virtual cohort that was not played to its end, too.
+
+    Raises:
+        IncompleteStudyError: it was not, and is not allowed.
+        InputError: the file cannot be used, or holds no trials of anyone who consents.
+    """
+    if not path.is_file():
+        raise InputError(f"There is no file {path}.")
+    data = _from_csv(path) if path.suffix.lower() == ".csv" else _from_database(path)
+    if data.gap and not allow_incomplete:
+        raise IncompleteStudyError(
+            f"{data.gap} Simulate it again into the same folder with the same options: only what "
+            "is missing is played."
+        )
+    if not data.trials:
+        raise InputError(
+            f"The study {path} holds no trials of trainees who agreed to research "
+            f"({data.without_consent} did not)."
+        )
+    return data
+
+
+def _from_csv(path: Path) -> StudyData:
+    notes = read_notes(path.with_suffix(".json"))
+    counts: dict[tuple[str, str], int] = defaultdict(int)
+    rows = []
+    for trial in read_trials(path):
+        counts[trial.mode, trial.subject] += 1
+        values = {"completion_time_s": trial.completion_time_s, "rmse_mm": trial.rmse_mm}
+        number = counts[trial.mode, trial.subject]
+        rows.append(TrialRow(trial.subject, trial.mode, trial.task, number, values))
+    return StudyData(
+        title=notes.title if notes else path.stem,
+        trials=tuple(rows),
+        mean_ct_s=notes.mean_ct_s if notes else {},
+        notes=notes,
+    )
+
+
+def _from_database(path: Path) -> StudyData:
+    with Study.open_for_reading(path) as study:
+        progress = StudyProgress(study)
+        protocol = progress.protocol()
+        cohort = CohortStore(study).state()
+        everyone = (*study.trainees(), *study.trainees(archived=True))
+        consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
+        enrolled = [name for name in progress.enrolled() if name in consenting]
+        asked = {name: set(progress.played(name).counted_trials) for name in enrolled}
+        trials, versions, beside = [], defaultdict(set), 0
+        for pseudonym in sorted(consenting):
+            history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
+            if pseudonym in asked:
+                played, ids = len(history), asked[pseudonym]
+                history = [trial for trial in history if trial.record.trial_id in ids]
+                beside += played - len(history)
+            trials += trial_rows(history)
+            for stored in history:
+                for name, version in stored.record.versions.items():
+                    versions[name].add(version)
+        return StudyData(
+            title=protocol.title if protocol else path.stem,
+            trials=tuple(trials),
+            protocol=protocol,
+            answers=tuple(a for a in progress.answers() if a.trainee in consenting),
+            skipped=tuple(
+                (name, entry.step, str(entry.details.get("reason", "")))
+                for name in enrolled
+                for entry in progress.progress(name).skipped
+            ),
+            outside_protocol=beside,
+            without_consent=len(everyone) - len(consenting),
+            versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
+            has_order=True,
+            gap="" if cohort is None else cohort.gap,
+            aborted=tuple(
+                stored for name in sorted(consenting) for stored in AbortedTrials(study).of(name)
+            ),
+        )
+
+
+def trial_rows(history: Iterable[StoredTrial]) -> list[TrialRow]:
+    """Return the trials of one trainee, in the order they were started, as rows."""
+    counts: dict[str, int] = defaultdict(int)
+    rows = []
+    for stored in history:
+        is_run = stored.record.task == TRIAL_RUN
+        counts[stored.record.mode] += not is_run
+        rows.append(_trial_row(stored, 0 if is_run else counts[stored.record.mode]))
+    return rows
+
+
+def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
+    record, rigid, score = stored.record, stored.registrations.get(RIGID), stored.score
+    values = {
+        "completion_time_s": record.completion_time_s,
+        "refused_touches": record.rejected_touches,
+        "undone_touches": record.undone_touches,
+        **stored.motion,
+    }
+    if rigid is not None:
+        values["rmse_mm"] = rigid.fre_mm
+        if rigid.expected_tre_mm is not None:
+            values["expected_tre_mm"] = rigid.expected_tre_mm
+            values["tre_common_bias_sd_mm"] = rigid.common_bias_sd_mm
+        if rigid.tre_interval_mm is not None:
+            values["tre_low_mm"], values["tre_high_mm"] = rigid.tre_interval_mm
+    if score is not None:
+        values["score"] = score.score
+        values |= _score_parts(score)
+    if stored.true_tre_mm is not None:
+        values["true_tre_mm"] = stored.true_tre_mm
+    return TrialRow(
+        trainee=record.trainee,
+        mode=record.mode,
+        task=record.task,
+        number=number,
+        values=values,
+        trial_id=record.trial_id,
+        started_utc=record.started_utc,
+        scenario=record.scenario,
+        score_version="" if score is None else score.version,
+        acceptable=score is not None and score.acceptable,
+        completed_utc=record.completed_utc,
+    )
+
+
+def _score_parts(score: TrialScore) -> dict[str, float]:
+    """Return what the score is made of; the safety metrics are among the motion metrics."""
+    parts = {
+        # That of the first version is the expected TRE, which stands among the values already.
+        "score_tre_mm": None if score.version == FIRST_SCORE_VERSION else score.measures.tre_mm,
+        "score_time_desirability": score.time_desirability,
+        "score_accuracy_desirability": score.accuracy_desirability,
+        "score_safety_desirability": score.safety_desirability,
+        "score_is_accurate": score.is_accurate,
+        "score_is_safe": score.is_safe,
+        "score_reference_time_s": score.reference.time_s,
+        "score_reference_tre_mm": score.reference.tre_mm,
+        "score_limit_mm": score.reference.limit_mm,
+    }
+    return {name: float(value) for name, value in parts.items() if value is not None}
+
+
+def _by_number(task: str) -> tuple[str, int]:
+    digits = task[len(task.rstrip("0123456789")) :]
+    return task[: len(task) - len(digits)], int(digits[:9] or 0)

@@ -1,0 +1,121 @@
+"""Trials on their way into the study and out of it: stored, analyzed, with feedback."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.journal.folder import read_trajectory
+from rastrainer.motion.trajectory import Trajectory
+from rastrainer.protocol import TRIAL_RUN
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import pass_mark_of
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.trainee_progress import progress_of
+
+
+@dataclass(frozen=True)
+class DeliveredTrial:
+    """A trial that is safe in the study.
+
+    Attributes:
+        record: the trial.
+        analysis: its registration; None where it is not to be scored now, or cannot be.
+        problem: why it cannot be registered, a sentence; empty otherwise.
+    """
+
+    record: TrialRecord
+    analysis: TrialAnalysis | None = None
+    problem: str = ""
+
+
+def store_delivered(
+    value: Mapping[str, Any],
+    study: Study,
+    analyze: Callable[[TrialRecord], TrialAnalysis],
+    is_being_scored: bool = False,
+) -> DeliveredTrial:
+    """Store a trial with its registration, once; what is known already is not scored again.
+
+    Args:
+        value: the trial as it was delivered.
+        study: in which it is stored.
+        analyze: registers a record; `InputError` where that cannot be.
+        is_being_scored: whether its registration or score is being sent to the simulator.
+
+    Raises:
+        InputError: it is no record of a trial, or cannot be stored.
+        DeletedTrialError: it was deleted with its trainee.
+    """
+    record = TrialRecord.from_json(value)
+    is_new = study.check_trial(record)
+    if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):
+        return DeliveredTrial(record)
+    try:
+        analysis = analyze(record)
+    except InputError as error:
+        study.add_trial(record, delivered=value)
+        return DeliveredTrial(record, problem=str(error))
+    study.add_trial(record, analysis.fits.values(), analysis.target_errors, delivered=value)
+    return DeliveredTrial(record, analysis)
+
+
+def review(
+    analysis: TrialAnalysis,
+    truth: RevealedTruth,
+    scenario: Scenario,
+    study: Study,
+    records: Path | None = None,
+    rest: Callable[[], None] = lambda: None,
+) -> TrialAnalysis:
+    """Score a registered trial as its study's protocol says, with the feedback of its journal.
+
+    Args:
+        analysis: of the trial, as it was registered.
+        truth: what the simulator has revealed.
+        scenario: in which it was played.
+        study: whose protocol sets the references of the score.
+        records: folder of journals; None, or one that is not there, explains less of the touches.
+        rest: called again and again while the journal is read; a thread may wait in it.
+
+    Raises:
+        InputError: the trial cannot be scored, or the study not be read.
+    """
+    protocol = StudyProgress(study).protocol()
+    references = None if protocol is None else protocol.references
+    trajectory = trajectory_of(analysis.record, records, rest)
+    return analysis.scored(scenario, truth, references, trajectory)
+
+
+def trajectory_of(
+    record: TrialRecord, records: Path | None, rest: Callable[[], None] = lambda: None
+) -> Trajectory | None:
+    """Return a trial's trajectory from its journal; None where there is no folder or journal."""
+    if records is None or not records.is_dir():
+        return None
+    return read_trajectory(records, record.trial_id, rest)
+
+
+def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
+    """Return the analysis of a stored trial, with its place among the trainee's own trials.
+
+    A trial run is for getting to know everything: it passes nothing.
+
+    Raises:
+        InputError: the study has no such trial.
+    """
+    record = analysis.record
+    if record.task == TRIAL_RUN or study.trial(record.trial_id).score is None:
+        return analysis
+    pass_mark = pass_mark_of(StudyProgress(study).protocol())
+    progress = progress_of(
+        AbortedTrials(study).attempts(record.trainee), record.trial_id, pass_mark
+    )
+    return replace(analysis, feedback=replace(analysis.feedback, progress=progress))

@@ -1,0 +1,1 @@
+"""One trial: its record, analysis, truth, score and feedback."""

@@ -1,0 +1,119 @@
+"""The record of an aborted trial, as the simulator delivers it and the study keeps it.
+
+What was touched and then given up counts as tried: so nobody passes by aborting what went wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer import json_checks
+from rastrainer.json_checks import Argument
+from rastrainer.protocol import (
+    FIDUCIAL_COUNT,
+    KEPT_AFTER_S,
+    OPEN_PHASES,
+    TRIAL_RUN,
+    Phase,
+)
+from rastrainer.trial.record import (
+    SHARED_CHECKS,
+    TIME_LIMIT_S,
+    TouchedPoint,
+    record_from_json,
+    record_to_json,
+    touched_point,
+    utc_time,
+)
+
+
+@dataclass(frozen=True)
+class AbortedTrial:
+    """A trial that was started and never registered.
+
+    Attributes:
+        trial_id: UUID in its canonical spelling.
+        trainee: Pseudonym of the trainee.
+        task: Name of the task; also that of the trial run.
+        mode: `desktop` or `hmd`.
+        scenario: Name of the scenario.
+        started_utc: ISO 8601 in UTC.
+        aborted_utc: ISO 8601 in UTC.
+        elapsed_s: Simulated time from the start to the end, or to the last touch where all were
+            made; without pauses.
+        phase: In which it was aborted: `running`, `paused`, or `complete` after all touches.
+        reason: An `AbortReason`, or that of a later version.
+        points: The touches that were kept so far; their labels differ and their times do not fall.
+        rejected_touches: Number of touches that were refused.
+        undone_touches: Number of touches that the trainee took back.
+        versions: Name and version of each program and format that made the record.
+        touch_rule: Which touches counted, a `TouchRule`.
+    """
+
+    trial_id: str
+    trainee: str
+    task: str
+    mode: str
+    scenario: str
+    started_utc: str
+    aborted_utc: str
+    elapsed_s: float
+    phase: str
+    reason: str
+    points: tuple[TouchedPoint, ...]
+    rejected_touches: int
+    undone_touches: int
+    versions: Mapping[str, str]
+    touch_rule: str
+
+    @property
+    def is_trial_run(self) -> bool:
+        """Whether it was a trial run, which nobody passes or fails."""
+        return self.task == TRIAL_RUN
+
+    @property
+    def is_after_all_touches(self) -> bool:
+        """Whether all fiducials were touched: only Register was lacking."""
+        return self.phase == Phase.COMPLETE.value
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether there is anything to keep of it: a touch, a refused one too, or some time."""
+        touches = len(self.points) + self.rejected_touches + self.undone_touches
+        return touches > 0 or self.elapsed_s > KEPT_AFTER_S
+
+    @property
+    def counts_as_failed(self) -> bool:
+        """Whether it is a trial not passed: one of a scored task, with a touch that counted."""
+        return not self.is_trial_run and len(self.points) + self.undone_touches > 0
+
+    @classmethod
+    def from_json(cls, value: object) -> AbortedTrial:
+        """Return the record that a decoded JSON object holds; unknown keys are ignored.
+
+        Raises:
+            InputError: a key is missing or holds something else than it should.
+        """
+        return record_from_json(cls, value, _CHECKS, "The record of an aborted trial")
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `from_json` reads."""
+        return record_to_json(self)
+
+
+def _points_so_far(value: Any) -> tuple[TouchedPoint, ...]:
+    if not isinstance(value, (list, tuple)) or len(value) > FIDUCIAL_COUNT:
+        raise ValueError(f"a list of at most {FIDUCIAL_COUNT} points")
+    return tuple(touched_point(item) for item in value)
+
+
+_CHECKS = {
+    **SHARED_CHECKS,
+    "abortedUtc": Argument(utc_time),
+    "elapsedS": Argument(json_checks.number(0, TIME_LIMIT_S, "s")),
+    "phase": Argument(json_checks.one_of(*(phase.value for phase in OPEN_PHASES))),
+    "reason": Argument(json_checks.text()),
+    "points": Argument(_points_so_far),
+}

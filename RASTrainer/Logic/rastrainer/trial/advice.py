@@ -1,0 +1,159 @@
+"""What would have raised the score most: each thing with the points that it would bring."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rastrainer.trial.scoring import DEPTH_LIMIT_MM, SCORE_VERSION, TrialScore, score_trial
+from rastrainer.trial.touch_findings import TouchFinding
+from rastrainer.trial.wording import Sentence, say
+
+GOOD_EFFICIENCY = 0.35
+"""What straight ways with lifts of 35 mm reach even where fiducials are near each other.
+
+Virtual trainees who move so reach 0.36 in task 1 and 0.50 in task 5."""
+ATTEMPT_S = 3.0
+"""What a refused touch costs at least: to notice, to move, to touch again."""
+LONG_CONTACT_S = 2.0
+"""From here on a contact is described by its length, not as a bump."""
+LEAST_GAIN = 0.5
+MOST = 3
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One thing to improve.
+
+    Attributes:
+        topic: Short, for programs.
+        sentence: For the trainee.
+        gain: Points that the score would have been higher by, about.
+    """
+
+    topic: str
+    sentence: Sentence
+    gain: float
+
+
+def advise(
+    score: TrialScore | None, findings: Sequence[TouchFinding], motion: Mapping[str, float]
+) -> tuple[Advice, ...]:
+    """Return up to three things to improve, the most rewarding first.
+
+    A contact that was not meant, and pressing, come first whatever they cost: safety is not bought
+    with points. Without a score of this version nothing else can be advised.
+    """
+    if score is None or score.version != SCORE_VERSION:
+        return tuple(_contacts(motion, 0.0))
+    candidates = [
+        *_accuracy(score, findings),
+        *_time(score, motion),
+    ]
+    ranked = sorted(candidates, key=lambda advice: -advice.gain)
+    worth = [advice for advice in ranked if advice.gain >= LEAST_GAIN]
+    return (*_safety(score, motion), *worth)[:MOST]
+
+
+def _safety(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
+    yield from _contacts(motion, _gain(score, contact_time_s=0.0, contact_path_mm=0.0))
+    safety = score.measures.safety
+    depth = 0.0 if safety is None else safety.pressing_depth_mm
+    gain = _gain(score, pressing_depth_mm=0.0)
+    if depth > DEPTH_LIMIT_MM or gain >= LEAST_GAIN:
+        yield Advice("pressing", say("pressing", depth=float(depth)), gain)
+
+
+def _contacts(motion: Mapping[str, float], gain: float) -> Iterator[Advice]:
+    count = int(motion.get("unintended_contacts", 0))
+    seconds = float(motion.get("unintended_contact_time_s", 0.0))
+    if seconds >= LONG_CONTACT_S:
+        path = float(motion.get("unintended_contact_path_mm", 0.0))
+        yield Advice("contacts", say("dragging", time=seconds, path=path), gain)
+    elif count:
+        sentence = say("contact") if count == 1 else say("contacts", count=count)
+        yield Advice("contacts", sentence, gain)
+
+
+def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[Advice]:
+    residuals = np.array([finding.residual_mm for finding in findings])
+    total = float((residuals**2).sum())
+    if total <= 0:
+        return
+    hurting = [finding for finding in findings if finding.hurts]
+    if hurting:
+        typical = float(np.median(residuals))
+        better = sum(
+            (typical if finding.hurts else finding.residual_mm) ** 2 for finding in findings
+        )
+        yield Advice(
+            "worst touches",
+            say(
+                "worst touch" if len(hurting) == 1 else "worst touches",
+                points=", ".join(finding.label for finding in hurting),
+                share=100 * (1 - math.sqrt(better / total)),
+            ),
+            _gain(score, error_factor=math.sqrt(better / total)),
+        )
+    depths = [finding.depth_mm for finding in findings if finding.depth_mm is not None]
+    if len(depths) == len(findings):
+        in_depth = float((np.array(depths) ** 2).sum())
+        if in_depth > 0.5 * total:
+            yield Advice(
+                "depth",
+                say("depth"),
+                _gain(score, error_factor=math.sqrt(max(1 - in_depth / total, 0.04) / 0.75)),
+            )
+
+
+def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
+    time = score.measures.completion_time_s
+    idle = motion.get("idle_time_s", 0.0)
+    if idle > 0:
+        yield Advice(
+            "idle time",
+            say("idle time", idle=float(idle), time=time),
+            # Half of it is needed to aim and to hold still.
+            _gain(score, time_s=time - idle / 2),
+        )
+    efficiency = motion.get("path_efficiency", GOOD_EFFICIENCY)
+    if efficiency < GOOD_EFFICIENCY:
+        moving = time - idle
+        yield Advice(
+            "detours",
+            say("detours", times=1 / efficiency),
+            _gain(score, time_s=time - moving * (1 - efficiency / GOOD_EFFICIENCY)),
+        )
+    refused = int(motion.get("refused_touches", 0) + motion.get("undone_touches", 0))
+    if refused:
+        yield Advice(
+            "repeated touches",
+            say("repeated touch") if refused == 1 else say("repeated touches", count=refused),
+            _gain(score, time_s=max(time - ATTEMPT_S * refused, 0.2 * time)),
+        )
+    slow = time / score.reference.time_s
+    if slow > 1.3:
+        yield Advice(
+            "pace",
+            say("pace", time=time, usual=float(score.reference.time_s)),
+            0.5 * _gain(score, time_s=score.reference.time_s),
+        )
+
+
+def _gain(
+    score: TrialScore,
+    time_s: float | None = None,
+    error_factor: float = 1.0,
+    **safety: float,
+) -> float:
+    measures = replace(
+        score.measures,
+        completion_time_s=max(time_s or score.measures.completion_time_s, 1e-3),
+        # The target error is, on the average, proportional to the registration error.
+        tre_mm=score.measures.tre_mm * min(error_factor, 1.0),
+        **safety,
+    )
+    return max(0.0, score_trial(measures, score.reference).score - score.score)

@@ -1,0 +1,221 @@
+"""From a trial's record to its numbers: registrations, target errors, scores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rastrainer import json_checks
+from rastrainer.errors import InputError
+from rastrainer.files.point_list import PointList, pair
+from rastrainer.motion.trajectory import Trajectory
+from rastrainer.registration.localization_error import error_along_surface
+from rastrainer.registration.registration import RIGID, Registration, register_all_kinds
+from rastrainer.registration.target_error import TargetError, target_error
+from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.trial import ctps
+from rastrainer.trial.advice import advise
+from rastrainer.trial.brain_region import region_of
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
+from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
+
+
+@dataclass(frozen=True)
+class RevealedTruth:
+    """Where the head was.
+
+    Attributes:
+        head_to_world: 16 numbers, row by row, mm, from MRI RAS to World.
+        true_tre_mm: how far the registration put the target from where it is.
+    """
+
+    head_to_world: tuple[float, ...]
+    true_tre_mm: float
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """(4, 4) float, mm, from MRI RAS to World."""
+        return np.reshape(self.head_to_world, (4, 4))
+
+    @classmethod
+    def from_json(cls, answer: Mapping[str, Any]) -> RevealedTruth:
+        """Return what the answer to SubmitRegistration or GetTrial reveals.
+
+        Raises:
+            InputError: it reveals nothing, or not numbers.
+        """
+        try:
+            return cls(
+                json_checks.numbers(16, 1e6)(answer.get("headToWorld")),
+                json_checks.number(0, 1e6)(answer.get("trueTreMm")),
+            )
+        except ValueError:
+            raise InputError(
+                "The simulator's answer must hold headToWorld, 16 numbers, and trueTreMm."
+            ) from None
+
+
+@dataclass(frozen=True)
+class PublishedScore:
+    """CTPS of a trial against a cohort; see `rastrainer.trial.ctps` for what speaks against it.
+
+    Attributes:
+        published: 100·(CT score − RMSE penalty), from which the paper's tables follow.
+        equation_3: the paper's equation 3 as printed: half of it.
+        reference: what the cohort gave to compare with.
+    """
+
+    published: float
+    equation_3: float
+    reference: ctps.CohortReference
+
+
+@dataclass(frozen=True)
+class TrialAnalysis:
+    """The numbers of one trial.
+
+    Attributes:
+        record: the trial.
+        target_name: of the scenario's target, at which the target errors are computed.
+        fits: the registration of each kind that the points allow; rigid is always there.
+        target_errors: by kind, the error to expect at the target.
+        truth: what the simulator has revealed; None before.
+        score: ours, of the rigid registration; None without the truth.
+        published_score: CTPS of the rigid registration; None where no cohort was given.
+        feedback: for the trainee, on this trial alone.
+    """
+
+    record: TrialRecord
+    target_name: str
+    fits: Mapping[str, Registration]
+    target_errors: Mapping[str, TargetError]
+    truth: RevealedTruth | None
+    score: TrialScore | None
+    published_score: PublishedScore | None
+    feedback: TrialFeedback
+
+    @property
+    def rigid(self) -> Registration:
+        """The registration that is scored."""
+        return self.fits[RIGID]
+
+    @property
+    def expected_tre(self) -> TargetError:
+        """The error to expect at the target with the registration that is scored."""
+        return self.target_errors[RIGID]
+
+    def scored(
+        self,
+        scenario: Scenario,
+        truth: RevealedTruth,
+        references: Mapping[str, ScoreReference] | None = None,
+        trajectory: Trajectory | None = None,
+    ) -> TrialAnalysis:
+        """Return the analysis with the truth and the score that is made of it.
+
+        The score is made of the true error of the rigid registration of all touches.
+
+        Args:
+            scenario: in which the trial was played.
+            truth: what the simulator has revealed.
+            references: of the score, by task, as a study's protocol sets them; those of the
+                scenario for tasks that it leaves out.
+            trajectory: of the trial, from its journal; it explains why a touch was off.
+
+        Raises:
+            InputError: the trial's contacts were not measured.
+        """
+        record = self.record
+        tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
+        score = score_trial(
+            ScoreMeasures.of(record.completion_time_s, tre_mm, record.motion),
+            score_reference(scenario, record.task, references),
+        )
+        normals = _normals_at(scenario, record.task, self.rigid.labels)
+        feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory)
+        return replace(self, truth=truth, score=score, feedback=feedback)
+
+    def scored_as(self, score: TrialScore | None) -> TrialAnalysis:
+        """Return the analysis with the score that was once made of the trial, in its version."""
+        advice = advise(score, self.feedback.touches, self.record.motion)
+        return replace(
+            self, score=score, feedback=replace(self.feedback, score=score, advice=advice)
+        )
+
+
+def analyze_trial(
+    record: TrialRecord,
+    scenario: Scenario,
+    cohort: Sequence[ctps.Trial] = (),
+    references: Mapping[str, ScoreReference] | None = None,
+    trajectory: Trajectory | None = None,
+    truth: RevealedTruth | None = None,
+    give_way: Callable[[], None] = lambda: None,
+) -> TrialAnalysis:
+    """Register a trial's touches to its task's fiducials, paired by label; score it by its truth.
+
+    Args:
+        record: the trial.
+        scenario: in which it was played.
+        cohort: trials that CTPS compares with; those of the trial's own mode count.
+        references: of the score, by task, as a study's protocol sets them; those of the scenario
+            for tasks that it leaves out.
+        trajectory: of the trial, from its journal; it explains why a touch was off.
+        truth: what the simulator has revealed; without it there is no score.
+        give_way: called between the steps, every 10 ms or so; a worker may wait in it.
+
+    Raises:
+        InputError: the scenario has no such task or labels, or the points cannot be registered, or
+            the trial's contacts were not measured.
+    """
+    task = scenario.task(record.task)
+    labels, moving, fixed = pair(
+        PointList(record.labels, record.positions_mm), PointList(task.labels, task.fiducials)
+    )
+    fits = register_all_kinds(moving, fixed, labels)
+    normals = _normals_at(scenario, record.task, labels)
+    errors = {}
+    for kind, fit in fits.items():
+        give_way()
+        localization = error_along_surface(fit, normals)
+        give_way()
+        errors[kind] = target_error(fit, scenario.target_position, localization)
+    give_way()
+    analysis = TrialAnalysis(
+        record=record,
+        target_name=scenario.target_name,
+        fits=fits,
+        target_errors=errors,
+        truth=None,
+        score=None,
+        published_score=published_score(record, fits[RIGID].fre_mm, cohort),
+        feedback=trial_feedback(None, fits[RIGID], normals, record.motion, trajectory),
+    )
+    return analysis if truth is None else analysis.scored(scenario, truth, references, trajectory)
+
+
+def _normals_at(scenario: Scenario, task_name: str, labels: Sequence[str]) -> np.ndarray:
+    task = scenario.task(task_name)
+    return fiducial_normals(scenario, task_name)[[task.labels.index(label) for label in labels]]
+
+
+def published_score(
+    record: TrialRecord, fre_mm: float, cohort: Sequence[ctps.Trial]
+) -> PublishedScore | None:
+    """Return the CTPS of a trial with this FRE; None where its mode has no peers to divide by."""
+    try:
+        reference = ctps.CohortReference.of([t for t in cohort if t.mode == record.mode])
+    except InputError:
+        return None
+    time = record.completion_time_s
+    return PublishedScore(
+        ctps.published_ctps(time, fre_mm, reference),
+        ctps.equation_3_ctps(time, fre_mm, reference),
+        reference,
+    )

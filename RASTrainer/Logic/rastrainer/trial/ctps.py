@@ -1,0 +1,210 @@
+"""CTPS, the Combined Task Performance Score of the paper that RASTrainer implements.
+
+Equations 1 and 2: CT score = CT / mean CT and RMSE penalty = (RMSE − best RMSE) / best RMSE, mean
+and best taken over all trials of a mode. The paper's Tables I and II hold 100·(CT score − RMSE
+penalty); its equation 3 divides that by 2. Both forms are here under these names.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.csv_files import number_in, read_rows
+
+CTPS_WARNING = (
+    "CTPS rises with a slower completion, depends on who else is in the cohort and has no bounds; "
+    "it is shown because it is published, not to judge a trainee."
+)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One trial of a cohort.
+
+    Attributes:
+        mode: How the scene was seen, such as `desktop` or `hmd`.
+        subject: Pseudonym of the trainee.
+        task: Name of the task.
+        completion_time_s: Completion time, in s.
+        rmse_mm: Fiducial registration error of the rigid fit, in mm.
+    """
+
+    mode: str
+    subject: str
+    task: str
+    completion_time_s: float
+    rmse_mm: float
+
+
+@dataclass(frozen=True)
+class CohortReference:
+    """What CTPS compares a trial with: mean CT in s and best RMSE in mm of all trials of a mode."""
+
+    mean_ct_s: float
+    best_rmse_mm: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.mean_ct_s) and self.mean_ct_s > 0):
+            raise InputError("The mean completion time must be a number of seconds above 0.")
+        if not (math.isfinite(self.best_rmse_mm) and self.best_rmse_mm > 0):
+            raise InputError("CTPS divides by the best RMSE, which must be above 0 mm.")
+
+    @classmethod
+    def of(cls, trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortReference:
+        """Return the reference of a cohort, with a printed mean CT instead of its own if given.
+
+        Raises:
+            InputError: there are no trials, or their times or errors give no reference.
+        """
+        if not trials:
+            raise InputError("CTPS needs at least one trial.")
+        if mean_ct_s is None:
+            mean_ct_s = float(np.mean([trial.completion_time_s for trial in trials]))
+        return cls(mean_ct_s, min(trial.rmse_mm for trial in trials))
+
+
+@dataclass(frozen=True)
+class CohortScores:
+    """CTPS of one mode as the paper tabulates it; where too few trials define a value it is None.
+
+    Attributes:
+        reference: What the trials were compared with.
+        trials: Published CTPS of each trial, in the order given.
+        tasks: Mean published CTPS of each task ("Task Perf.").
+        subjects: Mean published CTPS of each subject ("User Perf.").
+        overall: Mean published CTPS of all trials.
+        equation_3_overall: The same by equation 3: half of it.
+        sd_population: Standard deviation of `trials`, divided by n.
+        sd_sample: Standard deviation of `trials`, divided by n − 1.
+        pearson_r: Correlation of task number and mean CT of the task, which the paper calls R².
+        r_squared: Its square.
+    """
+
+    reference: CohortReference
+    trials: tuple[float, ...]
+    tasks: dict[str, float]
+    subjects: dict[str, float]
+    overall: float
+    equation_3_overall: float
+    sd_population: float
+    sd_sample: float | None
+    pearson_r: float | None
+    r_squared: float | None
+
+
+def published_ctps(completion_time_s: float, rmse_mm: float, reference: CohortReference) -> float:
+    """Return 100·(CT score − RMSE penalty) of one trial, from which the paper's tables follow."""
+    ct_score = completion_time_s / reference.mean_ct_s
+    rmse_penalty = (rmse_mm - reference.best_rmse_mm) / reference.best_rmse_mm
+    return 100 * (ct_score - rmse_penalty)
+
+
+def equation_3_ctps(completion_time_s: float, rmse_mm: float, reference: CohortReference) -> float:
+    """Return 100·(CT score − RMSE penalty)/2 of one trial, the paper's equation 3 as printed."""
+    return published_ctps(completion_time_s, rmse_mm, reference) / 2
+
+
+def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortScores:
+    """Return the CTPS table of the trials of one mode.
+
+    Args:
+        trials: At least one.
+        mean_ct_s: Mean CT to use instead of the trials' own; the paper used a rounded one.
+
+    Raises:
+        InputError: the trials give no reference (see `CohortReference`).
+    """
+    reference = CohortReference.of(trials, mean_ct_s)
+    scores = [published_ctps(t.completion_time_s, t.rmse_mm, reference) for t in trials]
+    r = _task_correlation(trials)
+    return CohortScores(
+        reference=reference,
+        trials=tuple(scores),
+        tasks=_means(trials, scores, lambda trial: trial.task),
+        subjects=_means(trials, scores, lambda trial: trial.subject),
+        overall=float(np.mean(scores)),
+        equation_3_overall=float(np.mean(scores)) / 2,
+        sd_population=float(np.std(scores)),
+        sd_sample=float(np.std(scores, ddof=1)) if len(scores) > 1 else None,
+        pearson_r=r,
+        r_squared=None if r is None else r * r,
+    )
+
+
+def trials_by_mode(trials: Iterable[Trial]) -> dict[str, list[Trial]]:
+    """Return the trials of each mode, modes in the order of their first trial."""
+    modes: dict[str, list[Trial]] = {}
+    for trial in trials:
+        modes.setdefault(trial.mode, []).append(trial)
+    return modes
+
+
+def _means(
+    trials: Sequence[Trial], values: Sequence[float], key: Callable[[Trial], str]
+) -> dict[str, float]:
+    groups: dict[str, list[float]] = {}
+    for trial, value in zip(trials, values, strict=True):
+        groups.setdefault(key(trial), []).append(value)
+    return {name: float(np.mean(group)) for name, group in groups.items()}
+
+
+def task_number(task: str) -> int | None:
+    """Return the number at the end of a task's name, by which the paper orders complexity."""
+    match = re.search(r"[0-9]{1,9}$", task)
+    return int(match.group()) if match else None
+
+
+def _task_correlation(trials: Sequence[Trial]) -> float | None:
+    """Return Pearson's r of task number and task-mean CT; tasks without a number do not count.
+
+    None where there are fewer than three, or none takes longer than another.
+    """
+    times = [trial.completion_time_s for trial in trials]
+    means = {
+        number: mean
+        for task, mean in _means(trials, times, lambda trial: trial.task).items()
+        if (number := task_number(task)) is not None
+    }
+    if len(means) < 3 or not np.ptp(list(means.values())) > 0:
+        return None
+    return float(np.corrcoef(list(means), list(means.values()))[0, 1])
+
+
+TEXT_LIMIT = 64
+NUMBER_LIMIT = 1e6
+
+
+def read_trials(path: str | os.PathLike[str]) -> list[Trial]:
+    """Return the trials of a file, one a row: `ct` in s above 0, `rmse` in mm, 0 or above.
+
+    Raises:
+        InputError: the file cannot be used; the sentence says what would be right.
+    """
+    rows = read_rows(path, ("mode", "subject", "task", "ct", "rmse"))
+    return [_trial(path, line, cells) for line, cells in rows]
+
+
+def _trial(path: object, line: int, cells: dict[str, str]) -> Trial:
+    for column in ("mode", "subject", "task"):
+        if not 1 <= len(cells[column]) <= TEXT_LIMIT or not cells[column].isprintable():
+            raise InputError(
+                f"Line {line} of {path}: {column} must be printable text of 1 to {TEXT_LIMIT} "
+                "characters."
+            )
+    completion_time = number_in(path, line, cells, "ct", 0, NUMBER_LIMIT)
+    if completion_time == 0:
+        raise InputError(f"Line {line} of {path}: ct must be above 0 s.")
+    return Trial(
+        mode=cells["mode"],
+        subject=cells["subject"],
+        task=cells["task"],
+        completion_time_s=completion_time,
+        rmse_mm=number_in(path, line, cells, "rmse", 0, NUMBER_LIMIT),
+    )

@@ -1,0 +1,290 @@
+"""The record of a finished trial, as the simulator delivers it and the study keeps it.
+
+Both sides import this one file: what a record must hold is said here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import Field, dataclass, field, fields
+from datetime import datetime, timedelta
+from typing import Any, ClassVar, Protocol, TypeVar
+
+import numpy as np
+
+from rastrainer import json_checks
+from rastrainer.errors import InputError
+from rastrainer.json_checks import Argument, checked_keys
+from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM, Mode, TouchRule
+
+TIME_LIMIT_S = 1e6
+TOUCH_LIMIT = 1_000_000
+VERSIONS_LIMIT = 32
+MOTION_LIMIT = 100
+DISPLAY_LIMIT = 16
+
+
+@dataclass(frozen=True)
+class TouchedPoint:
+    """One fiducial as it was touched.
+
+    Attributes:
+        label: The fiducial's label, `1` to `15` in the shipped tasks.
+        position_mm: Position of the tool tip in `World`, in mm.
+        sim_time_s: Simulated time of the touch, in s.
+        utc: Wall time of the touch, ISO 8601 in UTC.
+    """
+
+    label: str
+    position_mm: tuple[float, float, float]
+    sim_time_s: float
+    utc: str
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `touched_point` reads."""
+        return {
+            "label": self.label,
+            "positionMm": list(self.position_mm),
+            "simTime": self.sim_time_s,
+            "utc": self.utc,
+        }
+
+
+class DeliveredRecord(Protocol):
+    """A dataclass of what the simulator delivers of a trial."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    @property
+    def points(self) -> tuple[TouchedPoint, ...]:
+        """The kept touches, in their order."""
+
+
+Record = TypeVar("Record", bound=DeliveredRecord)
+
+
+@dataclass(frozen=True)
+class TrialRecord:
+    """A finished trial: who, what, when, and the fifteen touches that were kept, in their order.
+
+    Attributes:
+        trial_id: UUID in its canonical spelling.
+        trainee: Pseudonym of the trainee.
+        task: Name of the task, such as `task-1`.
+        mode: `desktop` or `hmd`.
+        scenario: Name of the scenario.
+        started_utc: ISO 8601 in UTC; the wall clock may jump, so no duration is taken from it.
+        completed_utc: ISO 8601 in UTC.
+        completion_time_s: Simulated time from the start to the last kept touch, without pauses.
+        points: The kept touches; their labels differ and their times do not fall.
+        rejected_touches: Number of touches that were refused (too far off, wrong fiducial).
+        undone_touches: Number of touches that the trainee took back.
+        versions: Name and version of each program and format that made the record.
+        seed: Seed of the trial, where the simulator reveals it.
+        touch_rule: Which touches counted, a `TouchRule`; in older records the paper's.
+        motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
+        display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
+            `droppedFrames`; empty where no view reported it.
+    """
+
+    trial_id: str
+    trainee: str
+    task: str
+    mode: str
+    scenario: str
+    started_utc: str
+    completed_utc: str
+    completion_time_s: float
+    points: tuple[TouchedPoint, ...]
+    rejected_touches: int
+    undone_touches: int
+    versions: Mapping[str, str]
+    seed: int | None = None
+    touch_rule: str = TouchRule.WITHIN_RADIUS.value
+    motion: Mapping[str, float] = field(default_factory=dict)
+    display: Mapping[str, str | float] = field(default_factory=dict)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Labels of the touched fiducials, in the order of touching."""
+        return tuple(point.label for point in self.points)
+
+    @property
+    def positions_mm(self) -> np.ndarray:
+        """Touched points in `World`, (n, 3) float, in mm."""
+        return np.array([point.position_mm for point in self.points], dtype=float)
+
+    @property
+    def touch_times_s(self) -> np.ndarray:
+        """Simulated time of each touch, (n,) float, in s."""
+        return np.array([point.sim_time_s for point in self.points], dtype=float)
+
+    @classmethod
+    def from_json(cls, value: object) -> TrialRecord:
+        """Return the record that a decoded JSON object holds.
+
+        Keys that this version does not know are ignored, so that a newer simulator may add some.
+
+        Raises:
+            InputError: a key is missing or holds something else than it should.
+        """
+        return record_from_json(cls, value, _CHECKS, "The trial record")
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `from_json` reads."""
+        return record_to_json(self)
+
+
+def utc_time(value: Any) -> str:
+    """Accept an ISO 8601 date and time in UTC, such as `2024-05-17T09:30:00.250Z`.
+
+    Raises:
+        ValueError: anything else; the words follow "must be".
+    """
+    try:
+        # `fromisoformat` reads the letter Z only from Python 3.11 on.
+        moment = datetime.fromisoformat(value.replace("Z", "+00:00"))
+    except (AttributeError, TypeError, ValueError):
+        moment = None
+    if moment is None or moment.utcoffset() != timedelta(0):
+        raise ValueError("an ISO 8601 date and time in UTC, such as 2024-05-17T09:30:00Z")
+    return value
+
+
+def touched_point(value: Any) -> TouchedPoint:
+    """Return the point that a decoded JSON object holds; raise `InputError` where it is none."""
+    point = checked_keys(value, _POINT_KEYS, "Each point of the trial record")
+    return TouchedPoint(point["label"], point["positionMm"], point["simTime"], point["utc"])
+
+
+def _all_points(value: Any) -> tuple[TouchedPoint, ...]:
+    if not isinstance(value, (list, tuple)) or len(value) != FIDUCIAL_COUNT:
+        raise ValueError(f"a list of {FIDUCIAL_COUNT} points")
+    return tuple(touched_point(item) for item in value)
+
+
+def _versions(value: Any) -> dict[str, str]:
+    """Accept names of programs with their versions; raise `ValueError` for anything else."""
+    words = "an object of at most 32 names with their versions as text"
+    if not isinstance(value, dict) or len(value) > VERSIONS_LIMIT:
+        raise ValueError(words)
+    check = json_checks.text()
+    try:
+        return {check(name): check(version) for name, version in value.items()}
+    except ValueError:
+        raise ValueError(words) from None
+
+
+def _motion(value: Any) -> dict[str, float]:
+    words = f"an object of at most {MOTION_LIMIT} names with finite numbers"
+    if not isinstance(value, Mapping) or len(value) > MOTION_LIMIT:
+        raise ValueError(words)
+    check_name, check_number = json_checks.text(), json_checks.number(-1e9, 1e9)
+    try:
+        return {check_name(name): check_number(number) for name, number in value.items()}
+    except ValueError:
+        raise ValueError(words) from None
+
+
+def _display(value: Any) -> dict[str, str | float]:
+    words = f"an object of at most {DISPLAY_LIMIT} names with texts or finite numbers"
+    if not isinstance(value, Mapping) or len(value) > DISPLAY_LIMIT:
+        raise ValueError(words)
+    check_text, check_number = json_checks.text(), json_checks.number(0, 1e9)
+    try:
+        return {
+            check_text(name): check_text(item) if isinstance(item, str) else check_number(item)
+            for name, item in value.items()
+        }
+    except ValueError:
+        raise ValueError(words) from None
+
+
+def _optional(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    return lambda value: None if value is None else check(value)
+
+
+def record_from_json(
+    record_class: type[Record], value: object, checks: Mapping[str, Argument], what: str
+) -> Record:
+    """Return the record that a decoded JSON object holds; unknown keys are ignored.
+
+    Args:
+        record_class: `TrialRecord`, or another dataclass with `points`. The keys are its fields in
+            camel case, in their order.
+        value: the object.
+        checks: how each key is checked.
+        what: begins the sentence of an error.
+
+    Raises:
+        InputError: a key is missing or holds something else than it should.
+    """
+    names = {_key(field): field.name for field in fields(record_class)}
+    checked = checked_keys(value, {key: checks[key] for key in names}, what)
+    record = record_class(**{names[key]: item for key, item in checked.items()})
+    _check_points(record.points)
+    return record
+
+
+def record_to_json(record: DeliveredRecord) -> dict[str, Any]:
+    """Return the JSON object that `record_from_json` reads."""
+    values = {_key(field): getattr(record, field.name) for field in fields(record)}
+    return {
+        key: dict(item) if isinstance(item, Mapping) else item for key, item in values.items()
+    } | {"points": [point.to_json() for point in record.points]}
+
+
+def _key(field: Field[Any]) -> str:
+    first, *others = field.name.split("_")
+    return first + "".join(word.capitalize() for word in others)
+
+
+def _check_points(points: tuple[TouchedPoint, ...]) -> None:
+    """Raise `InputError` where a label stands twice, or a point before an earlier one."""
+    seen: set[str] = set()
+    for point in points:
+        if point.label in seen:
+            raise InputError(f"The trial record holds the label {json.dumps(point.label)} twice.")
+        seen.add(point.label)
+    for earlier, later in itertools.pairwise(points):
+        if later.sim_time_s < earlier.sim_time_s:
+            raise InputError(
+                f"The trial record's points must be in the order of touching: "
+                f"{later.label} was touched before {earlier.label}."
+            )
+
+
+_POINT_KEYS = {
+    "label": Argument(json_checks.text()),
+    "positionMm": Argument(json_checks.numbers(3, WORLD_LIMIT_MM, "mm")),
+    "simTime": Argument(json_checks.number(0, TIME_LIMIT_S, "s")),
+    "utc": Argument(utc_time),
+}
+
+SHARED_CHECKS = {
+    "trialId": Argument(json_checks.trial_id),
+    "trainee": Argument(json_checks.text()),
+    "task": Argument(json_checks.text()),
+    "mode": Argument(json_checks.one_of(*(mode.value for mode in Mode))),
+    "scenario": Argument(json_checks.text()),
+    "startedUtc": Argument(utc_time),
+    "rejectedTouches": Argument(json_checks.whole_number(0, TOUCH_LIMIT)),
+    "undoneTouches": Argument(json_checks.whole_number(0, TOUCH_LIMIT)),
+    "versions": Argument(_versions),
+    "touchRule": Argument(json_checks.one_of(*(rule.value for rule in TouchRule))),
+}
+"""Of the keys that the records of finished and of aborted trials share."""
+
+_CHECKS = {
+    **SHARED_CHECKS,
+    "completedUtc": Argument(utc_time),
+    "completionTimeS": Argument(json_checks.number(0, TIME_LIMIT_S, "s")),
+    "points": Argument(_all_points),
+    "seed": Argument(_optional(json_checks.whole_number(0, 2**63 - 1)), None),
+    # Records older than this key are of the paper's rule.
+    "touchRule": Argument(SHARED_CHECKS["touchRule"].check, TouchRule.WITHIN_RADIUS.value),
+    "motion": Argument(_motion, {}),
+    "display": Argument(_display, {}),
+}

@@ -1,0 +1,272 @@
+"""RASTrainer's own score of a trial: 0 to 100, from completion time, true target error and safety.
+
+Each is a desirability (Harrington 1965, Derringer and Suich 1980) that falls strictly: faster, more
+accurate and gentler are better. The score is the geometric mean of time and accuracy, times the
+square root of safety, which is 1 for a trial without unintended contact. What is beyond a limit of
+acceptance is cut so far that no such trial, however good otherwise, reaches any acceptable one.
+
+Accuracy is the true error, which only a simulator knows, over the region that the registration has
+to be right in (`rastrainer.trial.brain_region`): neither an FRE nor an expected TRE can see an
+offset that all touches share. The references come from the scenario
+(`rastrainer.trial.score_reference`), and the mode plays no part.
+
+A pause is no completion time: the arm stands still, and a trainee who is called away shall not lose
+for it. But it is time to think that is not scored. So its length stands beside the score, and
+pauses longer in all than `LONG_PAUSE_S` are reported with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from rastrainer.errors import InputError
+
+SCORE_VERSION = "2"
+"""Changes with any change of a formula or a reference, so that scores stay comparable."""
+FIRST_SCORE_VERSION = "1"
+"""Scored time and the expected TRE at one target; such scores are read, and made no more."""
+PASS_MARK = 70.0
+"""Score to reach where a study's protocol has no mark of its own from contrasting groups."""
+LONG_PAUSE_S = 30.0
+"""Our own convention: what a sip of water or a word with the instructor takes."""
+TIME_FLOOR = 0.04
+LIMIT_MM = 1.5
+"""Largest acceptable true TRE. Image-guided neurosurgery asks for 2 mm in all, of which the images,
+the robot and its instrument take the rest: √(2² − 1.5²) = 1.3 mm."""
+HALF_CONTACT_S, CONTACT_LIMIT_S = 4.0, 8.0
+"""Unintended contact in a trial that halves the desirability, and the most that is acceptable: a
+brush of a second now and then, not the tool's way of traveling. Our own convention, as the next."""
+HALF_CONTACT_PATH_MM, CONTACT_PATH_LIMIT_MM = 80.0, 160.0
+HALF_DEPTH_MM = DEPTH_LIMIT_MM = 1.5
+LARGEST = 1e6
+"""Of any measure: what is above is a mistake."""
+
+
+@dataclass(frozen=True)
+class ScoreReference:
+    """What a trial is measured against.
+
+    Attributes:
+        time_s: completion time of half the range of the time desirability.
+        tre_mm: true TRE of accuracy desirability one half.
+        limit_mm: largest acceptable true TRE.
+    """
+
+    time_s: float
+    tre_mm: float
+    limit_mm: float = LIMIT_MM
+
+
+class SafetyMeasures(NamedTuple):
+    """Time and path of unintended contact (s, mm) and how deep the tool was pressed in (mm)."""
+
+    contact_time_s: float
+    contact_path_mm: float
+    pressing_depth_mm: float
+
+
+@dataclass(frozen=True)
+class ScoreMeasures:
+    """What is scored of a trial.
+
+    Attributes:
+        completion_time_s: above 0.
+        tre_mm: RMS true TRE over the region; expected TRE at the target in version 1.
+        contact_time_s: of unintended contact; None in version 1, as the next two.
+        contact_path_mm: of the tip during that.
+        pressing_depth_mm: RMS over the fiducials of how deep the tool was pressed in.
+    """
+
+    completion_time_s: float
+    tre_mm: float
+    contact_time_s: float | None
+    contact_path_mm: float | None
+    pressing_depth_mm: float | None
+
+    @classmethod
+    def of(
+        cls, completion_time_s: float, tre_mm: float, motion: Mapping[str, float]
+    ) -> ScoreMeasures:
+        """Return the measures of a trial with these motion metrics.
+
+        Raises:
+            InputError: its contacts were not measured.
+        """
+        try:
+            return cls(completion_time_s, tre_mm, *(float(motion[name]) for name in SAFETY_METRICS))
+        except KeyError as error:
+            raise InputError(
+                f"The trial's contacts were not measured ({error.args[0]} is missing), so it "
+                "cannot be scored."
+            ) from None
+
+    @property
+    def safety(self) -> SafetyMeasures | None:
+        """What safety is scored by; None in version 1."""
+        values = self.contact_time_s, self.contact_path_mm, self.pressing_depth_mm
+        measured = [value for value in values if value is not None]
+        return SafetyMeasures(*measured) if len(measured) == len(values) else None
+
+    def check(self) -> SafetyMeasures:
+        """Return the safety measures; raise `InputError` unless all are numbers of a trial."""
+        if not 0 < self.completion_time_s <= LARGEST:
+            raise InputError("The completion time must be a number of seconds above 0.")
+        for value, what in (
+            (self.tre_mm, "true target error must be a number of mm"),
+            (self.contact_time_s, "time of unintended contact must be a number of seconds"),
+            (self.contact_path_mm, "path of unintended contact must be a number of mm"),
+            (self.pressing_depth_mm, "pressing depth must be a number of mm"),
+        ):
+            if value is None or not 0 <= value <= LARGEST:
+                raise InputError(f"The {what}, 0 or above.")
+        assert self.safety is not None
+        return self.safety
+
+
+SAFETY_METRICS = (
+    "unintended_contact_time_s",
+    "unintended_contact_path_mm",
+    "pressing_depth_mm",
+)
+"""Motion metrics of `rastrainer.motion` that are scored."""
+
+
+@dataclass(frozen=True)
+class TrialScore:
+    """The score of one trial and its parts.
+
+    Attributes:
+        score: above 0 up to 100; about 51 for a gentle trial at both references.
+        time_desirability: from `TIME_FLOOR` (never done) to 1 (at once).
+        accuracy_desirability: from 0 (no registration) to 1 (no error).
+        safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in); None in
+            version 1.
+        is_accurate: whether the target error is within the limit.
+        is_safe: whether contact and pressing are; None in version 1.
+        measures: what was scored.
+        reference: what it was measured against.
+        version: of the formula and the references.
+    """
+
+    score: float
+    time_desirability: float
+    accuracy_desirability: float
+    safety_desirability: float | None
+    is_accurate: bool
+    is_safe: bool | None
+    measures: ScoreMeasures
+    reference: ScoreReference
+    version: str = SCORE_VERSION
+
+    @property
+    def acceptable(self) -> bool:
+        """Whether the trial is within all limits."""
+        return self.is_accurate and self.is_safe is not False
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the score as a JSON object."""
+        return {
+            "score": self.score,
+            "time_desirability": self.time_desirability,
+            "accuracy_desirability": self.accuracy_desirability,
+            "safety_desirability": self.safety_desirability,
+            "acceptable": self.acceptable,
+            "is_accurate": self.is_accurate,
+            "is_safe": self.is_safe,
+            "measures": dict(vars(self.measures)),
+            "reference_time_s": self.reference.time_s,
+            "reference_tre_mm": self.reference.tre_mm,
+            "limit_mm": self.reference.limit_mm,
+            "version": self.version,
+        }
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> TrialScore:
+        """Return the score that `to_json` described, of this version or the first."""
+        if "measures" not in value:
+            is_accurate, is_safe = value["acceptable"], None
+            measures = ScoreMeasures(
+                value["completion_time_s"], value["expected_tre_mm"], None, None, None
+            )
+        else:
+            is_accurate, is_safe = value["is_accurate"], value["is_safe"]
+            measures = ScoreMeasures(**value["measures"])
+        return cls(
+            score=value["score"],
+            time_desirability=value["time_desirability"],
+            accuracy_desirability=value["accuracy_desirability"],
+            safety_desirability=value.get("safety_desirability"),
+            is_accurate=is_accurate,
+            is_safe=is_safe,
+            measures=measures,
+            reference=ScoreReference(
+                value["reference_time_s"], value["reference_tre_mm"], value["limit_mm"]
+            ),
+            version=value["version"],
+        )
+
+
+def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
+    """Tell whether a trial reaches the mark and is within all limits."""
+    return acceptable and score >= pass_mark
+
+
+def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScore:
+    """Return the score of a trial.
+
+    Args:
+        measures: what is scored of it.
+        reference: of its task in its scenario.
+
+    Raises:
+        InputError: a measure is no such number.
+    """
+    safety_measures = measures.check()
+    time = TIME_FLOOR + (1 - TIME_FLOOR) * _falling(measures.completion_time_s, reference.time_s)
+    accuracy = _falling(measures.tre_mm, reference.tre_mm)
+    safety = _safety(*safety_measures)
+    is_accurate = measures.tre_mm <= reference.limit_mm
+    is_safe = (
+        safety_measures.contact_time_s <= CONTACT_LIMIT_S
+        and safety_measures.contact_path_mm <= CONTACT_PATH_LIMIT_MM
+        and safety_measures.pressing_depth_mm <= DEPTH_LIMIT_MM
+    )
+    product = time * accuracy * safety
+    if not (is_accurate and is_safe):
+        product *= _worst_acceptable(reference)
+    return TrialScore(
+        score=100 * math.sqrt(product),
+        time_desirability=time,
+        accuracy_desirability=accuracy,
+        safety_desirability=safety,
+        is_accurate=is_accurate,
+        is_safe=is_safe,
+        measures=measures,
+        reference=reference,
+    )
+
+
+def _safety(contact_time_s: float, contact_path_mm: float, depth_mm: float) -> float:
+    return (
+        _falling(contact_time_s, HALF_CONTACT_S)
+        * _falling(contact_path_mm, HALF_CONTACT_PATH_MM)
+        * _falling(depth_mm, HALF_DEPTH_MM)
+    )
+
+
+def _worst_acceptable(reference: ScoreReference) -> float:
+    """Return the product of the desirabilities of a trial at all limits that takes for ever.
+
+    As a factor it brings every trial beyond a limit below every acceptable one.
+    """
+    accuracy = _falling(reference.limit_mm, reference.tre_mm)
+    safety = _safety(CONTACT_LIMIT_S, CONTACT_PATH_LIMIT_MM, DEPTH_LIMIT_MM)
+    return TIME_FLOOR * accuracy * safety
+
+
+def _falling(value: float, half: float) -> float:
+    """Return 1/(1 + (value/half)²): 1 at 0, ½ at `half`; strictly falling without saturating."""
+    return 1 / (1 + (value / half) ** 2)

@@ -1,0 +1,270 @@
+"""A stand-in of `vtkMRMLIGTLConnectorNode`, so that the link runs without desktop Slicer.
+
+It makes the very nodes that the real connector makes, and has its oddities: the latest message of
+a device wins, the order across devices is lost, time stamps are dropped, and a lost connection is
+told only after the next one.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+import threading
+import time
+import weakref
+from collections import deque
+from typing import Any
+
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.checksum import crc64
+from rastrainer.igtl.content import Command, CommandReply, Status
+from rastrainer.igtl.message import Header, Message, pack, unpack
+from rastrainer.slicer.link.connection import ConnectorKit
+from rastrainer.slicer.scene.link_nodes import ORIGINAL_NAME, decodedText
+from rastrainer_headless.command import HeadlessCommand, OutgoingCommand
+from rastrainer_headless.incoming_nodes import (
+    NODE_CLASS,
+    adoptOrCreateNode,
+    asSlicerHas,
+    updateNode,
+)
+from rastrainer_headless.peer_sockets import PeerSockets, recordCrash
+
+_INCOMING = "incoming"
+_CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")
+_DEVICE_NAME_FIELD = slice(14, 34)
+
+Raw = tuple[Header, bytes]
+
+
+class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
+    """The part of the connector that we use; the host calls `PeriodicProcess` every few ms.
+
+    Method names, constants and event numbers are those of the real class.
+    """
+
+    StateOff, StateWaitConnection, StateConnected = range(3)
+    TypeNotDefined, TypeServer, TypeClient = range(3)
+    ConnectedEvent = 118944
+    DisconnectedEvent = 118945
+    CommandReceivedEvent = 119001
+    CommandResponseReceivedEvent = 119002
+    CommandCompletedEvent = 119003
+
+    def __init__(self) -> None:
+        self.SetSaveWithScene(False)
+        self._type = self.TypeNotDefined
+        self._address = ("", 0)
+        self._sockets: PeerSockets | None = None
+        self._state = self.StateOff
+        self._nextCommandId = 1
+        self._outgoing: list[OutgoingCommand] = []
+        self._lock = threading.Lock()
+        self._commands: deque[Raw] = deque()
+        self._latest: dict[tuple[str, str, int], Raw] = {}
+        self._events: deque[int] = deque()
+
+    def SetTypeClient(self, hostname: str, port: int) -> int:
+        """Make it the client of a server."""
+        self._type, self._address = self.TypeClient, (hostname, port)
+        return 1
+
+    def SetTypeServer(self, port: int) -> int:
+        """Make it a server; it listens on this machine's loopback only."""
+        self._type, self._address = self.TypeServer, ("127.0.0.1", port)
+        return 1
+
+    def GetServerHostname(self) -> str:
+        """Return the server that a client connects to."""
+        return self._address[0]
+
+    def SetServerPort(self, port: int) -> None:
+        """Change the port; a client that runs connects there the next time it has no server."""
+        self._address = (self._address[0], port)
+        if self._sockets is not None:
+            self._sockets.port = port
+
+    def GetServerPort(self) -> int:
+        """Return the TCP port, that in use where a server was given port 0."""
+        return self._sockets.port if self._sockets else self._address[1]
+
+    def GetState(self) -> int:
+        """Return one of the state constants."""
+        return self._state
+
+    def Start(self) -> int:
+        """Begin to connect or to listen, again and again until `Stop`; return 1 on success."""
+        if self._sockets is not None or self._type == self.TypeNotDefined:
+            return 0
+        isServer = self._type == self.TypeServer
+        self._state = self.StateWaitConnection
+        try:
+            self._sockets = PeerSockets(isServer, *self._address, self._receive, self._changeState)
+        except OSError as error:
+            self._state = self.StateOff
+            logging.error("Failed to create server socket: %s", error)
+            return 0
+        return 1
+
+    def Stop(self) -> int:
+        """Disconnect; return 1 on success."""
+        if self._sockets is None:
+            return 0
+        self._sockets.stop()
+        self._sockets = None
+        self._state = self.StateOff
+        return 1
+
+    def GetNumberOfIncomingMRMLNodes(self) -> int:
+        """Return the number of nodes that messages have been put into."""
+        return self.GetNumberOfNodeReferences(_INCOMING)
+
+    def GetIncomingMRMLNode(self, index: int) -> Any | None:
+        """Return one of the nodes that messages have been put into."""
+        return self.GetNthNodeReference(_INCOMING, index)
+
+    def SendCommand(self, command: HeadlessCommand) -> None:
+        """Send a command to every peer; without one nothing is sent, and nothing is said."""
+        if command.IsInProgress():
+            logging.error("The command %s is already in progress.", command.GetName())
+            return
+        command.commandId = self._nextCommandId
+        self._nextCommandId += 1
+        if self._state != self.StateConnected or self._sockets is None:
+            return
+        content = Command(
+            command.commandId,
+            decodedText(command.GetName()),
+            decodedText(command.GetCommandContent()),
+        )
+        if not self._sockets.send(pack(Message("command", content, timestamp=0.0))):
+            command.SetCommandStatus(command.CommandFailed)
+            return
+        command.SetCommandStatus(command.CommandWaiting)
+        deadline = time.monotonic() + command.GetTimeoutSec()
+        self._outgoing.append(OutgoingCommand(command.commandId, deadline, weakref.ref(command)))
+
+    def PeriodicProcess(self) -> None:
+        """Put into the scene what has arrived, and tell the observers.
+
+        Does nothing while there is no connection: Slicer's timer does not call it then.
+        """
+        if self._state != self.StateConnected:
+            return
+        with self._lock:
+            commands, self._commands = self._commands, deque()
+            latest, self._latest = self._latest, {}
+            events, self._events = self._events, deque()
+        for header, body in commands:
+            self._processCommand(header, body)
+        self._giveUpOldCommands()
+        modifications: list[tuple[Any, int]] = []
+        for _key, raw in sorted(latest.items(), key=lambda item: item[0]):
+            self._processData(*raw, modifications)
+        for event in events:
+            if event == self.ConnectedEvent:
+                self._greet()
+            self.InvokeEvent(event)
+        for node, wasModifying in reversed(modifications):
+            node.EndModify(wasModifying)
+
+    def _receive(self, peer: int, header: Header, body: bytes) -> None:
+        with self._lock:
+            if header.type in (Command.TYPE, CommandReply.TYPE):
+                self._commands.append((header, body))
+            else:
+                self._latest[header.type, header.device, peer] = (header, body)
+
+    def _changeState(self, isConnected: bool) -> None:
+        self._state = self.StateConnected if isConnected else self.StateWaitConnection
+        with self._lock:
+            self._events.append(self.ConnectedEvent if isConnected else self.DisconnectedEvent)
+
+    def _greet(self) -> None:
+        """Send the odd STATUS that Slicer opens each connection with: no name, metadata `dummy`."""
+        greeting = bytearray(pack(Message("none", Status(0), {"dummy": "dummy"}, timestamp=0.0)))
+        greeting[_DEVICE_NAME_FIELD] = bytes(20)
+        if self._sockets is not None:
+            self._sockets.send(bytes(greeting))
+
+    def _processCommand(self, header: Header, body: bytes) -> None:
+        try:
+            message = unpack(header, body, keep_bytes=True)
+        except InputError as error:
+            raise recordCrash(f"A broken command came: {error}") from None
+        content = message.content
+        if isinstance(content, CommandReply):
+            self._takeAnswer(content, message)
+        elif isinstance(content, Command):
+            command = HeadlessCommand()
+            command.commandId = content.command_id
+            command.SetName(asSlicerHas(content.name))
+            command.SetCommandContent(asSlicerHas(content.body))
+            command.SetCommandStatus(command.CommandWaiting)
+            self.InvokeEvent(self.CommandReceivedEvent, command)
+
+    def _takeAnswer(self, reply: CommandReply, message: Message) -> None:
+        for outgoing in self._outgoing:
+            if outgoing.commandId == reply.command_id:
+                command = outgoing.alive()
+                metadata = {key: asSlicerHas(text) for key, text in message.metadata.items()}
+                command.setResponse(asSlicerHas(reply.body), metadata)
+                self.InvokeEvent(self.CommandResponseReceivedEvent, command)
+                command.InvokeEvent(command.CommandResponseEvent)
+                return
+        logging.warning("An answer to no command of ours was dropped.")
+
+    def _giveUpOldCommands(self) -> None:
+        now = time.monotonic()
+        for outgoing in self._outgoing:
+            if now > outgoing.deadline and (command := outgoing.alive()).IsInProgress():
+                command.SetCommandStatus(command.CommandExpired)
+                command.InvokeEvent(command.CommandExpiredEvent)
+        commands = [(outgoing, outgoing.command()) for outgoing in self._outgoing]
+        completed = [command for _out, command in commands if command and command.IsCompleted()]
+        self._outgoing = [
+            out for out, command in commands if command is None or command.IsInProgress()
+        ]
+        for command in completed:
+            self.InvokeEvent(self.CommandCompletedEvent, command)
+            command.InvokeEvent(command.CommandCompletedEvent)
+
+    def _processData(
+        self, header: Header, body: bytes, modifications: list[tuple[Any, int]]
+    ) -> None:
+        if _CRASHING_TYPE.match(header.type) or not body:
+            raise recordCrash(f"A {header.type} message of {header.device} came.")
+        if header.type not in NODE_CLASS:
+            logging.error("Received unknown device type %s of %s.", header.type, header.device)
+            return
+        if self.GetScene() is None:
+            return
+        node = self._incomingNode(header)
+        modifications.append((node, node.StartModify()))
+        if crc64(body) != header.checksum:
+            logging.error("A message of %s was dropped: wrong checksum.", header.device)
+            return
+        try:
+            updateNode(node, unpack(header, body, keep_bytes=True))
+        except InputError as error:
+            if "extended header" in str(error):
+                raise recordCrash(f"A message of {header.device} came: {error}") from None
+            logging.error("A message of %s was dropped: %s", header.device, error)
+
+    def _incomingNode(self, header: Header) -> Any:
+        for index in range(self.GetNumberOfIncomingMRMLNodes()):
+            node = self.GetIncomingMRMLNode(index)
+            if node is None or not node.IsA(NODE_CLASS[header.type]):
+                continue
+            if node.GetAttribute(ORIGINAL_NAME) == header.device:
+                return node
+        node = adoptOrCreateNode(self.GetScene(), header.type, header.device)
+        self.AddNodeReferenceID(_INCOMING, node.GetID())
+        return node
+
+
+def headlessKit() -> ConnectorKit:
+    """Return what makes the stand-ins of the connector and its commands."""
+    return ConnectorKit(HeadlessConnector, HeadlessCommand)

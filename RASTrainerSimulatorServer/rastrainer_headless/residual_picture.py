@@ -1,0 +1,242 @@
+"""A picture of the registered points on the head, colored by their residual."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import vtk
+
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.registration import Registration
+from rastrainer.slicer.scene.residual_glyphs import (
+    SCALARS,
+    arrowTips,
+    glyphsPolyData,
+    residualRange,
+)
+from rastrainer.slicer.scene.scenario_nodes import trianglesPolyData
+from rastrainer_headless.picture_layout import (
+    ViewPlane,
+    chooseTwoViews,
+    fitScreen,
+    outwardDirections,
+    placeLabels,
+)
+
+WIDTH, HEIGHT = 1800, 1080
+_VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
+_LEGEND = (0.9, 0.09, 1.0, 0.92)
+_PAGE = (0.0, 0.0, 1.0, 1.0)
+_CHARACTER_WIDTH, _LABEL_HEIGHT, _LABEL_GAP = 12, 28, 10
+_MARGIN = 1.08
+_CLEARLY_FACING = 0.25
+_PAPER = (1.0, 1.0, 1.0)
+_INK = (0.12, 0.14, 0.18)
+_SKIN = (0.86, 0.83, 0.8)
+# Viridis, read at five places.
+_COLORS = (
+    (0.267, 0.005, 0.329),
+    (0.230, 0.322, 0.546),
+    (0.128, 0.567, 0.551),
+    (0.369, 0.789, 0.383),
+    (0.993, 0.906, 0.144),
+)
+
+
+def writeResidualPicture(
+    path: Path, head: HeadMesh, registration: Registration, title: str, caption: Sequence[str]
+) -> None:
+    """Render the head from two sides with all points on it, and write a PNG, whole or not at all.
+
+    Args:
+        path: of the picture.
+        head: the head's surface, RAS mm.
+        registration: of the points to the fiducials on that head.
+        title: one line on top.
+        caption: lines below the picture.
+    """
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetMultiSamples(8)
+    window.SetSize(WIDTH, HEIGHT)
+    window.SetNumberOfLayers(2)
+    window.AddRenderer(_page(title, caption))
+    colors = _colors(registration)
+    surface = trianglesPolyData(head.vertices, head.triangles)
+    center = 0.5 * (head.vertices.min(axis=0) + head.vertices.max(axis=0))
+    outward = outwardDirections(registration.fixed_mm, center)
+    directions = chooseTwoViews(outward)
+    facing = directions @ outward.T
+    shown = np.vstack([head.vertices, arrowTips(registration)])
+    for number, viewport in enumerate(_VIEWS):
+        view = _headView(viewport, surface)
+        screen = _look(view, shown, center, directions[number])
+        window.AddRenderer(view)
+        isLabeled = facing[number] == facing.max(axis=0)
+        rows = np.flatnonzero((facing[number] > _CLEARLY_FACING) | isLabeled)
+        glyphs = _glyphView(view, registration, rows, colors)
+        _addLabels(glyphs, screen, registration, np.flatnonzero(isLabeled))
+        window.AddRenderer(glyphs)
+    window.AddRenderer(_legend(colors))
+    window.Render()
+    _write(window, path)
+    window.Finalize()
+
+
+def _page(title: str, caption: Sequence[str]) -> vtk.vtkRenderer:
+    page = vtk.vtkRenderer()
+    page.SetViewport(*_PAGE)
+    page.SetBackground(*_PAPER)
+    page.AddViewProp(_text(title, 34, (0.5, 0.955), isBold=True))
+    page.AddViewProp(_text("\n".join(caption), 24, (0.5, 0.045)))
+    return page
+
+
+def _text(
+    words: str, size: int, place: tuple[float, float], isBold: bool = False
+) -> vtk.vtkTextActor:
+    actor = vtk.vtkTextActor()
+    actor.SetInput(words)
+    style = actor.GetTextProperty()
+    style.SetFontSize(size)
+    style.SetColor(*_INK)
+    style.SetBold(isBold)
+    style.SetLineSpacing(1.25)
+    style.SetJustificationToCentered()
+    style.SetVerticalJustificationToCentered()
+    actor.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    actor.SetPosition(*place)
+    return actor
+
+
+def _colors(registration: Registration) -> vtk.vtkColorTransferFunction:
+    low, high = residualRange(registration)
+    colors = vtk.vtkColorTransferFunction()
+    for share, color in zip(np.linspace(0.0, 1.0, len(_COLORS)), _COLORS, strict=True):
+        colors.AddRGBPoint(low + share * (high - low), *color)
+    return colors
+
+
+def _headView(viewport: Sequence[float], surface: vtk.vtkPolyData) -> vtk.vtkRenderer:
+    view = vtk.vtkRenderer()
+    view.SetViewport(*viewport)
+    view.SetBackground(*_PAPER)
+    skin = _actor(surface)
+    skin.GetProperty().SetColor(*_SKIN)
+    skin.GetProperty().SetSpecular(0.1)
+    view.AddActor(skin)
+    return view
+
+
+def _glyphView(
+    headView: vtk.vtkRenderer,
+    registration: Registration,
+    rows: np.ndarray,
+    colors: vtk.vtkColorTransferFunction,
+) -> vtk.vtkRenderer:
+    """Return a layer over the head, so that arrows that point inwards are seen as well."""
+    layer = vtk.vtkRenderer()
+    layer.SetLayer(1)
+    layer.SetViewport(headView.GetViewport())
+    layer.SetActiveCamera(headView.GetActiveCamera())
+    glyphs = _actor(glyphsPolyData(registration, rows))
+    mapper = glyphs.GetMapper()
+    mapper.ScalarVisibilityOn()
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray(SCALARS)
+    mapper.SetLookupTable(colors)
+    mapper.UseLookupTableScalarRangeOn()
+    glyphs.GetProperty().SetAmbient(0.35)
+    layer.AddActor(glyphs)
+    return layer
+
+
+def _actor(data: vtk.vtkPolyData) -> vtk.vtkActor:
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.ScalarVisibilityOff()
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    return actor
+
+
+def _addLabels(
+    view: vtk.vtkRenderer, screen: ViewPlane, registration: Registration, rows: np.ndarray
+) -> None:
+    """Write number and residual beside the points that this view shows best."""
+    texts = [f"{registration.labels[row]}: {registration.residuals_mm[row]:.1f}" for row in rows]
+    sizes = np.array([(_CHARACTER_WIDTH * len(text), _LABEL_HEIGHT) for text in texts])
+    starts, tips = registration.fixed_mm, arrowTips(registration)
+    along = np.linspace(0.0, 1.0, 9)[:, None, None]
+    arrows = screen.project((starts + along * (tips - starts)).reshape(-1, 3))
+    sides = placeLabels(screen.project(starts[rows]), sizes, arrows, _LABEL_GAP)
+    for text, row, (right, up) in zip(texts, rows, sides, strict=True):
+        label = vtk.vtkBillboardTextActor3D()
+        label.SetInput(text)
+        label.SetPosition(starts[row])
+        label.SetDisplayOffset(_LABEL_GAP * right, _LABEL_GAP * up)
+        style = label.GetTextProperty()
+        # VTK's numbers: 0 left or bottom, 1 centered, 2 right or top.
+        style.SetJustification(1 - right)
+        style.SetVerticalJustification(1 - up)
+        style.SetFontSize(22)
+        style.SetBold(True)
+        style.SetColor(*_INK)
+        style.SetBackgroundColor(*_PAPER)
+        style.SetBackgroundOpacity(0.65)
+        view.AddActor(label)
+
+
+def _look(
+    view: vtk.vtkRenderer, shown: np.ndarray, center: np.ndarray, direction: np.ndarray
+) -> ViewPlane:
+    """Fill the view with the points `shown`, (n, 3) float, as they are seen from a direction."""
+    left, bottom, right, top = view.GetViewport()
+    width, height = (right - left) * WIDTH, (top - bottom) * HEIGHT
+    screen = fitScreen(shown, center, direction, width / _MARGIN, height / _MARGIN)
+    camera = view.GetActiveCamera()
+    camera.ParallelProjectionOn()
+    camera.SetFocalPoint(screen.focus)
+    camera.SetPosition(screen.focus + 800.0 * direction)
+    camera.SetViewUp(0.0, 0.0, 1.0)
+    camera.SetParallelScale(0.5 * height / screen.pixelsPerMm)
+    camera.SetClippingRange(1.0, 1600.0)
+    return screen
+
+
+def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkRenderer:
+    legend = vtk.vtkRenderer()
+    legend.SetViewport(*_LEGEND)
+    legend.SetBackground(*_PAPER)
+    bar = vtk.vtkScalarBarActor()
+    bar.SetLookupTable(colors)
+    bar.SetTitle("Residual (mm)\n")
+    low, high = colors.GetRange()
+    wholeMillimeters = round(high - low)
+    bar.SetNumberOfLabels(wholeMillimeters + 1 if wholeMillimeters <= 8 else 5)
+    bar.SetLabelFormat("%.1f")
+    bar.UnconstrainedFontSizeOn()
+    for style in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+        style.SetColor(*_INK)
+        style.SetFontSize(22)
+        style.ShadowOff()
+        style.ItalicOff()
+    bar.GetPositionCoordinate().SetValue(0.05, 0.15)
+    bar.SetWidth(0.75)
+    bar.SetHeight(0.7)
+    legend.AddViewProp(bar)
+    return legend
+
+
+def _write(window: vtk.vtkRenderWindow, path: Path) -> None:
+    image = vtk.vtkWindowToImageFilter()
+    image.SetInput(window)
+    image.ReadFrontBufferOff()
+    writer = vtk.vtkPNGWriter()
+    writer.SetInputConnection(image.GetOutputPort())
+    partial = path.with_suffix(".partial")
+    writer.SetFileName(str(partial))
+    writer.Write()
+    partial.replace(path)

@@ -1,0 +1,1 @@
+"""Making scenarios: task proposals, checks and plans."""

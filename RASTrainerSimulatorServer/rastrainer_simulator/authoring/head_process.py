@@ -1,0 +1,81 @@
+"""Have Slicer's side make the draft of a head: in a process of its own, as it knows MRML."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+from rastrainer.errors import InputError
+from rastrainer.processes.private_folder import python_words
+from rastrainer.progress import HEAD_MADE, Progress, Warn, report_line
+from rastrainer.scenario.draft import HeadDraft, read_draft
+
+
+class HeadProcess:
+    """The process at work: on the head first, then on its skull while others use the head."""
+
+    def __init__(self, process: subprocess.Popen[str], errors: TextIO, folder: Path) -> None:
+        """Keep the process, the file of its standard error and the folder of its draft."""
+        self._process = process
+        self._errors = errors
+        self._folder = folder
+
+    def head(self, progress: Progress, warn: Warn) -> HeadDraft:
+        """Wait for the head and return its draft without a skull.
+
+        Args:
+            progress: told each step's name and the share of the work done; may raise to cancel.
+            warn: told each warning.
+
+        Raises:
+            InputError: there is no head in the volume; the sentence says why.
+        """
+        assert self._process.stdout is not None  # It is a pipe.
+        for line in self._process.stdout:
+            if line.rstrip() == HEAD_MADE:
+                return read_draft(self._folder)
+            report_line(line.rstrip(), progress, warn)
+        raise self._failure()
+
+    def whole(self) -> HeadDraft:
+        """Wait for the skull too, where one is wanted, and return the whole draft.
+
+        Raises:
+            InputError: there is no skull in the volume; the sentence says why.
+        """
+        assert self._process.stdout is not None  # It is a pipe.
+        self._process.stdout.read()
+        if self._process.wait() != 0:
+            raise self._failure()
+        return read_draft(self._folder)
+
+    def _failure(self) -> InputError:
+        status = self._process.wait()
+        self._errors.seek(0)
+        told = self._errors.read().strip().splitlines()
+        return InputError(told[-1] if told else f"The head's process ended with {status}.")
+
+
+@contextmanager
+def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
+    """Yield a process that makes the head in a volume; it ends with the context, done or not.
+
+    Args:
+        volume: NRRD, NIfTI, or a folder of DICOM files.
+        options: further arguments of `python -m rastrainer.slicer.head`.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) / "draft"
+        words = python_words("rastrainer.slicer.head", str(volume), "-o", str(folder), *options)
+        with (
+            tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors,
+            subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True) as process,
+        ):
+            try:
+                yield HeadProcess(process, errors, folder)
+            finally:
+                process.kill()

@@ -1,0 +1,220 @@
+"""Make a scenario of a head, or a copy of one with another plan."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.volume import read_head_volume
+from rastrainer.progress import Progress, Warn
+from rastrainer.scenario.draft import HeadDraft
+from rastrainer.scenario.package import checked_scenario
+from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
+from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.tasks import Task
+from rastrainer.scenario.writer import new_folder, scenario_name, write_scenario
+from rastrainer_simulator.authoring.placed_tasks import read_placed_tasks
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.preview import draw_preview
+from rastrainer_simulator.authoring.scenario_check import check_plan, start_clearance_mm
+from rastrainer_simulator.authoring.task_check import check_tasks
+from rastrainer_simulator.authoring.task_set import TaskSetProposer
+
+CENTER = "Center of the head"
+LEAST_START_CLEARANCE_MM = 30.0
+"""Of the tip above the head where a trial starts."""
+
+
+@dataclass(frozen=True)
+class ScenarioOptions:
+    """What is wanted of a scenario besides its head.
+
+    Attributes:
+        title: for people; the name is made of it.
+        source, license: for the provenance.
+        setup: how the head stands before the robot.
+        targets: planned; the target error is told at the first.
+        trajectory: planned.
+        task_files: markups placed by hand, in the order of the tasks; none proposes them.
+        seed: of the proposal.
+    """
+
+    title: str
+    source: str
+    license: str
+    setup: SetUp = field(default_factory=SetUp)
+    targets: tuple[PlannedTarget, ...] = ()
+    trajectory: PlannedTrajectory | None = None
+    task_files: tuple[Path, ...] = ()
+    seed: int = 1
+
+
+def make_scenario(
+    draft: HeadDraft,
+    wishes: ScenarioOptions,
+    folder: Path,
+    progress: Progress = lambda _step, _share: None,
+    wait_for_skull: Callable[[], HeadDraft] | None = None,
+    warn: Warn = lambda _sentence: None,
+) -> Scenario:
+    """Write the scenario of a head into a new folder and return it.
+
+    Args:
+        draft: of the head; all but its skull is worked with.
+        wishes: what else is wanted.
+        folder: to be made.
+        progress: told each step's name and the share of the work done; may raise to cancel.
+        wait_for_skull: returns the same draft with the skull, which is made meanwhile; None where
+            `draft` is whole.
+        warn: told what is made otherwise than wished, one sentence each.
+
+    Raises:
+        InputError: the wishes cannot be met; the sentence says which. Nothing is written then.
+    """
+    with new_folder(folder) as made:
+        scenario = without_tasks(draft, wishes, warn)
+        planning = PlanningSetup(scenario, draft.head)
+        tasks = _placed(planning, wishes, progress, warn)
+        if not tasks:
+            tasks = TaskSetProposer(planning, progress).propose(wishes.seed)
+        progress("Drawing the picture", 0.95)
+        draw_preview(made / PREVIEW_NAME, replace(scenario, tasks=tasks), draft.head)
+        if wait_for_skull is not None:
+            progress("Making the skull", 0.98)
+            draft = wait_for_skull()
+        scenario = replace(
+            scenario,
+            tasks=tasks,
+            provenance=replace(scenario.provenance, method=draft.method),
+            is_skull_approximate=draft.is_skull_approximate,
+        )
+        write_scenario(made, scenario, draft.head, draft.skull, draft.volume)
+        load_scenario(made)
+        progress("Done", 1.0)
+    return load_scenario(folder)
+
+
+def check_wishes(draft: HeadDraft, wishes: ScenarioOptions, progress: Progress, warn: Warn) -> None:
+    """Raise what `make_scenario` would raise of the set-up, the plan and the placed fiducials.
+
+    Raises:
+        InputError: the wishes cannot be met; the sentences say which.
+    """
+    _placed(PlanningSetup(without_tasks(draft, wishes, warn), draft.head), wishes, progress, warn)
+
+
+def _placed(
+    planning: PlanningSetup, wishes: ScenarioOptions, progress: Progress, warn: Warn
+) -> tuple[Task, ...]:
+    """Return the tasks that are placed by hand, once nothing is wrong with all that is wished."""
+    wrong = check_plan(planning)
+    tasks, wrong_tasks = read_placed_tasks(planning, wishes.task_files, progress, warn)
+    if wrong or wrong_tasks:
+        raise InputError(" ".join([*wrong, *wrong_tasks]))
+    return tasks
+
+
+def without_tasks(
+    draft: HeadDraft, wishes: ScenarioOptions, warn: Warn = lambda _sentence: None
+) -> Scenario:
+    """Return the scenario of a head without tasks; `warn` is told of a target that lies too deep.
+
+    Raises:
+        InputError: the head would not be above the table.
+    """
+    head, setup = draft.head, wishes.setup
+    middle = head.centroid.round(4)
+    setup.check_height(float(head.vertices[:, 2].min()), middle)
+    scenario = Scenario(
+        folder=Path(),
+        name=scenario_name(wishes.title),
+        title=wishes.title,
+        head_mesh=Path(),
+        target_name=CENTER,
+        target_position=middle,
+        head_to_world=setup.head_to_world(middle),
+        perturbation=setup.perturbation,
+        tasks=(),
+        cameras=setup.cameras(),
+        furniture=setup.furniture(),
+        provenance=Provenance(wishes.source, draft.method, wishes.license),
+        is_skull_approximate=draft.is_skull_approximate,
+        targets=wishes.targets,
+        trajectory=wishes.trajectory,
+    )
+    return with_main_target(scenario, head, warn)
+
+
+def with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenario:
+    """Return the scenario with the first planned target as its own, where trials can start so.
+
+    A trial starts above the target: with one far below, the tip would start in the head.
+    """
+    if not scenario.targets:
+        return scenario
+    first, *others = scenario.targets
+    aimed = replace(
+        scenario,
+        target_name=first.name,
+        target_position=np.asarray(first.position, dtype=float),
+        targets=tuple(others),
+    )
+    if start_clearance_mm(aimed, head) >= LEAST_START_CLEARANCE_MM:
+        return aimed
+    warn(
+        f"{first.name} lies too deep for trials to start above it; the target error is told at "
+        f"{scenario.target_name}, and {first.name} stays a further target."
+    )
+    return scenario
+
+
+def copy_with_plan(
+    folder: Path,
+    title: str,
+    copy: Path,
+    targets: tuple[PlannedTarget, ...],
+    trajectory: PlannedTrajectory | None,
+    warn: Callable[[str], None],
+) -> Scenario:
+    """Write a copy of a scenario with another plan and return it.
+
+    Args:
+        folder: of the scenario, which stays as it is.
+        title: of the copy; its name is made of it.
+        copy: a new folder.
+        targets: RAS mm, in the place of all it had; the first is where the error is told. Empty
+            keeps what it had.
+        trajectory: RAS mm, in the place of that it had; None keeps it.
+        warn: told of a first target that lies too deep for trials to start above it.
+
+    Raises:
+        InputError: the scenario cannot be used, or the plan cannot be carried out. Nothing is
+            written then.
+    """
+    before = checked_scenario(folder)
+    head = read_head_mesh(before.head_mesh)
+    skull = read_head_mesh(before.skull_mesh) if before.skull_mesh else None
+    volume = read_head_volume(before.volume) if before.volume else None
+    scenario = replace(
+        before, name=scenario_name(title), title=title, trajectory=trajectory or before.trajectory
+    )
+    if targets:
+        scenario = with_main_target(replace(scenario, targets=targets), head, warn)
+    planning = PlanningSetup(scenario, head)
+    wrong = check_plan(planning)
+    # Trials start above the target and turn the head about it, so that touching depends on it.
+    if not np.array_equal(scenario.target_position, before.target_position):
+        wrong += check_tasks(planning, scenario.tasks)
+    if wrong:
+        raise InputError(" ".join(wrong))
+    with new_folder(copy) as made:
+        write_scenario(made, scenario, head, skull, volume)
+        draw_preview(made / PREVIEW_NAME, scenario, head)
+        load_scenario(made)
+    return load_scenario(copy)

@@ -1,0 +1,111 @@
+"""A head on its stand before the robot, as a scenario sets it up: what of it can be touched?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.pose import Perturbation, perturbed_pose
+from rastrainer.head.surface_path import SurfaceGraph
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.table_clearance import Surroundings
+from rastrainer_simulator.collision.touch_planner import TouchPlanner
+from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.robot.kinematics import make_kinematics
+
+
+def touchable(
+    planner: TouchPlanner,
+    collision: Collision,
+    positions: np.ndarray,
+    normals: np.ndarray,
+    poses: Iterable[np.ndarray],
+) -> np.ndarray:
+    """Return which places (n,) bool can be touched in every pose of the head.
+
+    Args:
+        planner: looks for the touches, with the same `collision`.
+        collision: its head is put into each pose.
+        positions: (n, 3) float, RAS mm.
+        normals: (n, 3) float, outward unit normals, RAS.
+        poses: HeadToWorld, (4, 4) float, mm, one after the other.
+    """
+    can_be = np.ones(len(positions), dtype=bool)
+    likely = np.zeros(len(positions), dtype=int)
+    for head_to_world in poses:
+        pose = np.array(head_to_world, dtype=float)
+        pose[:3, 3] /= MM_PER_M
+        collision.set_head_pose(pose)
+        for place in np.flatnonzero(can_be):
+            position = transforms.apply(pose, positions[place] / MM_PER_M)
+            normal = pose[:3, :3] @ normals[place]
+            found = planner.working_direction(position, normal, int(likely[place]))
+            can_be[place] = found is not None
+            likely[place] = found or 0
+    return can_be
+
+
+WIDER = 1.2
+"""Places for fiducials are tried in poses perturbed by so much more than a trial's: a margin."""
+
+
+class PlanningSetup:
+    """Robot, head and set-up of one scenario, whose own tasks do not matter.
+
+    Attributes:
+        scenario: the set-up.
+        mesh: its head, RAS mm.
+        setup: the robot.
+    """
+
+    def __init__(
+        self, scenario: Scenario, mesh: HeadMesh, setup: SimulationSetup | None = None
+    ) -> None:
+        """Take about half a second; `setup` is another robot than the usual one."""
+        self.scenario = scenario
+        self.mesh = mesh
+        self.setup = replace(setup or load_setup(), scenario=scenario)
+        around = Surroundings(stand_radius=scenario.furniture.stand_diameter / 2.0 / MM_PER_M)
+        self.collision = Collision(
+            self.setup.shape, mesh.vertices / MM_PER_M, mesh.triangles, around
+        )
+        self.kinematics = make_kinematics(self.setup.robot)
+        self._planner = TouchPlanner(self.setup.robot, self.collision)
+
+    @cached_property
+    def graph(self) -> SurfaceGraph:
+        """The ways over the head."""
+        return SurfaceGraph(self.mesh)
+
+    @cached_property
+    def eye(self) -> np.ndarray:
+        """(3,) float, RAS mm: where the default view looks from at the head in its nominal pose."""
+        to_head = transforms.inverse(self.scenario.head_to_world)
+        return transforms.apply(to_head, self.scenario.cameras["close-up"].position)
+
+    def poses(self, seeds: range, wider: float = 1.0) -> list[np.ndarray]:
+        """Return the nominal HeadToWorld (4, 4), mm, and one for each seed."""
+        limits, scenario = self.scenario.perturbation, self.scenario
+        wide = Perturbation(
+            wider * limits.translation_mm, wider * limits.yaw_deg, wider * limits.tilt_deg
+        )
+        pivot = scenario.target_position
+        nominal = scenario.head_to_world
+        return [nominal, *(perturbed_pose(nominal, pivot, wide, seed) for seed in seeds)]
+
+    def touchable(
+        self, positions: np.ndarray, normals: np.ndarray, poses: Iterable[np.ndarray]
+    ) -> np.ndarray:
+        """Return which places (n,) bool can be touched in every pose of the head.
+
+        The links keep 5 mm off head, stand, table and each other, and the tool's shaft, which
+        begins 3 mm behind its tip, is off the head; see `TouchPlanner`. Shapes (n, 3), RAS mm.
+        """
+        return touchable(self._planner, self.collision, positions, normals, poses)

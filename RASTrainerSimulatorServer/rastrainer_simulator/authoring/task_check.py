@@ -1,0 +1,134 @@
+"""Are tasks as they must be, wherever they come from? One sentence for each thing that is not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from rastrainer.head.surface_path import shortest_path_mm
+from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.scenario.complexity import complexity
+from rastrainer.scenario.tasks import Task
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.task_proposal import target_spread
+from rastrainer_simulator.scene.skin import Skin
+from rastrainer_simulator.scene.skin_marks import place_marks
+
+ON_SKIN_MM = 1.0
+APART_MM = 20.0
+WORST_SPREAD = 1.0
+"""The expected TRE at the target may be at most so many times the FLE."""
+
+POSES_TRIED = 12
+COMPLEXITY_TOLERANCE = 0.02
+SHORTEST_PATH_TOLERANCE = 0.01
+"""As a share of the path."""
+
+
+def measured(planning: PlanningSetup, task: Task) -> Task:
+    """Return a task with its complexity index and its shortest path."""
+    index = complexity(task.fiducials, planning.mesh, planning.graph, planning.eye).index
+    shortest = shortest_path_mm(task.fiducials, planning.mesh, planning.graph)
+    return replace(task, complexity=round(index, 2), shortest_path_mm=round(shortest, 1))
+
+
+def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
+    """Return what is wrong with tasks, one sentence each; none where all is well.
+
+    Touching is tried in the nominal pose of the head and in those of some seeds from `first_seed`.
+    """
+    tasks, skin = list(tasks), Skin(planning.mesh)
+    wrong = []
+    for task in tasks:
+        wrong += _wrong_places(planning, task) or [
+            *_untouchable(planning, task, first_seed),
+            *_unreadable(skin, task),
+            *_wrong_measures(task, measured(planning, task)),
+        ]
+    for easier, harder in pairwise(tasks):
+        if harder.complexity <= easier.complexity:
+            wrong.append(
+                f"{harder.title}: its complexity, {harder.complexity:.2f}, must be above "
+                f"that of {easier.title}, {easier.complexity:.2f}."
+            )
+    return wrong
+
+
+def _wrong_places(planning: PlanningSetup, task: Task) -> list[str]:
+    wrong = []
+    for label, point in zip(task.labels, task.fiducials, strict=True):
+        away = nearest_on_mesh(planning.mesh, point).distance
+        if away > ON_SKIN_MM:
+            wrong.append(
+                f"{task.title}: fiducial {label} is {away:.1f} mm off the skin; it must be within "
+                f"{ON_SKIN_MM:g} mm."
+            )
+    for (one, a), (other, b) in combinations(zip(task.labels, task.fiducials, strict=True), 2):
+        apart = float(np.linalg.norm(a - b))
+        if apart < APART_MM - 1e-3:
+            wrong.append(
+                f"{task.title}: fiducials {one} and {other} are {apart:.1f} mm apart; their "
+                f"numbers need {APART_MM:g} mm."
+            )
+    try:
+        ratio = target_spread(task.fiducials, planning.scenario.target_position) ** 0.5
+    except np.linalg.LinAlgError:
+        ratio = np.inf
+    if not ratio <= WORST_SPREAD:
+        wrong.append(
+            f"{task.title}: its fiducials locate {planning.scenario.target_name} badly "
+            f"(expected TRE {ratio:.1f} times FLE, at most {WORST_SPREAD:g}); "
+            "spread them around it."
+        )
+    return wrong
+
+
+def _untouchable(planning: PlanningSetup, task: Task, first_seed: int) -> list[str]:
+    normals = np.array([outward_normal(planning.mesh, point) for point in task.fiducials])
+    poses = planning.poses(range(first_seed, first_seed + POSES_TRIED))
+    nominal = planning.touchable(task.fiducials, normals, poses[:1])
+    always = nominal & planning.touchable(task.fiducials, normals, poses[1:])
+    sentences = []
+    for can_be, where in (
+        (nominal, "where the head stands"),
+        (always | ~nominal, "in every trial"),
+    ):
+        missed = [label for label, can in zip(task.labels, can_be, strict=True) if not can]
+        if missed:
+            sentences.append(
+                f"{task.title}: the robot cannot touch {_listed(missed)} {where} with 5 mm "
+                "clearance; move them, or the head."
+            )
+    return sentences
+
+
+def _unreadable(skin: Skin, task: Task) -> list[str]:
+    if place_marks(skin, task.fiducials, task.labels).has_room:
+        return []
+    return [
+        f"{task.title}: there is no room for all numbers beside the arrows; spread the fiducials, "
+        "or touch them in another order."
+    ]
+
+
+def _wrong_measures(task: Task, right: Task) -> list[str]:
+    wrong = []
+    if abs(right.complexity - task.complexity) > COMPLEXITY_TOLERANCE:
+        wrong.append(
+            f"{task.title}: its complexity is {right.complexity:.2f}, not {task.complexity:.2f}."
+        )
+    told, shortest = task.shortest_path_mm, right.shortest_path_mm
+    assert shortest is not None  # It was measured.
+    if told is None or abs(shortest - told) > SHORTEST_PATH_TOLERANCE * shortest:
+        instead = "none" if told is None else f"{told:.1f} mm"
+        wrong.append(
+            f"{task.title}: its shortest path is {shortest:.1f} mm; shortestPathMm tells {instead}."
+        )
+    return wrong
+
+
+def _listed(labels: list[str]) -> str:
+    return f"fiducial {labels[0]}" if len(labels) == 1 else f"fiducials {', '.join(labels)}"

@@ -1,0 +1,266 @@
+"""Propose the fiducials of a task, and their order, among the places that the robot can touch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.surface_path import SurfaceGraph
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.scenario.complexity import Complexity, complexity, is_hidden
+from rastrainer_simulator.authoring.touch_order import (
+    Ways,
+    arc_lengths,
+    crossing_order,
+    easiest_order,
+    ways_between,
+)
+
+SPACING_MM = 20.0
+"""Between any two fiducials of a task: numbers must not cover each other."""
+
+DRAWS = 30
+"""Random choices of fiducials, of which the one that locates the target best is taken."""
+
+RISE = 1.1
+"""Each task's complexity index is at least so many times that of the task before."""
+
+ATTEMPTS = 20
+ROUGHLY = 0.8
+"""A draw whose index is by a quick estimate below so much of what it must be is not measured."""
+
+
+@dataclass(frozen=True)
+class TaskPlan:
+    """What a task shall demand.
+
+    Attributes:
+        name, title: of the task.
+        hidden: how many fiducials the default view shall not show.
+        off_axis_deg: how far the normals of those that it shows may be from the view's direction.
+        crossings: how often the way changes between the right and the left half; 0 takes the
+            easiest way over all.
+    """
+
+    name: str
+    title: str
+    hidden: int
+    off_axis_deg: float
+    crossings: int
+
+
+PLANS = (
+    TaskPlan("trial-run", "Trial run", hidden=0, off_axis_deg=50.0, crossings=0),
+    TaskPlan("task-1", "Task 1", hidden=0, off_axis_deg=75.0, crossings=0),
+    TaskPlan("task-2", "Task 2", hidden=3, off_axis_deg=75.0, crossings=0),
+    TaskPlan("task-3", "Task 3", hidden=6, off_axis_deg=75.0, crossings=0),
+    TaskPlan("task-4", "Task 4", hidden=8, off_axis_deg=75.0, crossings=4),
+    TaskPlan("task-5", "Task 5", hidden=9, off_axis_deg=75.0, crossings=9),
+)
+
+
+@dataclass(frozen=True)
+class CandidatePlaces:
+    """Where fiducials may be; RAS mm.
+
+    Attributes:
+        positions, normals: (n, 3) float.
+        off_axis_deg: (n,) float, between each normal and the direction to the default view's eye.
+        hidden: (n,) bool, the places that this view does not show.
+    """
+
+    positions: np.ndarray
+    normals: np.ndarray
+    off_axis_deg: np.ndarray
+    hidden: np.ndarray
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """Fiducials (15, 3) float, RAS mm, in the order to touch, and how demanding that is."""
+
+    plan: TaskPlan
+    fiducials: np.ndarray
+    complexity: Complexity
+
+
+@dataclass(frozen=True)
+class _Draw:
+    """Fiducials (15, 3) float in the order to touch, and about what their index will be."""
+
+    plan: TaskPlan
+    fiducials: np.ndarray
+    rough_index: float
+
+
+def _all_usable(positions: np.ndarray) -> np.ndarray:
+    return np.ones(len(positions), dtype=bool)
+
+
+def places_seen_from(
+    mesh: HeadMesh, positions: np.ndarray, normals: np.ndarray, eye: np.ndarray
+) -> CandidatePlaces:
+    """Return the places with what the default view, from `eye` (3,) RAS mm, shows of them."""
+    toward = eye - positions
+    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    cosines = np.einsum("ij,ij->i", normals, toward)
+    hidden = [is_hidden(*place, mesh, eye) for place in zip(positions, normals, strict=True)]
+    return CandidatePlaces(
+        positions, normals, np.degrees(np.arccos(np.clip(cosines, -1, 1))), np.array(hidden)
+    )
+
+
+class TaskProposer:
+    """Proposes tasks on one head; the same seed proposes the same task."""
+
+    def __init__(
+        self,
+        mesh: HeadMesh,
+        places: CandidatePlaces,
+        eye: np.ndarray,
+        target: np.ndarray,
+        accepts: Callable[[Proposal], bool] = lambda _proposal: True,
+        usable: Callable[[np.ndarray], np.ndarray] = _all_usable,
+    ) -> None:
+        """Keep the places.
+
+        Args:
+            mesh: the head, RAS mm.
+            places: where fiducials may be.
+            eye: (3,) float, where the default view looks from, RAS mm.
+            target: (3,) float, that shall be located well, RAS mm.
+            accepts: what is proposed in a row is what it agrees to.
+            usable: tells which of some places (n, 3) really can be used, (n,) bool; only those that
+                are chosen are asked about, and the others are not chosen again.
+        """
+        self._mesh = mesh
+        self._graph = SurfaceGraph(mesh)
+        self._places = places
+        self._eye = eye
+        self._target = target
+        self._accepts = accepts
+        self._usable = usable
+
+    def propose_rising(
+        self, plans: Sequence[TaskPlan], seed: int, begins_easy: bool = False
+    ) -> list[Proposal]:
+        """Return a task for each plan, each more demanding than the one before.
+
+        Args:
+            plans: what the tasks shall demand.
+            seed: of the draws.
+            begins_easy: take the easiest of many draws as the first task: where little of the
+                head can be touched, the others are not much harder.
+
+        Raises:
+            InputError: there is no room for the fiducials, or none of many draws is so.
+        """
+        seeds = np.random.default_rng(seed).integers(0, 2**31, (len(plans), ATTEMPTS))
+        proposals: list[Proposal] = []
+        for plan, own_seeds in zip(plans, seeds.tolist(), strict=True):
+            least = RISE * proposals[-1].complexity.index if proposals else 0.0
+            if begins_easy and not proposals:
+                own_seeds = self._easiest_first(plan, own_seeds)
+            draws = (self._usable_draw(plan, own_seed) for own_seed in own_seeds)
+            likely = (draw for draw in draws if draw.rough_index >= ROUGHLY * least)
+            measured = (self._measured(draw) for draw in likely)
+            harder = (draw for draw in measured if draw.complexity.index >= least)
+            rising = next(filter(self._accepts, harder), None)
+            if rising is None:
+                raise InputError(f"{plan.title} cannot be made harder than the task before it.")
+            proposals.append(rising)
+        return proposals
+
+    def propose(self, plan: TaskPlan, seed: int) -> Proposal:
+        """Return a task as planned.
+
+        Raises:
+            InputError: there is no room for so many fiducials.
+        """
+        return self._measured(self._usable_draw(plan, seed))
+
+    def _measured(self, draw: _Draw) -> Proposal:
+        demands = complexity(draw.fiducials, self._mesh, self._graph, self._eye)
+        return Proposal(draw.plan, draw.fiducials, demands)
+
+    def _easiest_first(self, plan: TaskPlan, seeds: Sequence[int]) -> list[int]:
+        return sorted(seeds, key=lambda seed: self._draw(plan, seed).rough_index)
+
+    def _usable_draw(self, plan: TaskPlan, seed: int) -> _Draw:
+        """Draw, and again without what has turned out to be of no use."""
+        while True:
+            draw = self._draw(plan, seed)
+            is_usable = self._usable(draw.fiducials)
+            if is_usable.all():
+                return draw
+            useless = draw.fiducials[~is_usable]
+            kept = ~(self._places.positions[:, None] == useless[None]).all(axis=2).any(axis=1)
+            self._places = CandidatePlaces(
+                *(values[kept] for values in vars(self._places).values())
+            )
+
+    def _draw(self, plan: TaskPlan, seed: int) -> _Draw:
+        chosen = self._chosen(plan, np.random.default_rng(seed))
+        positions, normals = self._places.positions[chosen], self._places.normals[chosen]
+        ways = ways_between(positions, normals, arc_lengths(positions, normals))
+        order = _order(plan, positions, ways)
+        return _Draw(plan, positions[order], float(ways.costs([order])[0]) + plan.hidden)
+
+    def _chosen(self, plan: TaskPlan, random: np.random.Generator) -> list[int]:
+        """Return the places of the draw, of several, that locates the target best."""
+        places = self._places
+        shown = np.flatnonzero(~places.hidden & (places.off_axis_deg <= plan.off_axis_deg))
+        hidden = np.flatnonzero(places.hidden)
+        draws = []
+        for _ in range(DRAWS):
+            chosen = self._spread([], shown, FIDUCIAL_COUNT - plan.hidden, random)
+            chosen = self._spread(chosen, hidden, plan.hidden, random)
+            if len(chosen) == FIDUCIAL_COUNT:
+                draws.append(chosen)
+        if not draws:
+            raise InputError(
+                f"The head has no room for the fiducials of {plan.title}: too few places are "
+                "smooth, within the robot's reach and far enough from each other."
+            )
+        return min(draws, key=lambda chosen: target_spread(places.positions[chosen], self._target))
+
+    def _spread(
+        self, chosen: list[int], among: np.ndarray, count: int, random: np.random.Generator
+    ) -> list[int]:
+        """Add `count` places at random, none nearer than the spacing to another."""
+        chosen = list(chosen)
+        for place in random.permutation(among) if count else ():
+            away = self._places.positions[chosen] - self._places.positions[place]
+            if len(chosen) == 0 or np.linalg.norm(away, axis=1).min() >= SPACING_MM:
+                chosen.append(int(place))
+                count -= 1
+                if count == 0:
+                    break
+        return chosen
+
+
+def _order(plan: TaskPlan, positions: np.ndarray, ways: Ways) -> list[int]:
+    """Return in which order the places (15, 3) of a task are touched."""
+    if plan.crossings == 0:
+        return easiest_order(ways, list(range(len(positions))))
+    by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
+    half = (len(positions) + 1) // 2
+    return crossing_order(ways, [by_side[:half], by_side[half:]], plan.crossings)
+
+
+def target_spread(fiducials: np.ndarray, target: np.ndarray) -> float:
+    """Return E[TRE²] / E[FLE²] at a target: ⅓ tr(I/N + [r]ₓ J⁻¹ [r]ₓᵀ) (Fitzpatrick 1998).
+
+    J is the inertia of the fiducials (n, 3), r the target (3,) from their centroid.
+    """
+    center = fiducials.mean(axis=0)
+    points, (x, y, z) = fiducials - center, target - center
+    scatter = points.T @ points
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    inertia = np.trace(scatter) * np.eye(3) - scatter
+    covariance = np.eye(3) / len(points) + cross @ np.linalg.inv(inertia) @ cross.T
+    return float(np.trace(covariance) / 3.0)

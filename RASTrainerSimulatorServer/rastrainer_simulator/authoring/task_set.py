@@ -1,0 +1,195 @@
+"""A trial run and five tasks for a head that nobody has seen before."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.head.face_removal import face_vertices
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.surface_path import shortest_path_mm
+from rastrainer.head.surface_queries import outward_normals
+from rastrainer.progress import Progress
+from rastrainer.scenario.tasks import LABELS, Task
+from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
+from rastrainer_simulator.authoring.task_proposal import (
+    PLANS,
+    CandidatePlaces,
+    Proposal,
+    TaskPlan,
+    TaskProposer,
+    places_seen_from,
+)
+from rastrainer_simulator.scene.skin import Skin
+from rastrainer_simulator.scene.skin_marks import place_marks
+
+ABOVE_BASE_MM = 25.0
+SMOOTH_WITHIN_MM = 12.0
+MOST_BENDING_DEG = 30.0
+"""Within that distance no normal may differ more: no ears, nostrils, eyelids, brows."""
+
+DOWNWARD = -0.4
+"""A place whose normal points farther down than this (its S) cannot be seen or touched well."""
+
+
+def smooth_places(mesh: HeadMesh, spacing_mm: float) -> np.ndarray:
+    """Return the indices (n,) of vertices where the skin is smooth, `spacing_mm` from each other.
+
+    The same mesh gives the same places.
+    """
+    height = mesh.vertices[:, 2] - mesh.vertices[:, 2].min()
+    allowed = (height > ABOVE_BASE_MM) & (mesh.vertex_normals[:, 2] > DOWNWARD)
+    allowed = np.flatnonzero(allowed)
+    spread = spread_out(mesh.vertices[allowed], spacing_mm)
+    return np.array([vertex for vertex in allowed[spread] if is_smooth(mesh, vertex)])
+
+
+def is_smooth(mesh: HeadMesh, vertex: int) -> bool:
+    """Tell whether the skin around a vertex bends little."""
+    away = np.linalg.norm(mesh.vertices - mesh.vertices[vertex], axis=1)
+    around = mesh.vertex_normals[away < SMOOTH_WITHIN_MM]
+    least = np.cos(np.radians(MOST_BENDING_DEG))
+    return bool((around @ mesh.vertex_normals[vertex]).min() >= least)
+
+
+def spread_out(points: np.ndarray, spacing_mm: float) -> list[int]:
+    """Return indices of points (n, 3), each the farthest from those before, at least so far."""
+    chosen = [int(points[:, 2].argmax())]
+    nearest = np.linalg.norm(points - points[chosen[0]], axis=1)
+    while nearest.max() >= spacing_mm:
+        chosen.append(int(nearest.argmax()))
+        nearest = np.minimum(nearest, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return chosen
+
+
+PLACE_SPACING_MM = 11.0
+FACE_MARGIN_MM = 10.0
+"""No fiducial comes nearer to the face, so that it can be taken off without moving any."""
+
+WIDE_SEEDS, TRIAL_SEEDS = range(1000, 1006), range(2000, 2012)
+"""Of the poses in which a fiducial must be touchable: worse than a trial's, and like a trial's."""
+
+ATTEMPTS = 6
+WIDEN_DEG, WIDEST_DEG = 10.0, 75.0
+"""Where there is no room for the easy tasks, they may lie so much farther from the middle of the
+view, each time."""
+
+MOST_SHARE = 0.94
+"""Of the progress, before the tasks are found."""
+
+_DECIMALS = 4
+
+
+class TaskSetProposer:
+    """Proposes sets of tasks for one head and set-up; the same seed proposes the same set."""
+
+    def __init__(
+        self, planning: PlanningSetup, progress: Progress = lambda _step, _share: None
+    ) -> None:
+        """Keep the head; `progress` is told what is done and may raise to cancel."""
+        self._planning = planning
+        self._progress = progress
+        self._skin = Skin(planning.mesh)
+        self._found: dict[tuple[float, ...], bool] = {}
+        self._share = 0.0
+
+    def propose(self, seed: int) -> tuple[Task, ...]:
+        """Return the tasks, each more demanding than the one before.
+
+        Their fiducials are on the skin, off the face, touchable in many poses of the head, and
+        spread so that the target is located well; their numbers do not overlap.
+
+        Raises:
+            InputError: the robot reaches too little of this head, or there is no room.
+        """
+        planning, problem = self._planning, ""
+        for attempt in range(ATTEMPTS):
+            proposer = TaskProposer(
+                planning.mesh,
+                self._places,
+                planning.eye,
+                planning.scenario.target_position,
+                self._is_readable,
+                self._are_touchable,
+            )
+            self._tell("Placing fiducials", 0.3 + 0.1 * attempt)
+            try:
+                proposals = proposer.propose_rising(
+                    _plans(attempt), seed + attempt, begins_easy=attempt > 0
+                )
+            except InputError as error:
+                problem = str(error)
+                continue
+            return tuple(_task(proposal, planning) for proposal in proposals)
+        raise InputError(problem)
+
+    @cached_property
+    def _places(self) -> CandidatePlaces:
+        """Where fiducials may be."""
+        planning = self._planning
+        self._tell("Finding smooth skin", 0.0)
+        vertices = smooth_places(planning.mesh, PLACE_SPACING_MM)
+        positions = planning.mesh.vertices[vertices].astype(float).round(_DECIMALS)
+        normals = planning.mesh.vertex_normals[vertices]
+        face = planning.mesh.vertices[face_vertices(planning.mesh)]
+        if len(face):
+            away = np.array([np.linalg.norm(face - place, axis=1).min() for place in positions])
+            positions, normals = positions[away > FACE_MARGIN_MM], normals[away > FACE_MARGIN_MM]
+        self._tell("Finding what the robot can touch", 0.05)
+        can_be = planning.touchable(positions, normals, planning.poses(range(0)))
+        positions, normals = positions[can_be], normals[can_be]
+        if len(positions) < len(LABELS):
+            raise InputError(
+                f"The robot can touch only {len(positions)} of {len(vertices)} places of this head "
+                "where a fiducial could be; bring the head nearer to the robot."
+            )
+        self._tell("Finding what the view shows", 0.2)
+        return places_seen_from(planning.mesh, positions, normals, planning.eye)
+
+    @cached_property
+    def _poses(self) -> list[np.ndarray]:
+        """In which every fiducial must be touchable, besides the nominal one."""
+        planning = self._planning
+        return [*planning.poses(WIDE_SEEDS, WIDER)[1:], *planning.poses(TRIAL_SEEDS)[1:]]
+
+    def _are_touchable(self, positions: np.ndarray) -> np.ndarray:
+        """Return which places (n,) bool can be touched wherever the head of a trial may stand."""
+        places = [tuple(position) for position in positions.tolist()]
+        new = [place for place in places if place not in self._found]
+        if new:
+            self._tell("Checking reach", 0.3 + 0.005 * len(self._found))
+            normals = outward_normals(self._planning.mesh, np.array(new))
+            can_be = self._planning.touchable(np.array(new), normals, self._poses)
+            self._found |= dict(zip(new, can_be.tolist(), strict=True))
+        return np.array([self._found[place] for place in places])
+
+    def _tell(self, step: str, share: float) -> None:
+        """Tell the progress, which never goes back."""
+        self._share = max(self._share, min(share, MOST_SHARE))
+        self._progress(step, self._share)
+
+    def _is_readable(self, proposal: Proposal) -> bool:
+        return place_marks(self._skin, proposal.fiducials, LABELS).has_room
+
+
+def _plans(attempt: int) -> list[TaskPlan]:
+    """Return the plans, the easy ones with more room after failures."""
+    wider = WIDEN_DEG * attempt
+    return [
+        replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider)) for plan in PLANS
+    ]
+
+
+def _task(proposal: Proposal, planning: PlanningSetup) -> Task:
+    plan, fiducials = proposal.plan, proposal.fiducials
+    return Task(
+        plan.name,
+        plan.title,
+        LABELS,
+        fiducials,
+        round(proposal.complexity.index, 2),
+        round(shortest_path_mm(fiducials, planning.mesh, planning.graph), 1),
+    )

@@ -1,0 +1,1 @@
+"""The command `rastrainer`, one subcommand a file."""

@@ -1,0 +1,236 @@
+"""`rastrainer simulate-cohort`: a study of virtual trainees whose skills are known."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.number_text import significant
+from rastrainer.protocol import Mode
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.protocol.steps import mode_order
+from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
+from rastrainer.trial.score_reference import score_reference
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli.text_table import text_table
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel
+from rastrainer_simulator.virtual.population import ModeEffect, Population
+from rastrainer_simulator.virtual.rejection_rates import rejection_rates
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+
+SHIPPED_PROTOCOL = ("studies", "published-protocol.json")
+TYPICAL_FLE_MM = 1.5
+TRIAL_TIME_SD = 0.12
+"""Of the logarithm of drawn times beside the tempo: heads, paths and slips of the hand."""
+MOST_TRAINEES = 100_000
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "simulate-cohort",
+        help="simulate a study of virtual trainees whose parameters you set",
+        description=(
+            "Play a study's trials with seeded virtual trainees, faster than real time, on all "
+            "cores, and store them like a real study (study.db, for rastrainer report). What was "
+            "interrupted is resumed by the same command. With "
+            "--power, draw many studies from a model of times and errors instead, without the "
+            "simulator, and print how often the tests find the effect."
+        ),
+    )
+    parser.add_argument("--trainees", type=int, default=20, metavar="N")
+    parser.add_argument("--protocol", type=Path, metavar="FILE", help="default: the published one")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="DIR", help="an empty folder, or one to resume"
+    )
+    parser.add_argument("--records", action="store_true", help="write the journals too")
+    parser.add_argument("--power", type=int, metavar="STUDIES", help="draw so many studies")
+    _add_skills(parser)
+    _add_engine(parser)
+    parser.set_defaults(run=run)
+
+
+def _add_skills(parser: argparse.ArgumentParser) -> None:
+    skills = parser.add_argument_group("what is true of the trainees")
+    skills.add_argument("--speed", type=float, default=120.0, metavar="MM/S")
+    skills.add_argument("--aim", type=float, default=0.8, metavar="MM", help="SD along each axis")
+    skills.add_argument("--hmd-speed", type=float, default=1.0, metavar="FACTOR")
+    skills.add_argument("--hmd-aim", type=float, default=1.0, metavar="FACTOR")
+    skills.add_argument(
+        "--hmd-bias",
+        type=float,
+        nargs=3,
+        default=(0.0, 0.0, 0.0),
+        metavar=("X", "Y", "Z"),
+        help="what the headset misleads the aim by, mm",
+    )
+    skills.add_argument("--spread", type=float, default=0.15, help="between trainees")
+    skills.add_argument(
+        "--interaction", type=float, default=0.05, help="between trainees and modes"
+    )
+    skills.add_argument("--tempo-spread", type=float, default=0.0, help="between trials")
+    skills.add_argument("--learning", type=float, default=0.15, metavar="EXPONENT")
+    skills.add_argument(
+        "--accuracy-learning", type=float, default=0.0, metavar="EXPONENT", help="of the scatter"
+    )
+    skills.add_argument(
+        "--trade-off",
+        type=float,
+        default=0.0,
+        metavar="EXPONENT",
+        help="of a trial's tempo in its scatter",
+    )
+    skills.add_argument(
+        "--lapses",
+        type=float,
+        metavar="SHARE",
+        help="of trials in which a touch slips and is taken back; default: all that are played",
+    )
+
+
+def _add_engine(parser: argparse.ArgumentParser) -> None:
+    engine = parser.add_argument_group("where it runs")
+    engine.add_argument("--engine", choices=("processes", "dask"), default="processes")
+    engine.add_argument("--workers", type=int, metavar="N", help="default: one a core")
+    engine.add_argument("--address", metavar="URL", help="of a Dask scheduler")
+    engine.add_argument("--step", type=float, default=0.05, metavar="S", help="of the simulation")
+    engine.add_argument("--scenario", type=Path, metavar="DIR")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate the cohort and return the exit status.
+
+    Raises:
+        InputError: an argument, the protocol or the folder cannot be used.
+    """
+    if not 2 <= arguments.trainees <= MOST_TRAINEES or arguments.seed < 0:
+        raise InputError(f"A cohort has 2 to {MOST_TRAINEES} trainees, and its seed is 0 or above.")
+    protocol = read_study_protocol(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))
+    if arguments.power is not None:
+        print(_power(protocol, arguments))
+        return 0
+    if arguments.output is None:
+        raise InputError("Say where the study shall be stored, with -o.")
+    _check_playing(arguments)
+    _play(protocol, arguments)
+    return 0
+
+
+def _check_playing(arguments: argparse.Namespace) -> None:
+    if not 5 <= arguments.speed <= 450 or not 0 <= arguments.aim <= 3:
+        raise InputError("The speed must be from 5 to 450 mm/s, the aim's SD from 0 to 3 mm.")
+    if not 0.002 <= arguments.step <= 0.1:
+        raise InputError("A step of the simulation must be from 0.002 to 0.1 s.")
+    if arguments.workers is not None and not 1 <= arguments.workers <= 1024:
+        raise InputError("There must be 1 to 1024 workers.")
+
+
+def _play(protocol: StudyProtocol, arguments: argparse.Namespace) -> None:
+    # Only here: the robot and the scenario take time to import.
+    from rastrainer_simulator.virtual.cohort import simulate_cohort
+    from rastrainer_simulator.virtual.play import PlaySettings
+
+    trials = arguments.trainees * len(protocol.modes) * len(protocol.tasks) * protocol.repetitions
+
+    def tell(count: int) -> None:
+        if sys.stderr.isatty():
+            print(f"  {count} of {trials} trials", end="\r", file=sys.stderr, flush=True)
+
+    try:
+        result = simulate_cohort(
+            protocol,
+            _population(arguments),
+            arguments.trainees,
+            arguments.seed,
+            arguments.output,
+            PlaySettings(arguments.scenario, arguments.step),
+            arguments.records,
+            arguments.engine,
+            arguments.workers,
+            arguments.address,
+            tell,
+        )
+    except KeyboardInterrupt:
+        print(
+            f"rastrainer: Interrupted. What was played is stored in {arguments.output}; the same "
+            "command resumes.",
+            file=sys.stderr,
+        )
+        raise
+    faster = result.simulated_s / result.seconds
+    found = f"{result.found} trials were there; " if result.found else ""
+    print(
+        f"{arguments.output}: {found}{result.played} trials in {result.seconds:.0f} s, "
+        f"{faster:.0f} times faster than real time; {result.stuck} got stuck and are left out"
+    )
+
+
+def _population(arguments: argparse.Namespace) -> Population:
+    bias_mm = tuple(arguments.hmd_bias)
+    effect = ModeEffect(arguments.hmd_speed, arguments.hmd_aim, bias_mm)
+    return Population(
+        skill=Skill(speed_mm_s=arguments.speed, aim_sd_mm=arguments.aim),
+        speed_spread=arguments.spread,
+        aim_spread=arguments.spread,
+        learning=arguments.learning,
+        modes={Mode.HMD.value: effect},
+        accuracy_learning=arguments.accuracy_learning,
+        interaction=arguments.interaction,
+        tempo_spread=arguments.tempo_spread,
+        trade_off=arguments.trade_off,
+        lapses=arguments.lapses,
+    )
+
+
+def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
+    if not 10 <= arguments.power <= 100_000 or len(protocol.modes) != 2:
+        raise InputError("Power needs 10 to 100000 studies of a protocol with two modes.")
+    population = _population(arguments)
+    scenario = load_scenario(arguments.scenario or asset_path("scenarios", "colin27"))
+    times_s = [score_reference(scenario, task).time_s for task in protocol.tasks]
+    times_s *= protocol.repetitions
+    model = OutcomeModel(
+        task_times_s=times_s,
+        task_fle_mm=[TYPICAL_FLE_MM] * len(times_s),
+        trainee_time_sd=population.speed_spread,
+        trainee_fle_sd=population.aim_spread,
+        interaction_sd=population.interaction,
+        trial_time_sd=math.hypot(TRIAL_TIME_SD, population.tempo_spread),
+        learning=population.learning,
+        accuracy_learning=population.accuracy_learning,
+        trade_off=population.trade_off,
+        lapses=population.lapses or 0.0,
+        carries_practice=True,
+        mode_time={Mode.HMD.value: 1 / arguments.hmd_speed},
+        mode_fle={Mode.HMD.value: arguments.hmd_aim},
+    )
+    modes = sorted(protocol.modes)
+    orders = [mode_order(protocol, place) for place in range(arguments.trainees)]
+    rates = rejection_rates(
+        model, arguments.trainees, modes, arguments.power, arguments.seed, orders
+    )
+    rows = [
+        [
+            r.outcome,
+            "–" if r.true_difference is None else significant(r.true_difference, 4, sign=True),
+            *(f"{100 * share:.1f} %" for share in (r.t_test, r.holm, r.ranks)),
+            "–" if r.coverage is None else f"{100 * r.coverage:.1f} %",
+        ]
+        for r in rates
+    ]
+    header = ["outcome", "true difference", "p < .05", "p (Holm) < .05", "rank test", "95 % covers"]
+    is_balanced = len(set(orders)) > 1
+    order = (
+        "balanced: the effect of the period is separated"
+        if is_balanced
+        else "the same for all: practice is part of the difference"
+    )
+    return (
+        f"{arguments.power} studies of {arguments.trainees} trainees, {modes[1]} minus {modes[0]}, "
+        f"drawn from a model of outcomes (not played)\norder of the modes {order}\n"
+        + text_table(header, rows)
+    )

@@ -1,0 +1,227 @@
+"""`rastrainer demo`: simulator, Slicer's side and a virtual trainee play two trials.
+
+Each is a process of its own; they talk OpenIGTLink.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import importlib.util
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.igtl.client import Client
+from rastrainer.processes.private_folder import python_words
+from rastrainer.protocol import DEFAULT_HOST, FIDUCIAL_COUNT, TRIAL_RUN, Proximity
+from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli.demo_summary import trial_summary
+from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "demo", help="play two trials with a virtual trainee and show the results"
+    )
+    parser.add_argument("--output", type=Path, default=Path("rastrainer-demo"), metavar="DIR")
+    parser.add_argument("--seed", type=int, default=2026, help="of the trainee and the head's pose")
+    parser.add_argument(
+        "--speed", type=float, default=10.0, help="simulated seconds a second (default: 10)"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Play the demo and return the exit status."""
+    play_demo(arguments.output, arguments.seed, arguments.speed)
+    return 0
+
+
+TASKS = (TRIAL_RUN, "task-1")
+TRAINEE = "trainee-01"
+BAR_WIDTH = 30
+SLICER_TIMEOUT_S = 60.0
+
+
+def play_demo(output: Path, seed: int, speed: float) -> None:
+    """Play the trial run and Task 1, write the results into `output`, and print a summary.
+
+    An `output` that holds something already is moved aside, never overwritten.
+
+    Raises:
+        InputError: the package that plays Slicer's part is not installed; nothing was done then.
+        RASTrainerError: a part could not be started or failed; the sentence names its log.
+    """
+    check_slicers_side()
+    started = time.monotonic()
+    output = output.absolute()
+    move_aside(output)
+    output.mkdir(parents=True)
+    scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
+    with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
+        states = _play(port, scenario, seed, speed)
+        print("Slicer's side registers, scores, stores and draws ...", flush=True)
+        _wait_for(slicer, output / "slicer.log")
+    lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
+    trials = [json.loads(line) for line in lines]
+    _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
+    for trial in trials:
+        print("\n" + trial_summary(trial, scenario.task(trial["task"]).title))
+    print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
+
+
+def check_slicers_side() -> None:
+    """Look whether the package is there that plays Slicer's part.
+
+    Raises:
+        InputError: it is not.
+    """
+    if importlib.util.find_spec("slicer") is None:
+        raise InputError(
+            "The demo needs slicer-core, which plays the part of 3D Slicer: install it by "
+            f'{sys.executable} -m pip install "rastrainer[slicer]"'
+        )
+
+
+def move_aside(folder: Path) -> None:
+    """Rename a folder that holds something to the first free `name-1`, `name-2` …"""
+    if not folder.exists() or not any(folder.iterdir()):
+        return
+    number = 1
+    while (aside := folder.with_name(f"{folder.name}-{number}")).exists():
+        number += 1
+    folder.rename(aside)
+    print(f"The results that were in {folder} are now in {aside}.")
+
+
+@contextlib.contextmanager
+def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
+    """Run the simulator on a free port, which is yielded."""
+    words = ["rastrainer_simulator.cli.main", "simulator", "--port", "0", "--seed", str(seed)]
+    words += ["--speed", str(speed), "--records", str(output / "records")]
+    with (
+        (output / "simulator.log").open("w") as log,
+        _process(words, log, stdout=subprocess.PIPE) as process,
+    ):
+        assert process.stdout is not None  # It is a pipe.
+        line = process.stdout.readline()
+        if "ready" not in line:
+            raise RASTrainerError(f"The simulator did not start; {log.name} says why.")
+        yield int(line.rsplit(":", 1)[1])
+
+
+@contextlib.contextmanager
+def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
+    """Run Slicer's side without Slicer, which ends when it has stored all trials."""
+    words = ["rastrainer_headless.main", "--port", str(port), "--output", str(output)]
+    words += ["--scenario", str(asset_path(*DEFAULT_SCENARIO)), "--trials", str(len(TASKS))]
+    words += ["--cohort", str(asset_path("studies", "published.csv"))]
+    with (
+        (output / "slicer.log").open("w") as log,
+        _process(words, log, stdout=log) as process,
+    ):
+        yield process
+
+
+@contextlib.contextmanager
+def _process(words: list[str], log: TextIO, stdout: Any) -> Iterator[subprocess.Popen]:
+    """Run a module with its arguments, `words`; ask it to stop at the end, whatever happened."""
+    process = subprocess.Popen(python_words(*words), stdout=stdout, stderr=log, text=True)
+    try:
+        yield process
+    finally:
+        process.terminate()
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _play(port: int, scenario: Scenario, seed: int, speed: float) -> list[dict[str, Any]]:
+    from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+
+    states = []
+    with Client(DEFAULT_HOST, port) as client:
+        say_hello(client, "scripted trainee")
+        for number, name in enumerate(TASKS):
+            title = scenario.task(name).title
+            print(f"{TRAINEE} plays {title} ({speed:g} times faster than real time)")
+            trial = play_trial(
+                client, scenario, name, TRAINEE, seed + number, on_progress=_Bar(title)
+            )
+            print()
+            states.append(trial.last_state)
+    return states
+
+
+class _Bar:
+    """One line that grows with the touches; drawn anew only where something changed."""
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        self._shown = ""
+
+    def __call__(self, state: dict[str, Any]) -> None:
+        point = state["nextPoint"]
+        touched = FIDUCIAL_COUNT if point is None else int(point) - 1
+        filled = BAR_WIDTH * touched // FIDUCIAL_COUNT
+        bar = "█" * filled + "·" * (BAR_WIDTH - filled)
+        line = f"  {self._title:<10} {bar} {touched:2d}/{FIDUCIAL_COUNT} touched"
+        if line != self._shown:
+            self._shown = line
+            print(line, end="\r" if sys.stdout.isatty() else "\n", flush=True)
+
+
+def _wait_for(process: subprocess.Popen, log: Path) -> None:
+    try:
+        status = process.wait(SLICER_TIMEOUT_S)
+    except subprocess.TimeoutExpired:
+        status = None
+    if status != 0:
+        raise RASTrainerError(f"Slicer's side did not finish its work; {log} says why.")
+
+
+def _draw_robot(
+    path: Path, scenario: Scenario, state: dict[str, Any], trial: dict[str, Any]
+) -> None:
+    """Picture the last touch: the arm as it then stood, at the head that is no longer secret."""
+    from rastrainer_simulator.rendering.moment import SceneMoment
+    from rastrainer_simulator.rendering.picture import render_picture
+    from rastrainer_simulator.robot.kinematics import make_kinematics
+    from rastrainer_simulator.robot.model import load_robot
+    from rastrainer_simulator.scene.scene_glb import scene_nodes
+
+    robot = load_robot()
+    task = scenario.task(trial["task"])
+    head = read_head_mesh(scenario.head_mesh)
+    moment = SceneMoment(
+        link_to_world=make_kinematics(robot).links(state["q"]),
+        head_to_world=np.array(trial["truth"]["head_to_world"]),
+        head_base=head.base,
+        touched=frozenset(task.labels),
+        proximity=Proximity(state["proximity"]),
+    )
+    render_picture(
+        path,
+        scene_nodes(scenario, robot, head, task),
+        robot,
+        moment,
+        scenario.cameras["far"],
+        inset=scenario.cameras["close-up"],
+    )
+
+
+def _listing(folder: Path) -> str:
+    return ", ".join(sorted(path.name for path in folder.iterdir()))

@@ -1,0 +1,1 @@
+"""The checks of `rastrainer doctor`, by subject."""

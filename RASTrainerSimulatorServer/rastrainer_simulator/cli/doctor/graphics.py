@@ -1,0 +1,80 @@
+"""Display and OpenGL: whether the trainee's window can open, and whether a graphics card draws."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+
+from rastrainer.errors import RASTrainerError
+from rastrainer.processes.private_folder import python_words
+from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
+
+PROBE = "rastrainer_simulator.cli.doctor.graphics"
+LONGEST_PROBE_S = 60.0
+IN_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "gdi generic", "microsoft basic render")
+NO_WINDOW = "The trainee's window cannot open; browsers and headsets can still be used."
+
+_ANSWER = "renderer: "
+
+
+def check_graphics(probe: Sequence[str] = ()) -> Iterator[CheckResult]:
+    """Open a hidden window and report its renderer; `probe` is another command that opens one."""
+    has_x11_or_wayland = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if sys.platform.startswith("linux") and not has_x11_or_wayland:
+        yield CheckResult(
+            "graphics",
+            CheckStatus.WARNING,
+            f"There is no display. {NO_WINDOW}",
+            "Start from a desktop session, or set DISPLAY.",
+        )
+        return
+    try:
+        done = subprocess.run(
+            probe or python_words(PROBE),
+            capture_output=True,
+            text=True,
+            timeout=LONGEST_PROBE_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        yield _failure(f"A window did not open within {LONGEST_PROBE_S:g} s.")
+        return
+    answers = [line for line in done.stdout.splitlines() if line.startswith(_ANSWER)]
+    if done.returncode != 0 or not answers:
+        reason = (done.stderr.strip().splitlines() or [f"it ended with {done.returncode}"])[-1]
+        yield _failure(f"OpenGL does not work: {reason}")
+        return
+    renderer = answers[0].removeprefix(_ANSWER)
+    if any(name in renderer.lower() for name in IN_SOFTWARE):
+        yield CheckResult(
+            "graphics",
+            CheckStatus.WARNING,
+            f"OpenGL works, but the processor draws: {renderer}.",
+            "Install the graphics card's driver: pictures come slowly without.",
+        )
+    else:
+        yield CheckResult("graphics", CheckStatus.OK, f"OpenGL works: {renderer}.")
+
+
+def _failure(sentence: str) -> CheckResult:
+    remedy = "Install the graphics card's driver, OpenGL 3.2 or newer."
+    return CheckResult("graphics", CheckStatus.WARNING, f"{sentence} {NO_WINDOW}", remedy)
+
+
+def main() -> int:
+    """Print the name of OpenGL's renderer; return 2, with one sentence, where there is none."""
+    from rastrainer_simulator.desktop.gl_window import GlWindow
+
+    try:
+        window = GlWindow((320, 240), is_fullscreen=False, is_hidden=True)
+    except RASTrainerError as error:
+        print(error, file=sys.stderr)
+        return 2
+    print(f"renderer: {window.renderer_name}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,109 @@
+"""`rastrainer export STUDY -o DIR`: a study for other programs."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.export.motion_bids import write_motion_bids
+from rastrainer.export.slicer_files import write_slicer_files
+from rastrainer.export.tidy_csv import (
+    aborted_csv,
+    aborted_touches_csv,
+    answers_csv,
+    scores_csv,
+    touches_csv,
+    trials_csv,
+)
+from rastrainer.export.xapi import HOME_PAGE, statements_text
+from rastrainer.files.writing import make_empty_folder, write_text
+from rastrainer.journal.folder import read_trajectory
+from rastrainer.report.results.scores import with_ctps
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer_simulator.cli.incomplete import add_incomplete, read_known_study
+
+FORMATS = ("csv", "bids", "xapi", "slicer")
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the command to a command line; `arguments.run(arguments)` runs it."""
+    parser = subparsers.add_parser(
+        "export",
+        help="export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
+        description=(
+            "Write a study into an empty folder, a folder a format. Trainees appear by their "
+            "pseudonyms, and only those who agreed to research."
+        ),
+    )
+    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument(
+        "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
+    )
+    parser.add_argument(
+        "--records", type=Path, metavar="DIR", help="the simulator's journals, for Motion-BIDS"
+    )
+    parser.add_argument(
+        "--home-page",
+        default=HOME_PAGE,
+        metavar="URL",
+        help="of the lab's system, for xAPI (default: %(default)s)",
+    )
+    add_incomplete(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the export and return the exit status.
+
+    Raises:
+        InputError: the study cannot be read, the folder holds something, or journals are lacking.
+    """
+    formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
+    if "bids" in formats and arguments.records is None:
+        raise InputError("Motion-BIDS needs the journals: give their folder with --records.")
+    data = with_ctps(read_known_study(arguments))
+    make_empty_folder(arguments.output)
+    for name in formats:
+        print(f"{arguments.output / name}: {_write(name, data, arguments)}")
+    if data.without_consent:
+        print(f"Left out because they did not agree to research: {data.without_consent} trainees")
+    return 0
+
+
+def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
+    folder = arguments.output / name
+    if name == "bids":
+        count = write_motion_bids(
+            data, folder, lambda trial_id: read_trajectory(arguments.records, trial_id)
+        )
+        return f"{count} of {len(data.trials)} trials"
+    make_empty_folder(folder)
+    if name == "csv":
+        write_text(folder / "trials.csv", trials_csv(data.trials))
+        write_text(folder / "touches.csv", touches_csv(_stored(data, arguments.study)))
+        write_text(folder / "aborted.csv", aborted_csv(data.aborted))
+        write_text(folder / "aborted_touches.csv", aborted_touches_csv(data.aborted))
+        write_text(folder / "scores.csv", scores_csv(data))
+        write_text(folder / "answers.csv", answers_csv(data))
+    elif name == "xapi":
+        write_text(folder / "statements.json", statements_text(data, arguments.home_page))
+    else:
+        for trial, stored in _stored(data, arguments.study):
+            write_slicer_files(stored, folder / trial.trial_id)
+        return f"{len(data.trials)} trials"
+    return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
+
+
+def _stored(data: StudyData, path: Path) -> Iterator[tuple[TrialRow, StoredTrial]]:
+    """Yield the trials that a database holds, each with what is stored of it; a CSV has none."""
+    known = [trial for trial in data.trials if trial.trial_id]
+    if not known:
+        return
+    with Study.open_for_reading(path) as study:
+        for trial in known:
+            yield trial, study.trial(trial.trial_id)

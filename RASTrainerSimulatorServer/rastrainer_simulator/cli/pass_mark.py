@@ -1,0 +1,128 @@
+"""`rastrainer pass-mark STUDY`: the pass mark that parts a study's novices from its experts."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from statistics import fmean
+
+from rastrainer.errors import InputError
+from rastrainer.files.writing import write_text
+from rastrainer.number_text import percent
+from rastrainer.statistics.contrasting_groups import PassMark, pass_mark
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
+from rastrainer.trial.scoring import SCORE_VERSION
+from rastrainer.trial.trainee_progress import PastTrial
+
+LAST_TRIALS = 3
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the command to a command line; `arguments.run(arguments)` runs it."""
+    parser = subparsers.add_parser(
+        "pass-mark",
+        help="compute a pass mark from the novices and the experts of a study",
+        description=(
+            "Contrasting groups (Livingston and Zieky 1982): the mark is where the scores of both "
+            f"groups part. A person's score is the mean of their last {LAST_TRIALS} trials; trial "
+            "runs are left out. Scores of different versions make no mark."
+        ),
+    )
+    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    for group in ("novices", "experts"):
+        parser.add_argument(
+            f"--{group}", nargs="+", required=True, metavar="PSEUDONYM", help="five or more"
+        )
+    parser.add_argument(
+        "--write",
+        type=Path,
+        metavar="PROTOCOL",
+        help="write the mark into this protocol's file, for a study that is not begun yet",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the mark, write it where asked for, and return the exit status.
+
+    Raises:
+        InputError: there is no such study, trainee or protocol, somebody has too few scored trials
+            or is in both groups, or the groups give no mark.
+    """
+    if not arguments.study.is_file():
+        raise InputError(f"There is no file {arguments.study}.")
+    both = sorted({*arguments.novices} & {*arguments.experts})
+    if both:
+        raise InputError(f"{both[0]} is named in both groups; name everybody in one, and once.")
+    with Study.open_for_reading(arguments.study) as study:
+        counted = [
+            [_last_trials(study, pseudonym) for pseudonym in dict.fromkeys(group)]
+            for group in (arguments.novices, arguments.experts)
+        ]
+        aborted = sum(
+            attempt.is_aborted
+            for pseudonym in {*arguments.novices, *arguments.experts}
+            for attempt in AbortedTrials(study).attempts(pseudonym)
+        )
+    version = _version(counted)
+    novices, experts = (
+        [fmean(trial.score for trial in trials) for trials in group] for group in counted
+    )
+    mark = pass_mark(novices, experts)
+    print(_sentence(mark, novices, experts, version))
+    if aborted:
+        print(
+            f"They aborted {aborted} trials after a touch; these have no score, so that who aborts "
+            "bad trials seems better here."
+        )
+    if arguments.write is not None:
+        # A mark that people are told in whole points is one in whole points.
+        protocol = read_study_protocol(arguments.write)
+        if version != SCORE_VERSION:
+            raise InputError(
+                f"The mark is one of score version {version}, and trials get scores of version "
+                f"{SCORE_VERSION} now: it is not written into {arguments.write}."
+            )
+        protocol = replace(
+            protocol, pass_mark=float(round(mark.score)), score_version=SCORE_VERSION
+        )
+        write_text(arguments.write, protocol_text(protocol))
+        print(f"{arguments.write}: the pass mark is {protocol.pass_mark:.0f} now.")
+    return 0
+
+
+def _last_trials(study: Study, pseudonym: str) -> tuple[PastTrial, ...]:
+    trials = study.past_trials(pseudonym)[-LAST_TRIALS:]
+    if len(trials) < LAST_TRIALS:
+        raise InputError(
+            f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of each."
+        )
+    return trials
+
+
+def _version(groups: Sequence[Sequence[Sequence[PastTrial]]]) -> str:
+    """Return the version that all scores have."""
+    trials = [trial for group in groups for own in group for trial in own]
+    versions = sorted({trial.score_version for trial in trials})
+    if len(versions) > 1:
+        raise InputError(
+            f"The last {LAST_TRIALS} trials of these people have scores of the versions "
+            f"{' and '.join(versions)}, which do not compare: no mark can be made of them."
+        )
+    return versions[0]
+
+
+def _sentence(
+    mark: PassMark, novices: Sequence[float], experts: Sequence[float], version: str
+) -> str:
+    return (
+        f"Pass mark {mark.score:.1f} of 100 (score version {version}), from {len(novices)} novices "
+        f"(mean {fmean(novices):.1f}) and {len(experts)} experts (mean {fmean(experts):.1f}).\n"
+        f"If both groups are normal, {percent(mark.passing_novices)} of novices would pass and "
+        f"{percent(mark.failing_experts)} of experts fail; here it is "
+        f"{percent(mark.observed_passing_novices)} and {percent(mark.observed_failing_experts)}."
+    )

@@ -1,0 +1,236 @@
+"""`rastrainer register MOVING FIXED`: registers two files of points."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.point_files import read_point_numbers, read_points
+from rastrainer.files.point_list import pair
+from rastrainer.registration.localization_error import (
+    LocalizationError,
+    degrees_of_freedom,
+    expected_fre,
+    misfit_probability,
+    stated_error,
+)
+from rastrainer.registration.registration import KINDS, RIGID, Registration, register
+from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
+from rastrainer_simulator.cli.text_table import text_table
+
+FRE_NOTE = (
+    "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
+)
+
+FLE_RANGE_MM = (1e-3, 1e3)
+WEIGHT_RANGE = (1e-6, 1e6)
+MISFIT_LEVEL = 1e-3
+
+
+@dataclass(frozen=True)
+class StatedErrors:
+    """What the user says of the points' localization errors.
+
+    Attributes:
+        fle_mm: (n,) float, RMS length of each point's error.
+        localization: The same as covariances.
+        expected_fre_mm: The FRE that they make expected.
+        misfit: Probability of residuals as large as the present ones.
+    """
+
+    fle_mm: np.ndarray
+    localization: LocalizationError
+    expected_fre_mm: float
+    misfit: float
+
+    @classmethod
+    def of(cls, registration: Registration, fle_mm: np.ndarray) -> StatedErrors:
+        """Return what stated errors mean for a registration that is weighted by 1/FLE²."""
+        error = stated_error(fle_mm)
+        misfit = misfit_probability(registration, fle_mm)
+        return cls(fle_mm, error, expected_fre(registration, error), misfit)
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the command to a command line; `arguments.run(arguments)` runs it."""
+    parser = subparsers.add_parser(
+        "register",
+        help="register moving points to fixed points",
+        description=(
+            "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
+            ".mrk.json. Points are paired by label, or by order where the labels are left out."
+        ),
+    )
+    parser.add_argument("moving", metavar="MOVING", help="the points to be mapped")
+    parser.add_argument("fixed", metavar="FIXED", help="where they belong")
+    parser.add_argument("--type", choices=KINDS, default=RIGID, help="default: %(default)s")
+    parser.add_argument(
+        "--target",
+        nargs=3,
+        type=float,
+        metavar=("X", "Y", "Z"),
+        help="point in the fixed space (mm) to tell the expected error of; default: the centroid",
+    )
+    weighting = parser.add_mutually_exclusive_group()
+    weighting.add_argument(
+        "--fle",
+        metavar="FILE.csv",
+        help=(
+            "weight each point by 1/FLE² (rigid only): a CSV file with the header label,fle, the "
+            "RMS localization error of each point in mm; may be MOVING itself with that column"
+        ),
+    )
+    weighting.add_argument(
+        "--weights",
+        metavar="FILE.csv",
+        help=(
+            "weight the points (rigid only): a CSV file with the header label,weight; only the "
+            "ratios matter, and the size of the errors is told from the residuals"
+        ),
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the registration and return the exit status.
+
+    Raises:
+        InputError: a file cannot be used, or the points cannot be registered.
+    """
+    labels, moving, fixed = pair(read_points(arguments.moving), read_points(arguments.fixed))
+    fle_mm, weights = _weighting(arguments, labels)
+    registration = register(moving, fixed, arguments.type, labels, weights)
+    stated = None if fle_mm is None else StatedErrors.of(registration, fle_mm)
+    error = _target_error(registration, arguments.target, stated)
+    if arguments.json:
+        answer = registration_json(registration, error, stated)
+        print(json.dumps(answer, allow_nan=False, indent=1))
+    else:
+        print(registration_text(registration, error, stated))
+    return 0
+
+
+def registration_json(
+    registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
+) -> dict[str, Any]:
+    """Return a registration as a JSON object; `expected_tre` is None where nothing is known."""
+    weights = registration.weights
+    return {
+        "type": registration.kind,
+        "fre_mm": registration.fre_mm,
+        "matrix": registration.matrix.tolist(),
+        "labels": list(registration.labels),
+        "residuals_mm": registration.residuals_mm.tolist(),
+        "residual_vectors_mm": registration.residual_vectors_mm.tolist(),
+        "warnings": [warning.to_json() for warning in registration.warnings],
+        "weights": None if weights is None else weights.tolist(),
+        "weighted_fre_mm": registration.weighted_fre_mm,
+        "stated": None
+        if stated is None
+        else {
+            "fle_mm": stated.fle_mm.tolist(),
+            "expected_fre_mm": stated.expected_fre_mm,
+            "misfit_probability": stated.misfit,
+        },
+        "expected_tre": None
+        if error is None
+        else {
+            "target_mm": list(error.target_mm),
+            "expected_mm": error.expected_mm,
+            "independent_mm": error.independent_mm,
+            "interval_mm": list(error.interval_mm),
+            "confidence": error.confidence,
+            "fle_mm": error.fle_mm,
+            "note": INTERVAL_NOTE,
+        },
+    }
+
+
+def registration_text(
+    registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
+) -> str:
+    """Return a registration as text for people, with units and warnings."""
+    count = len(registration.labels)
+    weighted = "" if registration.weights is None else ", weighted"
+    lines = [
+        f"{registration.kind.capitalize()} registration of {count} pairs of points{weighted}",
+        "",
+        f"FRE  {registration.fre_mm:.3f} mm (root mean square of the residuals)",
+    ]
+    if registration.weights is not None:
+        lines.append(f"     {registration.weighted_fre_mm:.3f} mm with the weights")
+    if stated is not None:
+        lines.append(f"     {stated.expected_fre_mm:.3f} mm to be expected from the stated FLE")
+    if error is not None:
+        x, y, z = error.target_mm
+        low, high = error.interval_mm
+        lines += [
+            f"TRE  {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
+            f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm",
+            INTERVAL_NOTE,
+        ]
+    lines += [FRE_NOTE, "", "Moving to fixed (mm)"]
+    lines += ["  ".join(f"{value:12.6f}" for value in row) for row in registration.matrix]
+    lines += ["", _residual_table(registration, stated)]
+    warnings = [warning.message for warning in registration.warnings]
+    if stated is not None and stated.misfit < MISFIT_LEVEL:
+        warnings.append(
+            "The residuals are larger than the stated FLE allow; the expected TRE, which is made "
+            "of these, is too small."
+        )
+    if warnings:
+        lines += ["", *(f"Warning: {warning}" for warning in warnings)]
+    return "\n".join(lines)
+
+
+def _residual_table(registration: Registration, stated: StatedErrors | None) -> str:
+    header, columns = ["Point", "Residual (mm)", "x", "y", "z"], []
+    if stated is not None:
+        header.append("FLE (mm)")
+        columns = [f"{value:g}" for value in stated.fle_mm]
+    elif registration.weights is not None:
+        header.append("Weight")
+        columns = [f"{value:g}" for value in registration.weights]
+    rows = [
+        [label, f"{length:.3f}", *(f"{value:+.3f}" for value in vector)]
+        for label, length, vector in zip(
+            registration.labels,
+            registration.residuals_mm,
+            registration.residual_vectors_mm,
+            strict=True,
+        )
+    ]
+    if columns:
+        rows = [[*row, cell] for row, cell in zip(rows, columns, strict=True)]
+    return text_table(header, rows)
+
+
+def _weighting(
+    arguments: argparse.Namespace, labels: tuple[str, ...]
+) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Return the stated FLE in mm and the weights; None for what was not given."""
+    if arguments.fle is not None:
+        fle_mm = read_point_numbers(arguments.fle, "fle", labels, *FLE_RANGE_MM)
+        return fle_mm, 1.0 / fle_mm**2
+    if arguments.weights is not None:
+        return None, read_point_numbers(arguments.weights, "weight", labels, *WEIGHT_RANGE)
+    return None, None
+
+
+def _target_error(
+    registration: Registration, target: list[float] | None, stated: StatedErrors | None
+) -> TargetError | None:
+    localization = None if stated is None else stated.localization
+    if target is not None:
+        return target_error(registration, np.array(target), localization)
+    try:
+        degrees_of_freedom(registration)
+    except InputError:
+        return None
+    return target_error(registration, registration.fixed_mm.mean(axis=0), localization)

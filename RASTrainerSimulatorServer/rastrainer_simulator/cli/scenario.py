@@ -1,0 +1,243 @@
+"""`rastrainer scenario`: from a patient's MRI or CT to something to train on."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.progress import print_progress, print_warning
+from rastrainer.scenario.library import list_scenarios, user_library
+from rastrainer.scenario.package import unpack
+from rastrainer.scenario.scenario import UNKNOWN_LICENSE
+
+ALL_RIGHT = "Set-up, plan and fiducials can be used."
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "scenario",
+        help="make a scenario of a head MRI or CT, check, pack and list scenarios",
+        description="Makes and checks scenarios. Not for clinical use.",
+    )
+    parts = parser.add_subparsers(title="what to do", required=True, metavar="ACTION")
+    build = parts.add_parser("build", help="make a scenario of a volume")
+    build.add_argument("volume", type=Path, metavar="VOLUME", help="NRRD, NIfTI or DICOM folder")
+    _add_head_options(build)
+    build.add_argument("--no-skull", action="store_true", help="leave the skull out")
+    build.add_argument("--no-volume", action="store_true", help="leave the images out")
+    _add_wishes(build)
+    build.set_defaults(run=_build)
+    tasks = parts.add_parser("tasks", help="propose tasks on a head that was made elsewhere")
+    tasks.add_argument("draft", type=Path, metavar="DRAFT", help="folder with the head's draft")
+    _add_wishes(tasks)
+    tasks.set_defaults(run=_tasks)
+    preview = parts.add_parser("preview", help="picture the head in a volume, to adjust it")
+    preview.add_argument("volume", type=Path, metavar="VOLUME")
+    preview.add_argument("picture", type=Path, metavar="PNG")
+    _add_head_options(preview)
+    preview.set_defaults(run=_preview)
+    check = parts.add_parser("check", help="say what is wrong with a scenario; status 1 if any")
+    check.add_argument("folder", type=Path, metavar="DIR")
+    check.set_defaults(run=_check)
+    plan = parts.add_parser("plan", help="copy a scenario with other targets or trajectory")
+    plan.add_argument("folder", type=Path, metavar="DIR")
+    _add_output(plan)
+    _add_plan(plan)
+    plan.set_defaults(run=_plan)
+    packing = parts.add_parser(
+        "pack", help="write a scenario as one zip file, without face, title and source"
+    )
+    packing.add_argument("folder", type=Path, metavar="DIR")
+    packing.add_argument("package", type=Path, metavar="ZIP")
+    packing.add_argument("--keep-face", action="store_true", help="the patient may be recognized")
+    packing.add_argument("--keep-names", action="store_true", help="title, name and source, too")
+    packing.set_defaults(run=_pack)
+    unpacking = parts.add_parser("unpack", help="unpack a scenario into your library")
+    unpacking.add_argument("package", type=Path, metavar="ZIP")
+    _add_library(unpacking)
+    unpacking.set_defaults(run=_unpack)
+    listing = parts.add_parser("list", help="list the scenarios at hand")
+    _add_library(listing)
+    listing.set_defaults(run=_list)
+
+
+def _add_head_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--threshold", type=float, help="value that parts air from skin (default: found)"
+    )
+    parser.add_argument(
+        "--cut", type=float, metavar="S", help="height of the flat base, mm superior"
+    )
+
+
+def _add_library(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--library", type=Path, default=user_library(), metavar="DIR", help="default: %(default)s"
+    )
+
+
+def _add_output(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="a new one")
+    parser.add_argument("--title", help="default: the name of the new folder")
+
+
+def _add_wishes(parser: argparse.ArgumentParser) -> None:
+    _add_output(parser)
+    _add_plan(parser)
+    parser.add_argument("--source", help="where the images come from (default: the volume's name)")
+    parser.add_argument("--license", default=UNKNOWN_LICENSE, help="under which it may be used")
+    parser.add_argument("--setup", type=Path, metavar="JSON", help="head, table and robot base")
+    parser.add_argument("--seed", type=int, default=1, help="of the proposed tasks (default: 1)")
+    parser.add_argument(
+        "--tasks",
+        nargs="+",
+        type=Path,
+        default=[],
+        metavar="MRK_JSON",
+        help="fiducials placed by hand: the trial run, Task 1, Task 2 …",
+    )
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="only say whether set-up, plan and placed fiducials can be used; make nothing",
+    )
+
+
+def _add_plan(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--target",
+        nargs=4,
+        action="append",
+        default=[],
+        metavar=("NAME", "R", "A", "S"),
+        help="a planned target, RAS mm; may be given several times: the error is told at the first",
+    )
+    parser.add_argument(
+        "--trajectory",
+        nargs=7,
+        metavar=("NAME", "ER", "EA", "ES", "TR", "TA", "TS"),
+        help="a planned trajectory from entry to target, RAS mm",
+    )
+
+
+def _build(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.head_process import head_process
+    from rastrainer_simulator.authoring.make import check_wishes, make_scenario
+    from rastrainer_simulator.authoring.scenario_options import options_of
+
+    _clear_away_when_terminated()
+    wishes = options_of(arguments, arguments.volume.name)
+    if arguments.output.exists() and any(arguments.output.iterdir()):
+        raise InputError(f"{arguments.output} is there already; name a folder that is new.")
+    options = _head_options(arguments)
+    options += ["--no-skull"] if arguments.no_skull or arguments.check else []
+    options += ["--no-volume"] if arguments.no_volume or arguments.check else []
+    with head_process(arguments.volume, options) as process:
+        head = process.head(lambda step, share: print_progress(step, 0.5 * share), print_warning)
+        if arguments.check:
+            check_wishes(head, wishes, print_progress, print_warning)
+            print(ALL_RIGHT)
+            return 0
+        scenario = make_scenario(
+            head,
+            wishes,
+            arguments.output,
+            lambda step, share: print_progress(step, 0.5 + 0.5 * share),
+            None if arguments.no_skull else process.whole,
+            print_warning,
+        )
+    print(
+        f"{scenario.title} is in {arguments.output}; load it with: rastrainer simulator "
+        f"--scenario {arguments.output}"
+    )
+    return 0
+
+
+def _tasks(arguments: argparse.Namespace) -> int:
+    from rastrainer.scenario.draft import read_draft
+    from rastrainer_simulator.authoring.make import check_wishes, make_scenario
+    from rastrainer_simulator.authoring.scenario_options import options_of
+
+    _clear_away_when_terminated()
+    wishes, draft = options_of(arguments, "unknown"), read_draft(arguments.draft)
+    if arguments.check:
+        check_wishes(draft, wishes, print_progress, print_warning)
+        print(ALL_RIGHT)
+    else:
+        make_scenario(draft, wishes, arguments.output, print_progress, warn=print_warning)
+    return 0
+
+
+def _preview(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.head_process import head_process
+    from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
+    from rastrainer_simulator.authoring.preview import draw_preview
+
+    options = [*_head_options(arguments), "--no-skull", "--no-volume"]
+    with head_process(arguments.volume, options) as process:
+        draft = process.head(print_progress, print_warning)
+    scenario = without_tasks(draft, ScenarioOptions("Preview", "none", "none"))
+    draw_preview(arguments.picture, scenario, draft.head)
+    print(draft.method)
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.scenario_check import check_scenario
+
+    wrong = check_scenario(arguments.folder)
+    print("\n".join(wrong) or f"{arguments.folder} is as a scenario must be.")
+    return 1 if wrong else 0
+
+
+def _plan(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.make import copy_with_plan
+    from rastrainer_simulator.authoring.scenario_options import targets_of, title_of, trajectory_of
+
+    scenario = copy_with_plan(
+        arguments.folder,
+        title_of(arguments),
+        arguments.output,
+        targets_of(arguments),
+        trajectory_of(arguments),
+        print_warning,
+    )
+    print(f"{scenario.title} is in {arguments.output}.")
+    return 0
+
+
+def _pack(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.export import pack_for_others
+
+    package = arguments.package
+    taken = pack_for_others(arguments.folder, package, arguments.keep_face, arguments.keep_names)
+    print(f"{package} ({package.stat().st_size / 1e6:.1f} MB)")
+    print(taken)
+    return 0
+
+
+def _unpack(arguments: argparse.Namespace) -> int:
+    print(unpack(arguments.package, arguments.library))
+    return 0
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.assets import asset_path
+
+    for entry in list_scenarios([asset_path("scenarios"), arguments.library]):
+        print(f"{entry.name:<24}{entry.problem or entry.title}  ({entry.folder})")
+    return 0
+
+
+def _clear_away_when_terminated() -> None:
+    """End as an error does, for Slicer cancels so: what is half made and what runs goes too."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+
+
+def _head_options(arguments: argparse.Namespace) -> list[str]:
+    named = (("--threshold", arguments.threshold), ("--cut", arguments.cut))
+    return [f"{name}={value!r}" for name, value in named if value is not None]

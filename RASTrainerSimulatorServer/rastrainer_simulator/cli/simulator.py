@@ -1,0 +1,161 @@
+"""`rastrainer simulator`: the robot, the head and the trial, for Slicer and the views to join."""
+
+from __future__ import annotations
+
+import argparse
+import secrets
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
+
+FASTEST = 1000.0
+LARGEST_SEED = 2**63 - 1
+DEFAULT_RECORDS = Path.home() / "RASTrainer" / "trials"
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "simulator",
+        help="run the simulator, which Slicer and the views connect to",
+        description="Serves OpenIGTLink and the views until Ctrl-C. Not for clinical use.",
+    )
+    parser.add_argument(
+        "--host", default=DEFAULT_HOST, help=f"address to listen on (default: {DEFAULT_HOST})"
+    )
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=DEFAULT_PORT,
+        help=f"port to listen on, 0 for any free one (default: {DEFAULT_PORT})",
+    )
+    parser.add_argument(
+        "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
+    )
+    parser.add_argument(
+        "--view-port",
+        type=int,
+        help="port for the desktop window and the browser, 0 for any free one (default: "
+        f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
+    )
+    parser.add_argument(
+        "--lan",
+        action="store_true",
+        help="serve browsers and headsets in the local network, too, by https with a certificate "
+        "made on this computer",
+    )
+    parser.add_argument(
+        "--no-views", action="store_true", help="serve OpenIGTLink only, no window and no browser"
+    )
+    parser.add_argument(
+        "--speed", type=float, default=1.0, help="simulated seconds a second (default: 1)"
+    )
+    parser.add_argument(
+        "--seed", type=int, help="of the heads' poses (default: one that nobody can guess)"
+    )
+    parser.add_argument(
+        "--records",
+        type=Path,
+        metavar="DIR",
+        default=DEFAULT_RECORDS,
+        help="folder of the trials' journals (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--scenario", type=Path, metavar="DIR", help="a scenario of your own (default: Colin27)"
+    )
+    parser.add_argument(
+        "--robot-meshes", type=Path, metavar="DIR", help="the robot's official meshes"
+    )
+    parser.add_argument(
+        "--desktop",
+        action="store_true",
+        help="open the trainee's window; the simulator ends when it is closed",
+    )
+    parser.add_argument(
+        "--gamepad",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="read the gamepads of this computer",
+    )
+    parser.add_argument(
+        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
+    )
+    parser.add_argument(
+        "--go-on",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="go on with the newest trial where it was interrupted; it waits, paused, to be "
+        "resumed or aborted",
+    )
+    parser.add_argument(
+        "--log-folder",
+        type=Path,
+        metavar="DIR",
+        help="folder of the logs (default: the usual, or logs in that of --config)",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the simulator until it is asked to stop and return the exit status.
+
+    Raises:
+        InputError: an argument, a file or the address cannot be used.
+    """
+    _check(arguments)
+    connect_to = None if arguments.connect is None else _address(arguments.connect)
+    # Only here: the robot and the scenario take time to import.
+    import asyncio
+
+    from rastrainer_simulator.ops.folders import log_folder
+    from rastrainer_simulator.ops.log_files import keep_logs
+    from rastrainer_simulator.server.server import ServerOptions, SimulatorServer
+
+    own = None if arguments.config is None else arguments.config / "logs"
+    logs = arguments.log_folder or own or log_folder()
+    options = ServerOptions(
+        records=arguments.records,
+        host=arguments.host,
+        port=arguments.port,
+        view_port=arguments.view_port,
+        has_views=not arguments.no_views,
+        has_network=arguments.lan,
+        has_gamepad=arguments.gamepad,
+        has_desktop=arguments.desktop,
+        config=arguments.config,
+        logs=logs,
+        resumes=arguments.go_on,
+        connect_to=connect_to,
+        speed=arguments.speed,
+        scenario=arguments.scenario,
+        robot_meshes=arguments.robot_meshes,
+        seed=secrets.randbits(63) if arguments.seed is None else arguments.seed,
+    )
+    with keep_logs(logs, f"simulator-{arguments.port}"):
+        server = SimulatorServer(options)
+        asyncio.run(server.run(lambda where: print(f"RASTrainer simulator {where}", flush=True)))
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    for name, port in (("--port", arguments.port), ("--view-port", arguments.view_port)):
+        if port is not None and not 0 <= port < 65536:
+            raise InputError(f"{name} must be a number from 0 to 65535.")
+    if arguments.no_views and arguments.view_port is not None:
+        raise InputError("--view-port and --no-views exclude each other.")
+    if arguments.no_views and arguments.lan:
+        raise InputError("--lan and --no-views exclude each other.")
+    if arguments.no_views and arguments.desktop:
+        raise InputError("--desktop and --no-views exclude each other.")
+    if not 0.0 < arguments.speed <= FASTEST:
+        raise InputError(f"--speed must be above 0 and at most {FASTEST:g}.")
+    if arguments.seed is not None and not 0 <= arguments.seed <= LARGEST_SEED:
+        raise InputError(f"--seed must be from 0 to {LARGEST_SEED}.")
+
+
+def _address(text: str) -> tuple[str, int]:
+    host, _colon, port = text.rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise InputError("--connect must be HOST:PORT, such as 127.0.0.1:18944.")
+    return host, int(port)

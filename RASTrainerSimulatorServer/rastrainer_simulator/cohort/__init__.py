@@ -1,1 +1,0 @@
-"""Cohorts of virtual trainees who play real trials, on all cores."""

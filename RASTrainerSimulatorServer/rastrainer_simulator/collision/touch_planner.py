@@ -1,0 +1,132 @@
+"""Can the robot touch a place of the head, and how?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from rastrainer_simulator.collision.clearance import Clearance
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import RobotModel
+from rastrainer_simulator.robot.solution import FabrikSettings
+
+LEANING_DEG = (0.0, 20.0, 40.0, 55.0)
+"""How far the tool may lean away from the skin's normal; tried in this order."""
+
+_AZIMUTHS = np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False).tolist()
+_LEANINGS = ((LEANING_DEG[0], 0.0), *product(LEANING_DEG[1:], _AZIMUTHS))
+"""How far each direction leans, degrees, and to which side, rad."""
+
+SWIVELS_DEG = (0.0, 60.0, -60.0)
+"""Turns of the first joint, undone by the third, from which the elbow's place is looked for."""
+
+
+@dataclass(frozen=True)
+class PlannedTouch:
+    """A way to touch a place.
+
+    Attributes:
+        q: seven joint angles, rad.
+        direction: (3,) float, of the tool, from the wrist to the tip, World.
+        leaning_deg: between the direction and the inward normal.
+        clearance: of that posture, m.
+    """
+
+    q: tuple[float, ...]
+    direction: np.ndarray
+    leaning_deg: float
+    clearance: Clearance
+
+
+class TouchPlanner:
+    """Looks for a posture that touches a place with nothing but the tip, inside the joint limits.
+
+    Args:
+        model: the robot.
+        collision: knows the head, and where it stands.
+        clearance: of the links to the head, to each other and to the table, m. The tool's shaft
+            need only be clear of the head: next to the tip it cannot be farther away.
+    """
+
+    def __init__(self, model: RobotModel, collision: Collision, clearance: float = 0.005) -> None:
+        self._collision = collision
+        self._clearance = clearance
+        self._kinematics = make_kinematics(model)
+        # What one pass cannot hold no other can: the rest would only look for what comes nearest.
+        self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
+        self._starts = [_swiveled(model.home, degrees) for degrees in SWIVELS_DEG]
+
+    def touch(self, position: np.ndarray, normal: np.ndarray) -> PlannedTouch | None:
+        """Return a touch of a place of the skin, None where there is none.
+
+        The least leaning of `LEANING_DEG` that works is taken.
+
+        Args:
+            position: (3,) float, World, m.
+            normal: (3,) float, outward unit normal there, World.
+        """
+        for leaning_deg, direction in tool_directions(normal):
+            q = self._posture(position, direction)
+            if q is not None:
+                clearance = self._collision.check(self._kinematics.links(q))
+                return PlannedTouch(q, direction, leaning_deg, clearance)
+        return None
+
+    def working_direction(
+        self, position: np.ndarray, normal: np.ndarray, likely: int = 0
+    ) -> int | None:
+        """Return which of the `tool_directions` works, None where `touch` finds none either.
+
+        The `likely` one is tried first: what has worked in one pose of the head mostly works in
+        others, too, which saves many tries.
+        """
+        frame = _frame(normal)
+        numbers = range(len(_LEANINGS))
+        for number in (likely, *(each for each in numbers if each != likely)):
+            if self._posture(position, _leaning(frame, number)) is not None:
+                return number
+        return None
+
+    def _posture(self, position: np.ndarray, direction: np.ndarray) -> tuple[float, ...] | None:
+        """Return joint angles that touch along a direction; None where there is no room."""
+        for start in self._starts:
+            solution = self._fabrik.solve(position.tolist(), direction.tolist(), q_start=start)
+            if not solution.converged:
+                return None
+            links = self._kinematics.links(solution.q)
+            if self._collision.is_clear(links, self._clearance):
+                return solution.q
+        return None
+
+
+def tool_directions(normal: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
+    """Yield directions of the tool against a normal, and how far each leans, in degrees."""
+    frame = _frame(normal)
+    for number, (leaning_deg, _azimuth) in enumerate(_LEANINGS):
+        yield leaning_deg, _leaning(frame, number)
+
+
+def _frame(normal: np.ndarray) -> np.ndarray:
+    """Return two directions across a unit normal, and the normal, as rows (3, 3)."""
+    across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    across /= np.linalg.norm(across)
+    return np.array([across, np.cross(normal, across), normal])
+
+
+def _leaning(frame: np.ndarray, number: int) -> np.ndarray:
+    leaning, azimuth = np.radians(_LEANINGS[number][0]), _LEANINGS[number][1]
+    across, along, normal = frame
+    aside = np.cos(azimuth) * across + np.sin(azimuth) * along
+    return np.sin(leaning) * aside - np.cos(leaning) * normal
+
+
+def _swiveled(home: tuple[float, ...], degrees: float) -> tuple[float, ...]:
+    q = list(home)
+    q[0] += np.radians(degrees)
+    q[2] -= np.radians(degrees)
+    return tuple(q)

@@ -1,0 +1,1 @@
+"""The simulation: a pure, deterministic function of its state and the input. Start reading here."""

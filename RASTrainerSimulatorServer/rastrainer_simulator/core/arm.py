@@ -1,0 +1,190 @@
+"""The arm in a simulation: its posture, how its joints follow the tip, and where trials start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.collision.clearance import Clearance
+from rastrainer_simulator.collision.contact import Moved
+from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.model import RobotModel
+from rastrainer_simulator.robot.solution import FabrikSettings
+from rastrainer_simulator.teleoperation.axes import Axes
+from rastrainer_simulator.teleoperation.teleoperation import Tip
+from rastrainer_simulator.teleoperation.tool_steering import NearestSurface
+from rastrainer_simulator.vectors import Vector, add, cross, length, scale
+
+Joints = tuple[float, ...]
+
+DOWN: Vector = (0.0, 0.0, -1.0)
+RELAXING_DISTANCE = 0.4
+"""m: over such a path of the tip the arm's redundancy relaxes by the factor e."""
+
+
+@dataclass(frozen=True)
+class Posture:
+    """Where the arm is.
+
+    Attributes:
+        q: seven joint angles, rad.
+        links: LinkToWorld of links 0 to 7, (4, 4) float, m.
+        tool_tip_to_world: (4, 4) float, m.
+        tip: the tip's position and the tool's direction.
+        clearance: to the head, to itself and to the table.
+    """
+
+    q: tuple[float, ...]
+    links: tuple[np.ndarray, ...]
+    tool_tip_to_world: np.ndarray
+    tip: Tip
+    clearance: Clearance
+
+    @property
+    def tool_axes(self) -> Axes:
+        """The axes of the tool's tip: its x, y and z in World."""
+        x, y, z, _ = self.tool_tip_to_world.T.tolist()
+        return Axes(tuple(x[:3]), tuple(y[:3]), tuple(z[:3]))
+
+    @property
+    def surface(self) -> NearestSurface:
+        """The head as the tool sees it."""
+        tip = self.clearance.tip
+        # A shaft that is far is no nearer than the tip, and then the tip alone counts.
+        shaft = self.clearance.shaft or tip
+        return NearestSurface(tip.distance_m, tip.normal, shaft.distance_m, shaft.normal)
+
+
+def moving_links(robot: RobotModel) -> tuple[str, ...]:
+    """Return the names of links 0 to 7: the base, and the first link behind each joint."""
+    first_behind: dict[int, str] = {}
+    for link in robot.links:
+        first_behind.setdefault(link.joint, link.name)
+    return tuple(first_behind[joint] for joint in sorted(first_behind))
+
+
+class Postures:
+    """Makes postures of what `Contact` gives."""
+
+    def __init__(self, robot: RobotModel) -> None:
+        self._tip = robot.tip.name
+        self._links = moving_links(robot)
+
+    def of(self, moved: Moved) -> Posture:
+        """Return the posture in which a motion has ended."""
+        poses = moved.link_to_world
+        tip = poses[self._tip]
+        (ax, _, dx, x), (ay, _, dy, y), (az, _, dz, z), _ = tip.tolist()
+        return Posture(
+            q=moved.q,
+            links=tuple(poses[name] for name in self._links),
+            tool_tip_to_world=tip,
+            tip=Tip((x, y, z), (dx, dy, dz), (ax, ay, az)),
+            clearance=moved.clearance,
+        )
+
+
+class JointMotion:
+    """Moves the joints toward a target of the tip; it keeps no posture itself."""
+
+    def __init__(
+        self, robot: RobotModel, rest: Joints, settings: FabrikSettings | None = None
+    ) -> None:
+        """`rest` are the joint angles (rad) to which the arm's redundancy relaxes."""
+        self._rest = rest
+        self._fabrik = Fabrik(robot, settings)
+        self._fastest = tuple(robot.velocity.tolist())
+
+    def toward(
+        self,
+        start: Joints,
+        tip: Vector,
+        displacement: Vector,
+        direction: Vector | None,
+        dt: float,
+        across: Vector | None = None,
+    ) -> tuple[Joints, bool]:
+        """Return the joint angles after `dt` toward a target, and whether it is within reach.
+
+        The tip, now at `tip` with the joint angles `start`, shall move by `displacement` (World, m)
+        and the tool point along `direction`, a unit vector, None where it is free; `across` is the
+        x axis of its tip, a unit vector perpendicular to `direction`, None where it may roll. The
+        tip's position comes first: where the joint limits forbid the direction, or the joints are
+        too slow for it, the tool turns as far as it can while the tip stays on its straight path.
+        """
+        near = self._relaxed(start, length(displacement))
+        target = add(tip, displacement)
+        if across is None or direction is None:
+            solution = self._fabrik.solve(target, direction, q_start=near)
+        else:
+            rotation = tuple(zip(across, cross(direction, across), direction, strict=True))
+            solution = self._fabrik.solve(target, None, rotation, q_start=near)
+        step = limit_step(start, solution.q, self._fastest, dt)
+        if direction is None or (solution.converged and not step.limited):
+            return step.q, solution.converged
+        share = _share(start, step.q, solution.q) if step.limited else 1.0
+        on_path = add(tip, scale(displacement, share))
+        found = self._fabrik.solve(on_path, q_start=step.q)
+        return limit_step(start, found.q, self._fastest, dt).q, found.converged
+
+    def _relaxed(self, q: Joints, distance: float) -> Joints:
+        """Return the angles a little nearer to rest: FABRIK then brings the tip to its target.
+
+        Without it the elbow would drift as the tip moves until it hangs on a limit or the
+        table. The farther the tip moves, the more: a resting tip moves no joint.
+        """
+        share = distance / RELAXING_DISTANCE
+        return tuple(
+            angle + share * (rest - angle) for angle, rest in zip(q, self._rest, strict=True)
+        )
+
+
+def _share(start: Joints, part: Joints, whole: Joints) -> float:
+    """Return which share of the motion from `start` to `whole` has been made at `part`."""
+    angles = [(abs(b - a), abs(c - a)) for a, b, c in zip(start, part, whole, strict=True)]
+    made, needed = max(angles, key=lambda pair: pair[1])
+    return made / needed
+
+
+def start_joints(robot: RobotModel, scenario: Scenario, height: float) -> tuple[float, ...]:
+    """Return the joint angles with the tip `height` m above the head's target, nominally placed.
+
+    Raises:
+        InputError: the robot cannot get there.
+    """
+    rotation, shift = scenario.head_to_world[:3, :3], scenario.head_to_world[:3, 3]
+    x, y, z = (np.asarray(rotation @ scenario.target_position + shift) / MM_PER_M).tolist()
+    solution = Fabrik(robot).solve((x, y, z + height), DOWN, q_start=robot.home)
+    if not solution.converged:
+        raise InputError(
+            f"The robot cannot reach {height:g} m above the head of {scenario.name}, where trials "
+            f"start: {solution.reason}"
+        )
+    return solution.q
+
+
+class LimitedStep(NamedTuple):
+    """Joint angles (rad) for this tick, and whether the goal had to wait."""
+
+    q: tuple[float, ...]
+    limited: bool
+
+
+def limit_step(
+    q: Sequence[float], goal: Sequence[float], velocity: Sequence[float], dt: float
+) -> LimitedStep:
+    """Return the step from `q` toward `goal` (rad) within `velocity` (rad/s) for a tick of `dt` s.
+
+    All joints are slowed alike, so they arrive together and each keeps between its start and goal.
+    """
+    steps = [b - a for a, b in zip(q, goal, strict=True)]
+    slowest = max([abs(step) / (speed * dt) for step, speed in zip(steps, velocity, strict=True)])
+    if slowest <= 1.0:
+        return LimitedStep(tuple(goal), False)
+    return LimitedStep(tuple([a + step / slowest for a, step in zip(q, steps, strict=True)]), True)

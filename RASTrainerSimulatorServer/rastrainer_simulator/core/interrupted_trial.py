@@ -1,0 +1,179 @@
+"""The trial that was open when a simulator ended: what its journal says about where to resume it.
+
+The state machine of the trial is led through the recorded commands again; the arm takes the last
+recorded posture. Nothing is simulated, so that it takes no time and no version of the arm's
+mathematics can change it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.journal.folder import newest_journal
+from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
+from rastrainer.protocol import CommandName, Proximity, check_arguments
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.operator_input import OperatorCommand
+from rastrainer_simulator.state import StartingPoint
+from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED
+from rastrainer_simulator.training.touch_rule import TouchMoment
+from rastrainer_simulator.vectors import Vector, vector
+
+_OVER = frozenset({"registered", "aborted", "attempt"})
+_EFFECTS: Mapping[str, frozenset[str]] = {
+    CommandName.START_TASK: frozenset({"phase"}),
+    CommandName.CAPTURE: frozenset({"touch", "rejected"}),
+    CommandName.UNDO: frozenset({"undo"}),
+    CommandName.PAUSE: frozenset({"phase"}),
+    CommandName.RESUME: frozenset({"phase"}),
+    RECORDING_FAILED: frozenset({"phase"}),
+}
+"""The kinds of entries that show that a command was carried out."""
+_NOWHERE: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class InterruptedTrial:
+    """Where a trial is to be resumed.
+
+    Attributes:
+        entries: of the journal so far.
+        revision_before: of the training state before the trial.
+        steps: the commands that were carried out, each with its moment; the last one pauses.
+        point: the tick and the time of the last line, and the view as last chosen.
+        q: joint angles of the last sample, rad; None before the first.
+        proximity: as last recorded.
+        is_within_reach: as last recorded.
+        obstacle: as last recorded.
+    """
+
+    entries: Sequence[Mapping[str, Any]]
+    revision_before: int
+    steps: tuple[tuple[OperatorCommand, TouchMoment], ...]
+    point: StartingPoint
+    q: tuple[float, ...] | None
+    proximity: Proximity
+    is_within_reach: bool
+    obstacle: str
+
+    @property
+    def header(self) -> Mapping[str, Any]:
+        """The journal's first line."""
+        return self.entries[0]
+
+    @classmethod
+    def of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
+        """Return what the entries of a journal say; None where no trial is left open.
+
+        Raises:
+            InputError: the entries are not those of a trial.
+        """
+        try:
+            return cls._of(entries)
+        except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+            raise InputError(
+                f"An entry of the journal is not as it should be ({error!r})."
+            ) from None
+
+    @classmethod
+    def _of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
+        if any(entry["kind"] in _OVER for entry in entries):
+            return None
+        header = entries[0]
+        steps = list(_steps(entries, header["tickS"]))
+        if not steps:
+            return None
+        last = max(entries, key=lambda entry: entry["tick"])
+        steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTime"], _NOWHERE, 0.0)))
+        latest = {entry["kind"]: entry for entry in entries}
+        reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
+        return cls(
+            entries=tuple(entries),
+            revision_before=header["before"]["revision"],
+            steps=tuple(steps),
+            point=StartingPoint(last["tick"], last["simTime"], camera=_camera(entries)),
+            q=tuple(map(float, latest["sample"]["q"])) if "sample" in latest else None,
+            proximity=Proximity(latest["proximity"]["to"] if "proximity" in latest else "free"),
+            is_within_reach=reach["isWithinReach"],
+            obstacle=reach["obstacle"],
+        )
+
+
+def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | None:
+    """Return the journal of the trial begun last in a folder, and where to resume it.
+
+    None where that trial was registered or aborted: who has begun another trial since has left an
+    older one behind.
+
+    Raises:
+        InputError: that journal was altered, or cannot be read.
+    """
+    path = newest_journal(folder)
+    if path is None or path.stat().st_size == 0:
+        return None
+    reading = read_journal(path)
+    if reading.integrity is Integrity.ALTERED:
+        raise InputError(f"{reading.path} is {reading.sentence}; the trial cannot be continued.")
+    trial = InterruptedTrial.of(reading.entries) if reading.entries else None
+    return None if trial is None else (reading, trial)
+
+
+def recorded_command(entry: Mapping[str, Any]) -> OperatorCommand:
+    """Return a recorded command; its arguments are checked anew, as the file may be forged.
+
+    Raises:
+        InputError: they are not those of the protocol.
+    """
+    name = entry["name"]
+    arguments = {key: value for key, value in entry["arguments"].items() if value is not None}
+    if name == RECORDING_FAILED:
+        return OperatorCommand(name, arguments)
+    own = {"trialId": arguments.pop("trialId")} if name == CommandName.START_TASK else {}
+    return OperatorCommand(name, check_arguments(name, arguments) | own, 0, entry["sender"])
+
+
+def _steps(
+    entries: Sequence[Mapping[str, Any]], tick_s: float
+) -> Iterator[tuple[OperatorCommand, TouchMoment]]:
+    """Yield what changed the trial.
+
+    A command whose effect is not in the journal was refused, or the server ended before the effect
+    was written: no client has seen it.
+    """
+    for _tick, group in itertools.groupby(entries, key=lambda entry: entry["tick"]):
+        together = list(group)
+        for place, entry in enumerate(together):
+            if entry["kind"] == "continued":
+                yield OperatorCommand(INTERRUPTED), TouchMoment(entry["since"], _NOWHERE, 0.0)
+            if entry["kind"] != "command" or entry["name"] not in _EFFECTS:
+                continue
+            kinds = _EFFECTS[entry["name"]]
+            effect = next((each for each in together[place:] if each["kind"] in kinds), None)
+            if effect is not None:
+                # Commands are carried out at the state reached, one tick before their line.
+                tip = vector(map(_metres, effect.get("positionMm", _NOWHERE)))
+                # Older journals lack it: then every height counted.
+                clearance = float(effect.get("clearanceMm", 0.0)) / MM_PER_M
+                yield (
+                    recorded_command(entry),
+                    TouchMoment(entry["simTime"] - tick_s, tip, clearance),
+                )
+
+
+def _camera(entries: Sequence[Mapping[str, Any]]) -> str | None:
+    """Return the view that was chosen last."""
+    chosen = [e["camera"] for e in entries if e["kind"] in ("camera", "continued")]
+    return chosen[-1] if chosen else entries[0]["before"]["camera"]
+
+
+def _metres(value_mm: float) -> float:
+    """Return the number that times 1000 is the given one to the last bit."""
+    near = value_mm / MM_PER_M
+    candidates = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+    return next((each for each in candidates if MM_PER_M * each == value_mm), near)

@@ -1,0 +1,324 @@
+"""One tick of everything: input, trial, motion, contact, state. No clock, no socket, no file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.protocol import CommandName, Phase, Proximity
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.contact import Contact, Moved
+from rastrainer_simulator.collision.plan_reach import PlanReach
+from rastrainer_simulator.collision.pressing import Pressing
+from rastrainer_simulator.collision.proximity import next_proximity
+from rastrainer_simulator.collision.table_clearance import Surroundings
+from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
+from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.state import (
+    Answer,
+    Event,
+    EventKind,
+    Motion,
+    PlanInWorld,
+    SimulationState,
+    StartingPoint,
+    StepResult,
+)
+from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
+from rastrainer_simulator.teleoperation.commanded_motion import MotionOutcome, commanded_motion
+from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
+from rastrainer_simulator.training.phase_rules import refusal
+from rastrainer_simulator.training.touch_rule import TouchMoment
+from rastrainer_simulator.training.training import Training, TrainingReply
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.vectors import Vector, subtract, vector
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
+
+BEHIND_THE_TOOL = ("links", "self", "table")
+"""Parts of the arm that the trainee does not steer and that may still be in the way."""
+
+
+class Simulation:
+    """The robot, the head and the trial.
+
+    `step` is deterministic: the same setup, seed and inputs give the same states to the last bit.
+    A trial always starts with the arm above the head and nothing left over from before: a replay
+    needs nothing but the trial's own inputs.
+    """
+
+    def __init__(self, setup: SimulationSetup, seed: int, texts: Texts | None = None) -> None:
+        """Build the scene; takes about a second, most of it for the head's surface."""
+        settings = setup.settings
+        self.setup = setup
+        self._texts = texts or Texts()
+        self._training = Training(setup.scenario, seed, settings.training, self._texts)
+        self._view = SceneView(setup.scenario, settings.camera, settings.axes)
+        self._teleoperation = Teleoperation(settings.teleoperation)
+        head = read_head_mesh(setup.scenario.head_mesh)
+        self._head_base = head.base / MM_PER_M
+        self._collision = _collision(setup, head)
+        kinematics = make_kinematics(setup.robot)
+        self.kinematics_name = type(kinematics).__name__
+        self._contact = Contact(self._collision, kinematics)
+        self._plan_reach = PlanReach(setup.robot, kinematics, self._collision)
+        self._postures = Postures(setup.robot)
+        self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
+        self._joint_motion = JointMotion(setup.robot, self._start, settings.fabrik)
+        self._put_in_place()
+        self.state = self._state(0, 0.0, Motion.NONE)
+
+    @property
+    def truth(self) -> Truth:
+        """Where the head is: secret until the trial is scored."""
+        return self._training.truth
+
+    @property
+    def trial_seed(self) -> int:
+        """The seed of the head's pose in the present trial: as secret as the pose."""
+        return self._training.trial_seed
+
+    def continue_from(self, point: StartingPoint) -> None:
+        """Count ticks, time and revisions on from another simulation, before the first step."""
+        self._training.continue_from(point.revision)
+        self._view.camera = point.camera or self._view.camera
+        self.state = self._state(point.tick, point.sim_time, Motion.NONE)
+
+    def resume_trial(
+        self, interrupted: InterruptedTrial, point: StartingPoint | None = None
+    ) -> None:
+        """Resume a trial of a journal, in place of any other, before the next step.
+
+        The arm stands as in the last sample: where the trainee has left it. `point` is where ticks,
+        time and view continue if not from the journal's last line.
+        """
+        point = point or interrupted.point
+        self._training.resume_trial(interrupted.revision_before, interrupted.steps)
+        self._put_in_place(interrupted.q)
+        self._proximity = interrupted.proximity
+        self._is_within_reach = interrupted.is_within_reach
+        self._obstacle = interrupted.obstacle
+        self._view.camera = point.camera or self._view.camera
+        self.state = self._state(point.tick, point.sim_time, Motion.NONE)
+
+    def step(self, dt: float, operator_input: OperatorInput) -> StepResult:
+        """Carry out the commands at the state reached, then move on by `dt` seconds."""
+        before = self.state
+        events: list[Event] = []
+        answers: list[Answer] = []
+        for command in operator_input.commands:
+            reply = self._carry_out(command, before.sim_time)
+            events.extend(reply.events)
+            answers.append(Answer(command.ticket, reply.ok, reply.message, reply.data))
+            if self._training.truth is not self._placed:
+                self._put_in_place()
+        proximity = self._proximity
+        motion_request = self._motion_request(dt, operator_input)
+        sim_time = before.sim_time + dt
+        if motion_request.ended is not None:
+            events.append(_ended(motion_request.ended, sim_time))
+        if motion_request.motion is not Motion.NONE:
+            events.extend(self._move(dt, motion_request, sim_time))
+            if motion_request.motion is Motion.STICK:
+                self._operator = operator_input.operator
+        self.state = self._state(before.tick + 1, sim_time, motion_request.motion)
+        if self._proximity is not proximity:
+            events.append(_proximity(proximity, self.state, self._pressing, sim_time))
+        return StepResult(self.state, tuple(events), tuple(answers))
+
+    def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
+        if self._training.handles(command.name):
+            posture = self._posture
+            tip_m = posture.clearance.tip_m
+            now = TouchMoment(sim_time, posture.tip.position, tip_m, self._pressing.depth)
+            return self._training.handle(command, now)
+        sentence = refusal(command, self._training.state, self._texts)
+        if sentence is not None:
+            return TrainingReply(False, sentence)
+        arguments = command.arguments
+        if command.name == CommandName.LIST_TASKS:
+            scenario = self.setup.scenario
+            names = {"scenario": scenario.name, "title": scenario.title}
+            return TrainingReply(True, data={**names, "tasks": self._tasks()})
+        if command.name == CommandName.SET_CAMERA:
+            self._view.camera = arguments["camera"]
+            return TrainingReply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
+        if command.name == CommandName.PLAN_TARGET:
+            return self._plan(arguments, sim_time)
+        tool = self._posture.tool_axes
+        self._teleoperation.start(commanded_motion(command, self._view.camera_axes, tool))
+        self._operator = command.sender
+        return TrainingReply(True)
+
+    def _plan(self, arguments: Mapping[str, Any], sim_time: float) -> TrainingReply:
+        """Show what was planned and answer whether the robot can carry it out."""
+        position, entry = _meters(arguments["positionMm"]), arguments["entryMm"]
+        entry = None if entry is None else _meters(entry)
+        answer = self._plan_reach.judge(position, entry)
+        self._view.planned_target = PlanInWorld(
+            arguments["name"], position, entry, answer.reachable
+        )
+        event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
+        return TrainingReply(True, data=answer._asdict(), events=(event,))
+
+    def _tasks(self) -> list[dict[str, object]]:
+        return [
+            {"name": task.name, "title": task.title, "complexity": task.complexity}
+            for task in self.setup.scenario.tasks
+        ]
+
+    def _motion_request(self, dt: float, operator_input: OperatorInput) -> MotionRequest:
+        """Return what the operator wants; while the trial is paused the arm stands still."""
+        if self._training.state.phase is Phase.PAUSED:
+            stopped = self._teleoperation.stop()
+            return MotionRequest(Motion.NONE, ended=MotionOutcome.STOPPED if stopped else None)
+        axes = self._view.stick_axes
+        posture = self._posture
+        return self._teleoperation.step(dt, operator_input, posture.tip, axes, posture.surface)
+
+    def _put_in_place(self, q: Joints | None = None) -> None:
+        """Put the head where the trial has it, and the arm where trials start, or at `q`."""
+        self._placed = self._training.truth
+        head_to_world = np.array(self._placed.head_to_world)
+        head_to_world[:3, 3] /= MM_PER_M
+        self._head_to_world = head_to_world
+        self._stand_to_world = stand_pose(head_to_world, self._head_base)
+        self._collision.set_head_pose(head_to_world)
+        self._contact.head_has_moved()
+        self._posture = self._postures.of(self._contact.at(q or self._start))
+        self._proximity = Proximity.FREE
+        self._pressing = Pressing()
+        self._is_within_reach = True
+        self._obstacle = ""
+        self._operator = ""
+        self._teleoperation.stop()
+        self._view.planned_target = None
+
+    def _move(self, dt: float, motion_request: MotionRequest, sim_time: float) -> list[Event]:
+        """Carry out a request as far as arm, head and table allow."""
+        before = self._is_within_reach, self._obstacle
+        tip = self._posture.tip.position
+        moved = self._moved(dt, motion_request)
+        if moved.stopped_by in BEHIND_THE_TOOL and motion_request.direction is not None:
+            # The turn of the tool may be what the arm has no room for: the tip comes first.
+            moved = self._moved(dt, replace(motion_request, direction=None, across=None))
+        self._posture = self._postures.of(moved)
+        settings = self.setup.settings.proximity
+        self._proximity = next_proximity(self._proximity, moved.clearance, settings)
+        self._press(motion_request, tip)
+        self._obstacle = moved.stopped_by if moved.stopped_by in BEHIND_THE_TOOL else ""
+        if before == (self._is_within_reach, self._obstacle):
+            return []
+        data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
+        return [Event(EventKind.REACH, sim_time, data)]
+
+    def _press(self, motion_request: MotionRequest, before: Vector) -> None:
+        """Measure how far the tool is pressed in after a motion of the tip from `before`."""
+        if self._proximity is not Proximity.CONTACT:
+            self._pressing.end()
+            return
+        tip, clearance = self._posture.tip.position, self._posture.clearance
+        to_goal = None if motion_request.goal is None else subtract(motion_request.goal, tip)
+        self._pressing.move(motion_request.displacement, subtract(tip, before), clearance, to_goal)
+
+    def _moved(self, dt: float, motion_request: MotionRequest) -> Moved:
+        q, tip = self._posture.q, self._posture.tip.position
+
+        def to_joints(allowed: Vector) -> Joints:
+            joints, self._is_within_reach = self._joint_motion.toward(
+                q, tip, allowed, motion_request.direction, dt, motion_request.across
+            )
+            return joints
+
+        return self._contact.move(q, motion_request.displacement, to_joints)
+
+    def _state(self, tick: int, sim_time: float, motion: Motion) -> SimulationState:
+        posture = self._posture
+        return SimulationState(
+            tick=tick,
+            sim_time=sim_time,
+            q=posture.q,
+            tool_tip_to_world=posture.tool_tip_to_world,
+            link_to_world=posture.links,
+            head_to_world=self._head_to_world,
+            stand_to_world=self._stand_to_world,
+            proximity=self._proximity,
+            clearance=posture.clearance.tool_m,
+            training=self._training.state,
+            elapsed=self._training.elapsed(sim_time),
+            motion=motion,
+            operator=self._operator,
+            camera=self._view.camera,
+            planned_target=self._view.planned_target,
+            depth=self._pressing.depth,
+        )
+
+
+class SceneView:
+    """The chosen camera and the planned target."""
+
+    def __init__(self, scenario: Scenario, camera: str, choice: AxesChoice) -> None:
+        self._choice = choice
+        self._axes_of_cameras = {
+            name: camera_axes(
+                tuple((view.focal_point - view.position).tolist()), tuple(view.view_up.tolist())
+            )
+            for name, view in scenario.cameras.items()
+        }
+        self.camera = camera
+        self.planned_target: PlanInWorld | None = None
+
+    @property
+    def camera_axes(self) -> Axes:
+        """Right, forward and up as the chosen camera sees them."""
+        return self._axes_of_cameras[self.camera]
+
+    @property
+    def stick_axes(self) -> Axes:
+        """Right, forward and up as the sticks mean them."""
+        return self.camera_axes if self._choice is AxesChoice.CAMERA else ROBOT_AXES
+
+
+def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """Return StandToWorld, (4, 4) float, m; `base` is the middle of the head's base, (3,) float."""
+    stand_to_world = np.eye(4)
+    stand_to_world[:3, 3] = head_to_world[:3, :3] @ base + head_to_world[:3, 3]
+    return stand_to_world
+
+
+def _collision(setup: SimulationSetup, head: HeadMesh) -> Collision:
+    surroundings = Surroundings(
+        stand_radius=setup.scenario.furniture.stand_diameter / 2.0 / MM_PER_M
+    )
+    return Collision(setup.shape, head.vertices / MM_PER_M, head.triangles, surroundings)
+
+
+def _meters(position_mm: Sequence[float]) -> Vector:
+    return vector(value / MM_PER_M for value in position_mm)
+
+
+def _ended(outcome: MotionOutcome, sim_time: float) -> Event:
+    return Event(EventKind.MOTION, sim_time, {"outcome": outcome.value})
+
+
+def _proximity(
+    before: Proximity, state: SimulationState, pressing: Pressing, sim_time: float
+) -> Event:
+    data: dict[str, Any] = {
+        "from": before.value,
+        "to": state.proximity.value,
+        "clearanceMm": MM_PER_M * state.clearance,
+    }
+    if before is Proximity.CONTACT:
+        data["depthMm"] = MM_PER_M * pressing.deepest
+    return Event(EventKind.PROXIMITY, sim_time, data)

@@ -1,0 +1,93 @@
+"""Save what the window shows as a picture of the best quality.
+
+Software rendering takes seconds for that, and the window must not freeze: a trainee may be moving
+the arm. So a process of its own draws it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import pickle
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.writing import make_private_folder
+from rastrainer.processes.private_folder import python_words
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.rendering.offscreen import write_png
+
+MODULE = "rastrainer_simulator.desktop.screenshot_process"
+INPUT_ERROR_STATUS = 2
+"""Exit status of a process that says in one sentence what is wrong."""
+
+
+@dataclass(frozen=True)
+class Screenshot:
+    """Everything that the picture is made of; the members of the inbox are as there.
+
+    The pairing code is left out: a picture is shown to others.
+    """
+
+    path: Path
+    size: tuple[int, int]
+    quality: Quality
+    scene: LoadedScene | None
+    state: Mapping[str, Any] | None
+    screen: Screen | None
+    problem: str
+    holder: str
+
+    @classmethod
+    def of(cls, inbox: Inbox, path: Path, size: tuple[int, int], quality: Quality) -> Screenshot:
+        """Return what the inbox says now; `size` is in pixels."""
+        members = (inbox.scene, inbox.state, inbox.screen, inbox.problem, inbox.holder)
+        return cls(path, size, quality, *members)
+
+    def inbox(self) -> Inbox:
+        """Return an inbox that says the same again."""
+        inbox = Inbox()
+        inbox.scene, inbox.state = self.scene, self.state
+        inbox.screen, inbox.problem, inbox.holder = self.screen, self.problem, self.holder
+        return inbox
+
+
+def picture_path(folder: Path) -> Path:
+    """Return a path in a folder, named after the time."""
+    name = datetime.now().strftime("rastrainer-%Y%m%d-%H%M%S-%f")
+    return folder / f"{name[:-3]}.png"
+
+
+def write_picture(pixels: np.ndarray, path: Path) -> None:
+    """Write (height, width, 3) uint8 pixels as a PNG, in a folder that need not exist.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    try:
+        make_private_folder(path.parent)
+    except OSError as error:
+        raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
+    write_png(pixels, path)
+
+
+async def save_screenshot(screenshot: Screenshot) -> None:
+    """Draw and write the picture.
+
+    Raises:
+        InputError: it cannot be drawn or written.
+    """
+    pipe = asyncio.subprocess.PIPE
+    process = await asyncio.create_subprocess_exec(*python_words(MODULE), stdin=pipe, stderr=pipe)
+    _, errors = await process.communicate(pickle.dumps(screenshot))
+    if process.returncode == INPUT_ERROR_STATUS:
+        raise InputError(errors.decode(errors="replace").strip().rpartition("\n")[2])
+    if process.returncode != 0:
+        raise InputError(f"The picture {screenshot.path} cannot be drawn.")

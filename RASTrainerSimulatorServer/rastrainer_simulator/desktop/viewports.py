@@ -1,0 +1,149 @@
+"""The picture: the scene through two cameras, and a layer for what is laid over it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
+
+from rastrainer_simulator.desktop.camera import CameraTransition, Viewpoint
+from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.panels import theme
+from rastrainer_simulator.desktop.panels.canvas import Box
+from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.desktop.shown_scene import ShownScene
+from rastrainer_simulator.rendering.lighting import Shadows, light_room
+
+BACKGROUND = (0.62, 0.65, 0.68)
+KEY_LIGHT = ((-0.25, -0.55, 0.80), 0.86)
+FILL_LIGHT = ((0.75, -0.60, 0.25), 0.30)
+
+
+class Viewports:
+    """Main view, inset and overlay of one window.
+
+    Attributes:
+        main: renderer of the chosen camera.
+        overlay: renderer for two-dimensional actors.
+        wants_inset: whether a second view is shown.
+    """
+
+    def __init__(self, window: GlWindow, quality: Quality):
+        self._window = window
+        self.main, self._inset, self.overlay = vtkRenderer(), vtkRenderer(), vtkRenderer()
+        window.render_window.SetNumberOfLayers(2)
+        self.overlay.SetLayer(1)
+        self.overlay.InteractiveOff()
+        for renderer in (self.main, self._inset, self.overlay):
+            renderer.AutomaticLightCreationOff()
+            window.render_window.AddRenderer(renderer)
+        for renderer in (self.main, self._inset):
+            renderer.SetBackground(*BACKGROUND)
+        self._scene: ShownScene | None = None
+        self._cameras: dict[str, Viewpoint] = {}
+        self._chosen = ("", 0.0)
+        self._transition: CameraTransition | None = None
+        self.quality = quality
+        self.wants_inset = True
+        self._light()
+
+    def show(self, scene: ShownScene, cameras: Mapping[str, Viewpoint]) -> None:
+        """Show another scene."""
+        for renderer in (self.main, self._inset):
+            renderer.RemoveAllViewProps()
+            for actor in scene.actors:
+                renderer.AddActor(actor)
+        scene.finish(self.quality.is_physical)
+        self._scene, self._cameras, self._transition = scene, dict(cameras), None
+
+    def set_quality(self, quality: Quality) -> None:
+        """Light the scene better, or faster."""
+        self.quality = quality
+        self._light()
+        if self._scene is not None:
+            self._scene.finish(quality.is_physical)
+
+    def choose(self, camera: str, now: float, aside: float = 0.0) -> None:
+        """Have the main view go to a camera, and the inset show another.
+
+        `aside` pushes the main picture to the right, in halves of its width.
+        """
+        if camera not in self._cameras:
+            return
+        viewpoint = replace(self._cameras[camera], aside=aside)
+        if self._transition is None:
+            self._transition = CameraTransition(viewpoint)
+        elif (camera, aside) != self._chosen:
+            self._transition.start(viewpoint, now)
+        self._chosen = (camera, aside)
+
+    def is_moving(self, now: float) -> bool:
+        """Return whether the main view's camera is on its way."""
+        return self._transition is not None and self._transition.is_moving(now)
+
+    @property
+    def cameras(self) -> Collection[str]:
+        """Names of the views there are."""
+        return self._cameras.keys()
+
+    @property
+    def inset_box(self) -> Box:
+        """Where the inset is, in pixels from the upper left corner."""
+        width, height = self._window.size
+        unit = theme.scale_of(width, height)
+        margin = round(theme.MARGIN * unit)
+        wide = round(theme.INSET_SHARE * theme.REFERENCE_SIZE[0] * unit)
+        high = round(theme.INSET_SHARE * theme.REFERENCE_SIZE[1] * unit)
+        return Box(width - margin - wide, margin, wide, high)
+
+    @property
+    def has_inset(self) -> bool:
+        """Whether the second view is to be seen."""
+        return self.wants_inset and self._transition is not None and len(self._cameras) > 1
+
+    def prepare(self, now: float) -> None:
+        """Set cameras and viewports for the picture at `now` (s)."""
+        self._inset.SetDraw(self.has_inset)
+        if self._transition is None:
+            return
+        self._transition.at(now).look(self.main)
+        width, height = self._window.size
+        box = self.inset_box
+        self._inset.SetViewport(
+            box.left / width,
+            1.0 - (box.top + box.height) / height,
+            (box.left + box.width) / width,
+            1.0 - box.top / height,
+        )
+        other = next((name for name in self._cameras if name != self._chosen[0]), self._chosen[0])
+        self._cameras[other].look(self._inset)
+
+    def _light(self) -> None:
+        for renderer in (self.main, self._inset):
+            renderer.RemoveAllLights()
+            if renderer.GetPass() is not None:
+                renderer.GetPass().ReleaseGraphicsResources(self._window.render_window)
+            # None takes them away again, of which VTK's stubs do not know.
+            renderer.SetPass(None)  # type: ignore[arg-type]
+            renderer.UseFXAAOff()
+            renderer.UseImageBasedLightingOff()
+            renderer.SetEnvironmentTexture(None)  # type: ignore[arg-type]
+        if not self.quality.is_physical:
+            for renderer in (self.main, self._inset):
+                for direction, intensity in (KEY_LIGHT, FILL_LIGHT):
+                    renderer.AddLight(_plain_light(direction, intensity))
+            return
+        has_shadows = self.quality is Quality.HIGH
+        light_room(self.main, Shadows.FULL if has_shadows else Shadows.NONE)
+        light_room(self._inset, Shadows.SMALL if has_shadows else Shadows.NONE)
+
+
+def _plain_light(direction: tuple[float, float, float], intensity: float) -> vtkLight:
+    light = vtkLight()
+    light.SetLightTypeToSceneLight()
+    light.PositionalOff()
+    light.SetPosition(*direction)
+    light.SetFocalPoint(0.0, 0.0, 0.0)
+    light.SetIntensity(intensity)
+    return light

@@ -1,1 +1,0 @@
-"""`rastrainer doctor`: is all there that training needs, and what to do where it is not."""

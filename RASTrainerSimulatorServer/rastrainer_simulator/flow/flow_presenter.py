@@ -1,0 +1,319 @@
+"""The flow's presenter: controls, flow and feedback, as the views and the server see them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+
+from rastrainer.protocol import Mode
+from rastrainer_simulator.flow.flow import Flow
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.flow.session.session import FlowServices, TrainingSession
+from rastrainer_simulator.input.bindings import Bindings
+from rastrainer_simulator.input.control_name import ControlContext, ControlName
+from rastrainer_simulator.input.controls import Controls
+from rastrainer_simulator.input.inputs import (
+    SIMULATOR_SEAT,
+    InputDevice,
+    Source,
+    SourceKind,
+    w3c_gamepad_inputs,
+)
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.loop.subscribers import Subscribers
+from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, FeedbackEvent
+from rastrainer_simulator.net.views.presenter import Control, Feedback, Frames, Hello, ViewUpdate
+from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
+from rastrainer_simulator.record.display_use import DisplayReport
+from rastrainer_simulator.replay.playback import PlaybackSwitch
+from rastrainer_simulator.state import StepResult
+
+REFRESH_S = 0.1
+"""How often a screen is made anew though nothing was pressed: its clock, distances and axes."""
+
+_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
+"""What a view's own buttons mean while a menu is open: those of a headset have no bindings."""
+
+
+class FlowPresenter:
+    """A `Presenter` for one trainee.
+
+    Everything but what the control loop calls belongs to one thread. `advance` is to be called
+    some hundred times a second; nothing here waits.
+
+    Attributes:
+        controls: what the operator holds.
+        shown: the states that the views show.
+        rumble: has the simulator's gamepads vibrate with a strength of 0 to 1 for so many seconds.
+        screen: what is read.
+        control: who holds the control.
+    """
+
+    def __init__(
+        self,
+        control_loop: ControlLoop,
+        services: FlowServices,
+        bindings: Bindings,
+        preferences: Preferences,
+    ) -> None:
+        self._control_loop = control_loop
+        self.shown = PlaybackSwitch(control_loop)
+        self.controls = Controls(bindings, self)
+        self._session = TrainingSession(
+            control_loop, self.controls, services, preferences, self.happened
+        )
+        self._flow = Flow(self._session, control_loop)
+        self.rumble: Callable[[float, float], None] = _nothing_vibrates
+        self._results: deque[StepResult] = deque()
+        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
+        self._views: dict[int, Hello] = {}
+        self._silent: set[int] = set()
+        self._lasting: dict[str, tuple[str, Mapping[str, object]]] = {}
+        self._number = 0
+        self._sent_sticks = HANDS_OFF
+        self._is_changed = True
+        self._since_refresh = 0.0
+        self.screen: Screen = self._flow.screen()
+        self.control = Control()
+        self._unsubscribe = control_loop.subscribe(self._take_tick)
+
+    def close(self) -> None:
+        """Let go of the sticks and of the control loop."""
+        self._unsubscribe()
+        self._flow.close()
+        self.shown.close()
+        self._control_loop.hold_sticks(HANDS_OFF)
+
+    def advance(self, dt: float) -> None:
+        """Advance by `dt` seconds."""
+        while self._results:
+            self._flow.take(self._results.popleft())
+            self._is_changed = True
+        self.controls.advance(dt)
+        self._flow.advance(dt, self._control_loop.latest)
+        self._settle()
+        self._since_refresh += dt
+        if self._is_changed or self._since_refresh >= REFRESH_S:
+            self._refresh()
+
+    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
+        """Have `listener` called with each new screen, feedback and holder of the control."""
+        return self._subscribers.add(listener)
+
+    def view_joined(self, view: int, hello: Hello) -> None:
+        """Take note of a view; with a headset the next trial is one in a headset."""
+        self._views[view] = hello
+        self._choose_mode(hello)
+
+    def view_left(self, view: int) -> None:
+        """Forget a view; nobody sees the trial any more if it was the trainee's."""
+        self._lose_sight(view, "unseen.left")
+        self._choose_mode(self._views.pop(view, None))
+        self._silent.discard(view)
+        self._settle()
+
+    def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
+        """Take a key: what it types, where a text has the focus, or what it does."""
+        source = self._source(SourceKind.KEYBOARD, view)
+        if is_down and self._types(source, code, text):
+            self._is_changed = True
+            return
+        self.controls.set_key(source, code, is_down)
+        self._settle()
+
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        """Take a gamepad that a browser reads."""
+        source = self._source(SourceKind.BROWSER_GAMEPAD, view)
+        self.controls.set_inputs(source, w3c_gamepad_inputs(axes, buttons))
+        self._settle()
+
+    def on_sticks(
+        self,
+        view: int,
+        translation: tuple[float, float, float],
+        rotation: tuple[float, float],
+        is_fine: bool,
+    ) -> None:
+        """Take the sticks of XR controllers."""
+        sticks = OperatorInput(translation, rotation, is_fine)
+        self.controls.set_sticks(self._source(SourceKind.XR, view), sticks)
+        self._settle()
+
+    def on_press(self, view: int, control: str) -> None:
+        """Take one press of a control; a name that is none does nothing."""
+        if control not in ControlName._value2member_map_:
+            return
+        name = ControlName(control)
+        if self._flow.situation is ControlContext.MENU:
+            name = _IN_MENUS.get(name, name)
+        self.controls.press(self._source(SourceKind.XR, view), name)
+        self._settle()
+
+    def on_item(self, view: int, name: str) -> None:
+        """Take a click on an item of the menu."""
+        if self.controls.allows(self._source(SourceKind.MOUSE, view)):
+            self._session.pages.choose(name)
+            self._is_changed = True
+            self._settle()
+
+    def on_text(self, view: int, name: str, value: str) -> None:
+        """Take what now stands in a text item."""
+        if self.controls.allows(self._source(SourceKind.KEYBOARD, view)):
+            self._session.pages.write(name, value)
+            self._is_changed = True
+
+    def on_frames(self, view: int, frames: Frames) -> None:
+        """Take how smoothly a view draws; what the trainee looks at is recorded."""
+        self._silent.discard(view)
+        hello = self._views.get(view)
+        if hello is None or view != self._watched():
+            return
+        report = DisplayReport(
+            hello.kind, hello.device, frames.refresh_hz, frames.shown, frames.dropped
+        )
+        self._control_loop.note_display(report)
+
+    def on_visibility(self, view: int, is_visible: bool) -> None:
+        """Pause the trial when the one who operates no longer sees it, and free the control."""
+        if not is_visible:
+            self._lose_sight(view, "unseen.hidden")
+            self._settle()
+
+    def on_silence(self, view: int) -> None:
+        """Pause the trial when its picture stands still, and free the control."""
+        self._lose_sight(view, "unseen.still")
+        self._silent.add(view)
+        self._settle()
+
+    def pressed(self, control: ControlName) -> None:
+        """A control was pressed by the operator."""
+        self._flow.pressed(control)
+        self._is_changed = True
+        self._settle()
+
+    def input_pressed(self, device: InputDevice, name: str) -> bool:
+        """An input was pressed; return whether an open page wants it for itself."""
+        page = self._session.pages.top
+        self._is_changed = True
+        return page is not None and page.input_pressed(device, name)
+
+    def taken_over(self, source: Source) -> None:
+        """Another operator has taken the control."""
+        name = self._session.texts.say(f"source.{source.kind.value}")
+        self._session.notice(self._session.texts.say("control.taken", source=name))
+        self._flow.taken_over()
+        self._is_changed = True
+
+    def refused(self, _source: Source) -> None:
+        """Say to somebody who wants to operate how to."""
+        holder = self.controls.holder
+        if holder is None:
+            return
+        name = self._session.texts.say(f"source.{holder.kind.value}")
+        menu = self._session.texts.say("control.menu")
+        text = self._session.texts.say("control.held", source=name, menu=menu)
+        self._session.notice(text, Tone.WARNING)
+        self._is_changed = True
+
+    def warn(self, about: str, key: str = "", **values: object) -> None:
+        """Show a warning until it is called off by an empty key."""
+        self._lasting.pop(about, None)
+        if key:
+            self._lasting[about] = key, values
+        self._is_changed = True
+
+    def happened(self, what: FeedbackEvent) -> None:
+        """Let something be heard and felt, once."""
+        effect = FEEDBACK_EFFECTS[what]
+        preferences = self._session.preferences
+        self._number += 1
+        feedback = Feedback(
+            number=self._number,
+            kind=what.value,
+            sound=effect.sound,
+            volume=0.0 if preferences.muted else preferences.volume / 100.0,
+            rumble=effect.rumble,
+            data={"rumbleMs": round(1000.0 * effect.seconds)},
+        )
+        if effect.rumble > 0.0:
+            self.rumble(effect.rumble, effect.seconds)
+        self._publish(feedback)
+
+    def _watched(self) -> int | None:
+        """Return the view that the trainee looks at: a headset, else the one that is operated."""
+        # A headset whose network broke comes back as another view, long before the first has left.
+        heard = [each for each in reversed(self._views.items()) if each[0] not in self._silent]
+        by_kind = {hello.kind: view for view, hello in heard}
+        holder = self.controls.holder
+        operated = None if holder is None else holder.view
+        choices = (by_kind.get("headset"), operated, by_kind.get("desktop"), by_kind.get("page"))
+        return next((view for view in choices if view is not None), None)
+
+    def _lose_sight(self, view: int, why: str) -> None:
+        """Let go of what is worked without being seen; `why` is the key of a sentence."""
+        if view == self._watched():
+            self._flow.pause(why)
+        for kind in SourceKind:
+            self.controls.forget(self._source(kind, view))
+
+    def _choose_mode(self, changed: Hello | None) -> None:
+        """Let the next trial be one in a headset while there is one; people may choose again."""
+        if changed is not None and changed.kind == "headset":
+            has_headset = any(hello.kind == "headset" for hello in self._views.values())
+            self._session.mode = (Mode.HMD if has_headset else Mode.DESKTOP).value
+
+    def _take_tick(self, result: StepResult) -> None:
+        """Keep a tick in which something happened; called in the control loop's thread."""
+        if result.events:
+            self._results.append(result)
+
+    def _source(self, kind: SourceKind, view: int) -> Source:
+        """Return a view's source; the simulator's own windows share a seat with its gamepad."""
+        hello = self._views.get(view)
+        is_own = hello is not None and hello.kind == "desktop"
+        return Source(kind, SIMULATOR_SEAT if is_own else f"view {view}", view)
+
+    def _types(self, source: Source, code: str, text: str) -> bool:
+        """Let a key type into the text that has the focus; return whether it did."""
+        item = self._session.pages.text_item()
+        is_deleting = code == "Backspace"
+        if item is None or not (is_deleting or (len(text) == 1 and text.isprintable())):
+            return False
+        if not self.controls.allows(source):
+            return True
+        value = item.value[:-1] if is_deleting else item.value + text
+        self._session.pages.write(item.name, value)
+        return True
+
+    def _settle(self) -> None:
+        """Pass on what follows at once: what is shown, the situation, the sticks, the control."""
+        self.shown.show(self._flow.playback)
+        self.controls.enter(self._flow.situation)
+        sticks = self.controls.sticks
+        if sticks != self._sent_sticks:
+            self._sent_sticks = sticks
+            self._control_loop.hold_sticks(sticks)
+        holder = self.controls.holder
+        control = Control() if holder is None else Control(holder.kind.value, holder.view)
+        if control != self.control:
+            self.control = control
+            self._publish(control)
+            self._is_changed = True
+
+    def _refresh(self) -> None:
+        self._is_changed = False
+        self._since_refresh = 0.0
+        say = self._session.texts.say
+        warnings = (say(key, **values) for key, values in self._lasting.values())
+        screen = self._flow.screen(tuple(ScreenMessage(text, Tone.WARNING) for text in warnings))
+        if screen != self.screen:
+            self.screen = screen
+            self._publish(screen)
+
+    def _publish(self, update: ViewUpdate) -> None:
+        self._subscribers.publish(update)
+
+
+def _nothing_vibrates(strength: float, seconds: float) -> None:
+    """Stand in for a gamepad."""

@@ -1,0 +1,126 @@
+"""The presenter in the simulator's process: its settings files, its gamepads and its pace."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from rastrainer.errors import InputError, RASTrainerError
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.session.preferences import (
+    PREFERENCES_FILE,
+    Preferences,
+    read_preferences,
+)
+from rastrainer_simulator.flow.session.session import FlowServices
+from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
+from rastrainer_simulator.input.inputs import SIMULATOR_SEAT, Source, SourceKind
+from rastrainer_simulator.loop.control_loop import ControlLoop
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.input.gamepads import Gamepads
+
+PERIOD_S = 0.005
+"""Time between two looks at the gamepad."""
+QUIET_S = 0.01
+"""The same where none is plugged in; what views send is taken as it comes."""
+LONGEST_STEP_S = 0.1
+"""A machine that was asleep does not make up for it."""
+
+_log = logging.getLogger(__name__)
+
+T = TypeVar("T")
+
+
+class RunningPresenter:
+    """A presenter, its gamepads, and what keeps both going.
+
+    When a gamepad is unplugged the robot stops at once and a warning says so; the trial continues,
+    because the keyboard can take over, and may be paused by it.
+
+    Attributes:
+        presenter: what the views look at.
+    """
+
+    def __init__(
+        self, control_loop: ControlLoop, services: FlowServices, has_gamepad: bool
+    ) -> None:
+        """Read the settings and start SDL where gamepads are wanted; that may take 0.2 s."""
+        config = services.config
+        bindings, complaint = _read(config / BINDINGS_FILE, read_bindings, DEFAULT_BINDINGS)
+        preferences, other = _read(config / PREFERENCES_FILE, read_preferences, Preferences())
+        self.presenter = FlowPresenter(control_loop, services, bindings, preferences)
+        self._sources: dict[int, Source] = {}
+        self._gamepads: Gamepads | None = None
+        for reason in filter(None, (complaint, other)):
+            self.presenter.warn(reason, "warning.settings", reason=reason)
+        if has_gamepad:
+            self._gamepads = self._started()
+
+    async def run(self) -> None:
+        """Keep the presenter going; never returns."""
+        before = time.monotonic()
+        while True:
+            await asyncio.sleep(PERIOD_S if self._sources else QUIET_S)
+            now = time.monotonic()
+            self.advance(min(now - before, LONGEST_STEP_S))
+            before = now
+
+    def advance(self, dt: float) -> None:
+        """Read the gamepads and advance by `dt` seconds."""
+        if self._gamepads is not None:
+            self._gamepads.poll()
+        self.presenter.advance(dt)
+
+    def close(self) -> None:
+        """Let go of everything."""
+        self.presenter.close()
+        if self._gamepads is not None:
+            self._gamepads.close()
+
+    def gamepad_came(self, number: int, name: str) -> None:  # noqa: ARG002
+        """A gamepad was plugged in: the first sits at the simulator's own seat."""
+        taken = {source.seat for source in self._sources.values()}
+        seat = SIMULATOR_SEAT if SIMULATOR_SEAT not in taken else f"gamepad {number}"
+        self._sources[number] = Source(SourceKind.GAMEPAD, seat, number=number)
+        self.presenter.warn("gamepad")
+
+    def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
+        """A gamepad has moved."""
+        self.presenter.controls.set_inputs(self._sources[number], inputs)
+
+    def gamepad_went(self, number: int, name: str) -> None:
+        """A gamepad was unplugged: what it held is let go."""
+        self.presenter.controls.forget(self._sources.pop(number))
+        self.presenter.warn("gamepad", "warning.unplugged", name=name)
+
+    def gamepad_unknown(self, name: str) -> None:
+        """A gamepad cannot be used."""
+        self.presenter.warn("gamepad", "warning.unmapped", name=name)
+
+    def _started(self) -> Gamepads | None:
+        from rastrainer_simulator.input.gamepads import Gamepads
+
+        try:
+            gamepads = Gamepads(self)
+        except RASTrainerError as error:
+            _log.warning("Gamepads cannot be read: %s.", error)
+            self.presenter.warn("gamepad", "warning.no SDL", reason=str(error))
+            return None
+        self.presenter.rumble = gamepads.rumble
+        return gamepads
+
+
+def _read(path: Path, read: Callable[[Path], T], default: T) -> tuple[T, str]:
+    """Return what a settings file holds, or the default and why."""
+    if not path.exists():
+        return default, ""
+    try:
+        return read(path), ""
+    except InputError as error:
+        _log.warning("%s", error)
+        return default, str(error)

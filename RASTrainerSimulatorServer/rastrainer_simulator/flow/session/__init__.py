@@ -1,0 +1,1 @@
+"""What every page shares: the session, who trains, and what is chosen."""

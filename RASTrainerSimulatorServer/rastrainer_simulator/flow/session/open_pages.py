@@ -1,0 +1,209 @@
+"""What a page is, which pages are open one over the other, and which item has the focus."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import ClassVar
+
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
+from rastrainer_simulator.net.views.screen import ItemKind, Menu, MenuItem, Screen
+
+_STEPS = {ControlName.LEFT: -1, ControlName.RIGHT: 1}
+_MOVES = {ControlName.UP: -1, ControlName.DOWN: 1}
+
+
+class Page:
+    """What is shown, and what its items do.
+
+    Attributes:
+        name: of the menu.
+        steps_when_accepted: whether accepting a choice goes to its next option.
+        first: name of the item that has the focus at first; "" is the first that can be chosen.
+    """
+
+    name: ClassVar[str] = ""
+    steps_when_accepted: ClassVar[bool] = True
+    first: str = ""
+
+    def menu(self) -> Menu:
+        """Return what is shown, without a focus."""
+        raise NotImplementedError
+
+    def screen(self) -> Screen | None:
+        """Return what is read in place of a menu; None where the menu is."""
+        return None
+
+    def accept(self, item: str) -> None:
+        """An item that can be chosen was."""
+
+    def step(self, item: str, direction: int) -> None:
+        """A choice goes to its next (1) or previous (−1) option."""
+
+    def write(self, item: str, value: str) -> None:
+        """A text item has another value."""
+
+    def back(self) -> None:
+        """The trainee wants to leave."""
+        raise NotImplementedError
+
+    def pressed_menu(self) -> None:
+        """The control for the menu was pressed."""
+        self.back()
+
+    def input_pressed(self, device: InputDevice, name: str) -> bool:  # noqa: ARG002
+        """An input was pressed; return whether the page wants nothing more to come of it."""
+        return False
+
+    def pressed(self, control: ControlName) -> bool:  # noqa: ARG002
+        """A control was pressed; return whether that was all."""
+        return False
+
+    def advance(self, dt: float) -> None:
+        """Advance by `dt` seconds."""
+
+    def closed(self) -> None:
+        """It is not open any more."""
+
+
+class OpenPages:
+    """The open pages; none while the trainee works.
+
+    Attributes:
+        home: makes the page that all others lie over.
+    """
+
+    def __init__(self, happened: Callable[[FeedbackEvent], None]) -> None:
+        self.home: Callable[[], Page] = _no_home
+        self._happened = happened
+        self._open: list[Page] = []
+        self._focus: list[str] = []
+
+    @property
+    def top(self) -> Page | None:
+        """The page that is shown."""
+        return self._open[-1] if self._open else None
+
+    def show(self, page: Page | None) -> None:
+        """Close all pages and open one, or none."""
+        while self._open:
+            self.close()
+        if page is not None:
+            self.open(page)
+
+    def show_start(self) -> None:
+        """Close all pages but the first."""
+        self.show(self.home())
+
+    def open(self, page: Page) -> None:
+        """Open a page over the others."""
+        self._open.append(page)
+        self._focus.append(page.first)
+
+    def close(self) -> None:
+        """Close the page that is shown."""
+        if self._open:
+            self._focus.pop()
+            self._open.pop().closed()
+
+    def replace(self, page: Page) -> None:
+        """Show a page in place of the one that is shown."""
+        self.close()
+        self.open(page)
+
+    def menu(self) -> Menu | None:
+        """Return what is shown, with the focus."""
+        page = self.top
+        if page is None:
+            return None
+        menu = page.menu()
+        return dataclasses.replace(menu, focus=self._focused(menu))
+
+    def pressed(self, control: ControlName) -> None:
+        """Take a control of the menus."""
+        page = self.top
+        if page is None or page.pressed(control):
+            return
+        if control in _MOVES:
+            self.move(_MOVES[control])
+        elif control in _STEPS:
+            self._step(_STEPS[control])
+        elif control is ControlName.ACCEPT:
+            self.choose(self._focused(page.menu()))
+        elif control is ControlName.BACK:
+            self._happened(FeedbackEvent.ACCEPT)
+            page.back()
+        elif control is ControlName.MENU:
+            self._happened(FeedbackEvent.ACCEPT)
+            page.pressed_menu()
+
+    def move(self, direction: int) -> None:
+        """Move the focus to the next (1) or previous (−1) item, around the ends."""
+        page = self.top
+        if page is None:
+            return
+        menu = page.menu()
+        names = [item.name for item in menu.items if item.kind is not ItemKind.AXIS]
+        if names:
+            place = names.index(self._focused(menu)) + direction
+            self._focus[-1] = names[place % len(names)]
+            self._happened(FeedbackEvent.FOCUS)
+
+    def choose(self, name: str) -> None:
+        """Choose an item: press a button, step a choice, go to a text."""
+        page, item = self.top, self._item(name)
+        if page is None or item is None:
+            return
+        self._focus[-1] = name
+        if not item.is_enabled:
+            self._happened(FeedbackEvent.ERROR)
+            return
+        self._happened(FeedbackEvent.ACCEPT)
+        if item.kind is ItemKind.CHOICE and page.steps_when_accepted:
+            page.step(name, 1)
+        else:
+            page.accept(name)
+
+    def write(self, name: str, value: str) -> None:
+        """Put a value into a text item."""
+        page, item = self.top, self._item(name)
+        if page is not None and item is not None and item.kind is ItemKind.TEXT:
+            self._focus[-1] = name
+            page.write(name, value)
+
+    def text_item(self) -> MenuItem | None:
+        """Return the text item that has the focus, None where it is another."""
+        item = self._focused_item()
+        return item if item is not None and item.kind is ItemKind.TEXT else None
+
+    def _step(self, direction: int) -> None:
+        page, item = self.top, self._focused_item()
+        if page is None or item is None or item.kind is not ItemKind.CHOICE:
+            return
+        if not item.is_enabled:
+            self._happened(FeedbackEvent.ERROR)
+            return
+        self._happened(FeedbackEvent.FOCUS)
+        page.step(item.name, direction)
+
+    def _focused_item(self) -> MenuItem | None:
+        return None if self.top is None else self._item(self._focused(self.top.menu()))
+
+    def _item(self, name: str) -> MenuItem | None:
+        items = () if self.top is None else self.top.menu().items
+        return next((item for item in items if item.name == name), None)
+
+    def _focused(self, menu: Menu) -> str:
+        """Return the item with the focus: the first that can be chosen, where it is gone."""
+        items = [item for item in menu.items if item.kind is not ItemKind.AXIS]
+        names = [item.name for item in items]
+        if self._focus[-1] in names:
+            return self._focus[-1]
+        chosen = next((item.name for item in items if item.is_enabled), "")
+        return chosen or (names[0] if names else "")
+
+
+def _no_home() -> Page:
+    raise RuntimeError("There is no home page yet.")

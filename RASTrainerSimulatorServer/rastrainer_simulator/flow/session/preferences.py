@@ -1,0 +1,119 @@
+"""What is chosen at the simulator: language, sound, speeds, whose axes, which order."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import read_json
+from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
+from rastrainer.protocol import TouchRule
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
+
+PREFERENCES_FILE = "preferences.json"
+MOST_BYTES = 2**14
+
+
+@dataclasses.dataclass(frozen=True)
+class Preferences:
+    """Each is one of its `OPTIONS`.
+
+    Attributes:
+        language: of everything the trainee reads.
+        volume: of the sounds, percent.
+        muted: whether there are none.
+        order: "fixed" where a task waits for the one before it, "any" by the instructor's leave.
+        coarse: fastest travel of the tip, mm/s.
+        fine: the same while the trigger for fine speed is held, mm/s.
+        axes: whose right, forward and up the sticks follow.
+        direction: who decides the tool's direction.
+        touch: whether a touch has to be on the skin.
+    """
+
+    language: str = "en"
+    volume: int = 70
+    muted: bool = False
+    order: str = "fixed"
+    coarse: int = 150
+    fine: int = 20
+    axes: str = AxesChoice.CAMERA.value
+    direction: str = ToolDirection.CLEAR.value
+    touch: str = TouchRule.ON_SKIN.value
+
+    def stepped(self, name: str, direction: int) -> Preferences:
+        """Return the preferences with one of them moved to its next or previous option."""
+        options = OPTIONS[name]
+        place = (options.index(getattr(self, name)) + direction) % len(options)
+        return dataclasses.replace(self, **{name: options[place]})
+
+    def applied_to(self, settings: SimulationSettings) -> SimulationSettings:
+        """Return the simulation's settings as preferred."""
+        teleoperation = settings.teleoperation
+        return dataclasses.replace(
+            settings,
+            axes=AxesChoice(self.axes),
+            training=dataclasses.replace(settings.training, touch_rule=TouchRule(self.touch)),
+            teleoperation=dataclasses.replace(
+                teleoperation,
+                coarse_speed=self.coarse / MM_PER_M,
+                fine_speed=self.fine / MM_PER_M,
+                steering=dataclasses.replace(
+                    teleoperation.steering, choice=ToolDirection(self.direction)
+                ),
+            ),
+        )
+
+
+OPTIONS: Mapping[str, tuple[Any, ...]] = {
+    "language": tuple(LANGUAGES),
+    "volume": tuple(range(0, 101, 10)),
+    "muted": (False, True),
+    "order": ("fixed", "any"),
+    "coarse": (50, 100, 150, 200, 300),
+    "fine": (5, 10, 20, 40),
+    "axes": tuple(choice.value for choice in AxesChoice),
+    "direction": tuple(choice.value for choice in ToolDirection),
+    "touch": tuple(rule.value for rule in TouchRule),
+}
+
+OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch")
+"""Preferences that a running trial must not change: they are in its record."""
+
+
+def read_preferences(path: Path) -> Preferences:
+    """Return the preferences of a file; what it leaves out is as by default.
+
+    Raises:
+        InputError: the file cannot be read, or holds what is no option.
+    """
+    values = read_json(path, MOST_BYTES)
+    if not isinstance(values, dict) or not values.keys() <= OPTIONS.keys():
+        raise InputError(f"{path} must be a JSON object with any of {', '.join(OPTIONS)}.")
+    for name, value in values.items():
+        options = OPTIONS[name]
+        if not any(type(value) is type(option) and value == option for option in options):
+            listed = ", ".join(json.dumps(option) for option in options)
+            raise InputError(f"{path}: {name} must be one of {listed}.")
+    return Preferences(**values)
+
+
+def write_preferences(path: Path, preferences: Preferences) -> None:
+    """Save the preferences.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    try:
+        make_private_folder(path.parent)
+    except OSError as error:
+        raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
+    write_text(path, json.dumps(dataclasses.asdict(preferences), indent=2) + "\n")
+    keep_others_out(path)

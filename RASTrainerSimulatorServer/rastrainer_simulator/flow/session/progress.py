@@ -1,0 +1,57 @@
+"""Which tasks of which head each trainee has done, by the journals and this session's trials."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+
+from rastrainer.journal.journal_file import (
+    LONGEST_LINE,
+    NO_LINE,
+    DamagedLineError,
+    decode_line,
+)
+from rastrainer.protocol import TRIAL_RUN
+
+_TAIL_BYTES = 1 << 16
+_REGISTERED = b'"kind":"registered"'
+
+
+class DoneTasks:
+    """Counts a task as done when it was registered, and the trial run when it was begun."""
+
+    def __init__(self, records: Path) -> None:
+        """Look through the folder's journals: at the first line and the end of each."""
+        self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
+        for path in sorted(records.glob("*.journal")):
+            self._take(path)
+
+    def note(self, trainee: str, scenario: str, task: str) -> None:
+        """Take note of a scenario's task that was done."""
+        self._done[trainee, scenario].add(task)
+
+    def has_done(self, trainee: str, scenario: str, task: str) -> bool:
+        """Return whether a trainee has done a scenario's task."""
+        return task in self._done.get((trainee, scenario), ())
+
+    def missing_before(
+        self, trainee: str, scenario: str, task: str, order: Sequence[str]
+    ) -> str | None:
+        """Return the first task that has to be done before another; None where none is missing."""
+        done = self._done.get((trainee, scenario), ())
+        return next((name for name in order[: order.index(task)] if name not in done), None)
+
+    def _take(self, path: Path) -> None:
+        """Take note of a journal; one that cannot be read counts for nothing."""
+        try:
+            with path.open("rb") as file:
+                header = decode_line(file.readline(LONGEST_LINE).rstrip(b"\n"), 1, NO_LINE)
+                file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
+                is_registered = _REGISTERED in file.read(_TAIL_BYTES)
+            what = header["trainee"], header["scenario"]["name"], header["task"]
+        except (OSError, KeyError, TypeError, DamagedLineError):
+            return
+        is_text = all(isinstance(word, str) for word in what)
+        if is_text and (is_registered or header["task"] == TRIAL_RUN):
+            self.note(*what)

@@ -1,0 +1,295 @@
+"""What all pages share: who trains, what is chosen, and what the simulator can do for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.journal.folder import journals_of
+from rastrainer.protocol import OPEN_PHASES, CommandName, Mode
+from rastrainer.scenario.library import ListedScenario
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.flow.session.commands import Commands
+from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer_simulator.flow.session.preferences import (
+    PREFERENCES_FILE,
+    Preferences,
+    write_preferences,
+)
+from rastrainer_simulator.flow.session.progress import DoneTasks
+from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
+from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.controls import Controls
+from rastrainer_simulator.input.inputs import InputDevice, SourceKind
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
+from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.replay.recorded_trial import TrialLoading
+from rastrainer_simulator.state import Answer, SimulationState, TrainingState
+from rastrainer_simulator.vectors import Vector
+
+NOTICE_S = 5.0
+SET_UP_AFTER_S = 1.0
+"""A simulation takes a second to make: who steps through the options shall not wait for each."""
+"""The phases of a trial that can still be changed."""
+
+
+@dataclass(frozen=True)
+class FlowServices:
+    """What the flow needs of the process that it runs in.
+
+    Attributes:
+        config: folder of the settings files.
+        records: folder of the trials' journals.
+        use_settings: has the simulation continue with other settings, between two trials.
+        list_scenarios: lists the scenarios that `use_scenario` takes by their names.
+        use_scenario: has the simulation continue with another scenario, between two trials.
+        is_slicer_connected: says whether a client is connected over OpenIGTLink.
+        quit: ends the process.
+        study: knows what a study that Slicer leads asks of the trainees.
+    """
+
+    config: Path
+    records: Path
+    use_settings: Callable[[SimulationSettings], Future[Answer]]
+    list_scenarios: Callable[[], Future[list[ListedScenario]]]
+    use_scenario: Callable[[str], Future[Answer]]
+    is_slicer_connected: Callable[[], bool]
+    quit: Callable[[], None]
+    study: StudySteps = field(default_factory=StudySteps)
+
+
+class TrainingSession:
+    """The trainee's choices and the services behind the pages.
+
+    Attributes:
+        trainee: what was typed as the trainee's ID.
+        mode: "desktop" or "hmd".
+        has_read_introduction: whether the pages before the experiment menu can be skipped.
+        preferences: what is chosen in the settings.
+        texts: say everything in the chosen language.
+        progress: which tasks each trainee has done.
+        pages: which are open.
+        happened: gives feedback by sound and vibration.
+        list_scenarios: lists the heads to train on.
+        is_slicer_connected: says whether Slicer is connected.
+        quit: ends the simulator.
+        study: knows what a study asks of each trainee next.
+    """
+
+    def __init__(
+        self,
+        control_loop: ControlLoop,
+        controls: Controls,
+        services: FlowServices,
+        preferences: Preferences,
+        happened: Callable[[FeedbackEvent], None],
+    ) -> None:
+        self.trainee = ""
+        self.mode = Mode.DESKTOP.value
+        self.has_read_introduction = False
+        self.preferences = preferences
+        self.texts = Texts(LANGUAGES[preferences.language])
+        self.progress = DoneTasks(services.records)
+        self.happened = happened
+        self.pages = OpenPages(happened)
+        self.list_scenarios = services.list_scenarios
+        self.is_slicer_connected = services.is_slicer_connected
+        self.quit = services.quit
+        self.study = services.study
+        self._services = services
+        self._control_loop = control_loop
+        self._controls = controls
+        self._commands = Commands(control_loop.submit, self._refused)
+        self._wanted_settings: SimulationSettings | None = None
+        self._set_up_in = 0.0
+        self._setting_up: Future[Answer] | None = None
+        self._time = 0.0
+        self._notices: list[tuple[float, ScreenMessage]] = []
+        self.state: SimulationState = control_loop.latest
+
+    @property
+    def training(self) -> TrainingState:
+        """Where the trial stands."""
+        return self.state.training
+
+    @property
+    def has_open_trial(self) -> bool:
+        """Whether a trial can still be changed."""
+        return self.training.phase in OPEN_PHASES
+
+    @property
+    def tip(self) -> Vector:
+        """Where the tool's tip is, World, m."""
+        return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
+
+    @property
+    def setup(self) -> SimulationSetup:
+        """What the present simulation was made from."""
+        return self._control_loop.setup
+
+    @property
+    def scenario(self) -> Scenario:
+        """The head and the tasks."""
+        return self.setup.scenario
+
+    @property
+    def bindings(self) -> Bindings:
+        """Which input does what."""
+        return self._controls.bindings
+
+    @property
+    def held(self) -> OperatorInput:
+        """How the operator's sticks stand."""
+        return self._controls.held
+
+    @property
+    def device(self) -> InputDevice:
+        """What the operator has in their hands."""
+        holder = self._controls.holder
+        keys = holder is not None and holder.kind in (SourceKind.KEYBOARD, SourceKind.MOUSE)
+        return InputDevice.KEYBOARD if keys else InputDevice.GAMEPAD
+
+    @property
+    def is_being_set_up(self) -> bool:
+        """Whether other settings of the simulation, or another scenario, are on their way."""
+        return self._setting_up is not None or self._wanted_settings is not None
+
+    def is_typing_possible(self, kinds: tuple[SourceKind, ...]) -> bool:
+        """Return whether what the operator uses is one of these."""
+        holder = self._controls.holder
+        return holder is not None and holder.kind in kinds
+
+    def advance(self, dt: float, state: SimulationState) -> None:
+        """Take the newest state, and what has been answered within `dt` seconds."""
+        self._time += dt
+        self.state = state
+        self._commands.poll()
+        self._set_up_in -= dt
+        if self._setting_up is not None and self._setting_up.done():
+            answer = self._setting_up.result()
+            self._setting_up = None
+            if not answer.ok:
+                self.complain(answer.message)
+        may_set_up = self._setting_up is None and self._set_up_in <= 0.0
+        if self._wanted_settings is not None and may_set_up and not self.has_open_trial:
+            self._setting_up = self._services.use_settings(self._wanted_settings)
+            self._wanted_settings = None
+
+    def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
+        """Have a command carried out."""
+        holder = self._controls.holder
+        sender = "" if holder is None else holder.kind.value
+        try:
+            self._commands.do(command, sender, arguments or {})
+        except InputError as error:
+            self.complain(str(error))
+
+    def prefer(self, preferences: Preferences) -> None:
+        """Take on other preferences and save them."""
+        before = self._control_loop.setup.settings
+        self.preferences = preferences
+        self.texts = Texts(LANGUAGES[preferences.language])
+        wanted = preferences.applied_to(before)
+        is_needed = wanted != before or self._setting_up is not None
+        self._wanted_settings = wanted if is_needed else None
+        self._set_up_in = SET_UP_AFTER_S
+        path = self._services.config / PREFERENCES_FILE
+        self._save(lambda: write_preferences(path, preferences))
+
+    def use_scenario(self, name: str) -> None:
+        """Continue with another scenario, as soon as it is loaded."""
+        if not self.is_being_set_up:
+            self._setting_up = self._services.use_scenario(name)
+
+    def load_trial(self) -> TrialLoading:
+        """Begin to load the present trial from its journal.
+
+        Raises:
+            InputError: the journal is not there any more.
+        """
+        found = journals_of(self._services.records, self.training.trial_id)
+        if not found:
+            raise InputError(self.texts.say("replay.no journal"))
+        return TrialLoading(found[0], self._control_loop.setup)
+
+    def rebind(self, bindings: Bindings) -> None:
+        """Take on other bindings and save them."""
+        self._controls.bindings = bindings
+        path = self._services.config / BINDINGS_FILE
+        self._save(lambda: write_bindings(path, bindings))
+
+    def notice(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+        """Show a sentence for some seconds."""
+        self._notices = [each for each in self._notices if each[1].text != text]
+        self._notices.append((self._time + NOTICE_S, ScreenMessage(text, tone)))
+
+    def complain(self, text: str) -> None:
+        """Say what went wrong."""
+        self.notice(self.texts.again(text), Tone.ERROR)
+        self.happened(FeedbackEvent.ERROR)
+
+    def notices(self) -> tuple[ScreenMessage, ...]:
+        """Return the sentences that are still to be shown."""
+        self._notices = [each for each in self._notices if each[0] > self._time]
+        return tuple(message for _, message in self._notices)
+
+    def task_title(self, name: str) -> str:
+        """Return what people call a task."""
+        key = f"task.{name}"
+        if key in self.texts:
+            return self.texts.say(key)
+        titles = {task.name: task.title for task in self.scenario.tasks}
+        return titles.get(name, name)
+
+    def step_sentence(self, step: StudyStep) -> str:
+        """Return the sentence about a study's step."""
+        left = self.study.break_left_s(step.trainee)
+        return step_sentence(self.texts, step, self.task_title(step.task), self.duration(left))
+
+    def label(self, control: ControlName) -> str:
+        """Return the first input of a control on what the operator has in their hands."""
+        holder = self._controls.holder
+        of_headset = f"headset.{control.value}"
+        if holder is not None and holder.kind is SourceKind.XR and of_headset in self.texts:
+            return self.texts.say(of_headset)
+        return self.input_label(self.device, self.bindings.table(self.device)[control][0])
+
+    def pair_label(self, first: ControlName, second: ControlName) -> str:
+        """Return the first inputs of two controls that belong together."""
+        return pair_label(self.label(first), self.label(second))
+
+    def input_labels(self, device: InputDevice, control: ControlName) -> str:
+        """Return all inputs of a control."""
+        names = self.bindings.table(device)[control]
+        return ", ".join(self.input_label(device, name) for name in names)
+
+    def input_label(self, device: InputDevice, name: str) -> str:
+        """Return what an input is called."""
+        return input_label(self.texts, device.value, name)
+
+    def duration(self, seconds: float) -> str:
+        """Return minutes and seconds, such as 03:21."""
+        whole = int(seconds)
+        return f"{whole // 60:02d}:{whole % 60:02d}"
+
+    def _save(self, write: Callable[[], None]) -> None:
+        try:
+            write()
+        except InputError as error:
+            self.complain(str(error))
+
+    def _refused(self, command: str, sentence: str) -> None:
+        # A touch that does not count comes as an event of its own, with its own sound.
+        if command != CommandName.CAPTURE:
+            self.complain(sentence)

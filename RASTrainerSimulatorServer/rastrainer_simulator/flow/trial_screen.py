@@ -1,0 +1,230 @@
+"""What the trainee reads while driving the arm."""
+
+from __future__ import annotations
+
+import math
+
+from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, Proximity, StepKind
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.flow.pages.start import StartPage
+from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
+from rastrainer_simulator.flow.path_arc import (
+    BACK_WITHIN,
+    FARTHEST,
+    PathArc,
+    direction_words,
+    in_m,
+)
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
+from rastrainer_simulator.state import Event, EventKind
+from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.vectors import Vector, distance
+
+TRIAL_RUN_S = 300.0
+"""How long the trial run is free (the paper's flow, figure 4)."""
+
+PRESSED_MM = 0.5
+"""How deep the tool may be pressed into the head before the depth is shown."""
+STEP_MM = 5.0
+"""The distance to the target is shown in such steps: a running figure cannot be read."""
+DEPTH_STEP_MM = 0.5
+"""The same of the depth: a screen reader says each change of a warning."""
+
+
+class TrialScreen:
+    """The instructions, warnings and hints of an open trial, and its controls."""
+
+    def __init__(self, session: TrainingSession) -> None:
+        self._session = session
+        self._points: dict[str, Vector] = {}
+        self._center: Vector = (0.0, 0.0, 0.0)
+        self._is_beside = False
+        self._obstacle = ""
+        self._is_within_reach = True
+        self._was_refused = False
+        self._is_practice_end_shown = False
+        self._practice_step: StudyStep | None = None
+        self._practice_end_s: float | None = None
+
+    def take(self, event: Event) -> None:
+        """Take note of what happened."""
+        if event.kind is EventKind.REACH:
+            self._is_within_reach = event.data["isWithinReach"]
+            self._obstacle = event.data["obstacle"]
+        elif event.kind in (EventKind.TOUCH, EventKind.UNDO, EventKind.REJECTED, EventKind.PHASE):
+            self._was_refused = event.kind is EventKind.REJECTED
+
+    @property
+    def is_practice_over(self) -> bool:
+        """Whether the trial run's minutes have passed."""
+        state = self._session.state
+        return state.training.task == TRIAL_RUN and state.elapsed >= self._practice_s
+
+    @property
+    def _practice_s(self) -> float:
+        """The trial's time at which the trial run's minutes are over: a study sets its own.
+
+        It stays when Slicer continues the study, a moment before or after it.
+        """
+        state = self._session.state
+        step = self._session.study.step_of(state.training.trainee)
+        is_new = step is not self._practice_step
+        if step is not None and step.kind == StepKind.TRIAL_RUN and is_new:
+            self._practice_step = step
+            self._practice_end_s = state.elapsed + step.left_s()
+        return TRIAL_RUN_S if self._practice_end_s is None else self._practice_end_s
+
+    def has_practice_just_ended(self) -> bool:
+        """Return whether the trial run's minutes have just passed; true once a trial."""
+        if self._is_practice_end_shown or self._session.training.phase is not Phase.RUNNING:
+            return False
+        self._is_practice_end_shown = self.is_practice_over
+        return self._is_practice_end_shown
+
+    def begin(self, points: dict[str, Vector], center: Vector) -> None:
+        """Forget the trial before; points and the head's center are in World, m."""
+        self._points = points
+        self._center = center
+        self._is_beside = self._was_refused = self._is_practice_end_shown = False
+        self._obstacle, self._is_within_reach = "", True
+        self._practice_step, self._practice_end_s = None, None
+
+    def pressed(self, control: ControlName) -> None:
+        """Do what a control is for while the arm is driven."""
+        session = self._session
+        phase = session.training.phase
+        if control is ControlName.CAMERA:
+            camera = "far" if session.state.camera == "close-up" else "close-up"
+            session.do(CommandName.SET_CAMERA, {"camera": camera})
+        elif control is ControlName.UNDO:
+            session.do(CommandName.UNDO)
+        elif control is ControlName.TOUCH and phase is Phase.COMPLETE:
+            session.pages.open(CompletePage(session))
+        elif control is ControlName.TOUCH:
+            session.do(CommandName.CAPTURE)
+        elif control in (ControlName.MENU, ControlName.PAUSE):
+            self.open_menu()
+
+    def open_menu(self) -> None:
+        """Open the menu; a trial that runs is paused, and the menu opens when it is."""
+        session = self._session
+        phase = session.training.phase
+        if phase is Phase.RUNNING:
+            session.do(CommandName.PAUSE)
+        else:
+            page = TrialPage if phase is Phase.COMPLETE else StartPage
+            session.pages.show(page(session))
+
+    def instruction(self) -> ScreenMessage:
+        """Return what to do now."""
+        session = self._session
+        training = session.training
+        if training.phase is Phase.COMPLETE:
+            key = session.label(ControlName.TOUCH)
+            text = session.texts.say(
+                "work.complete", trainee=training.trainee, count=len(training.touches), touch=key
+            )
+            return ScreenMessage(text, Tone.GOOD)
+        if self._was_refused:
+            return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
+        if self._is_off_the_way():
+            text = session.texts.say(
+                "work.off the way", trainee=training.trainee, point=training.next_point
+            )
+            return ScreenMessage(text, Tone.WARNING)
+        tone = Tone.GOOD if training.touches else Tone.PLAIN
+        return ScreenMessage(session.texts.again(training.instruction), tone)
+
+    def warnings(self) -> tuple[ScreenMessage, ...]:
+        """Return what is wrong with where the arm is."""
+        say = self._session.texts.say
+        warnings = []
+        state = self._session.state
+        if state.proximity is Proximity.CONTACT:
+            depth_mm = DEPTH_STEP_MM * round(MM_PER_M * state.depth / DEPTH_STEP_MM)
+            is_pressed = MM_PER_M * state.depth > PRESSED_MM
+            text = say("warning.pressing", depth=depth_mm) if is_pressed else say("warning.contact")
+            warnings.append(ScreenMessage(text, Tone.ERROR))
+        if self._obstacle:
+            warnings.append(ScreenMessage(say(f"warning.obstacle.{self._obstacle}"), Tone.WARNING))
+        elif not self._is_within_reach:
+            warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
+        return tuple(warnings)
+
+    def status(self) -> tuple[str, ...]:
+        """Return the short facts at the edge."""
+        session = self._session
+        training, say = session.training, session.texts.say
+        facts = [
+            session.task_title(training.task),
+            say("status.points", kept=len(training.touches), count=len(self._points) or 15),
+            self._clock(),
+        ]
+        target = self._points.get(training.next_point or "")
+        if target is not None:
+            facts.append(self._toward(target))
+        return tuple(facts)
+
+    def hints(self) -> tuple[Hint, ...]:
+        """Return the controls that matter."""
+        session = self._session
+        is_complete = session.training.phase is Phase.COMPLETE
+        names = {
+            ControlName.TOUCH: "hint.register" if is_complete else "hint.touch",
+            ControlName.UNDO: "hint.undo",
+            ControlName.FINE: "hint.fine",
+            ControlName.CAMERA: "hint.camera",
+            ControlName.MENU: "hint.menu",
+        }
+        return tuple(
+            Hint(session.label(control), session.texts.say(key)) for control, key in names.items()
+        )
+
+    def _clock(self) -> str:
+        session = self._session
+        elapsed = session.state.elapsed
+        if session.training.task != TRIAL_RUN:
+            return session.duration(elapsed)
+        left = math.ceil(max(0.0, self._practice_s - elapsed))
+        return session.texts.say("status.left", time=session.duration(left))
+
+    def _toward(self, target: Vector) -> str:
+        session = self._session
+        away = MM_PER_M * distance(session.tip, target)
+        words = direction_words(session.tip, target, self._axes())
+        return session.texts.say(
+            "status.toward",
+            point=session.training.next_point,
+            distance=f"{STEP_MM * round(away / STEP_MM):.0f}",
+            direction=", ".join(session.texts.say(f"way.{word}") for word in words),
+        )
+
+    def _axes(self) -> Axes:
+        session = self._session
+        if session.preferences.axes == AxesChoice.ROBOT:
+            return ROBOT_AXES
+        view = session.scenario.cameras[session.state.camera]
+        line = tuple((view.focal_point - view.position).tolist())
+        return camera_axes(line, tuple(view.view_up.tolist()))
+
+    def _is_off_the_way(self) -> bool:
+        """Return whether the tip is beside the way between the last point and the next."""
+        training = self._session.training
+        target = self._points.get(training.next_point or "")
+        if not training.touches or target is None:
+            self._is_beside = False
+            return False
+        way = PathArc(self._center, training.touches[-1].position, target)
+        limit = BACK_WITHIN if self._is_beside else FARTHEST
+        self._is_beside = way.beside(self._session.tip) > limit
+        return self._is_beside
+
+
+def points_in_world(truth: Truth) -> tuple[dict[str, Vector], Vector]:
+    """Return the fiducials of a trial and the head's center in World, m."""
+    points = {label: in_m(truth.in_world(point)) for label, point in truth.fiducials.items()}
+    return points, in_m(truth.in_world(truth.target))

@@ -1,1 +1,0 @@
-"""Gamepads at the simulator, read through SDL."""

@@ -1,1 +1,0 @@
-"""The simulator's OpenIGTLink side: the server, what it publishes, the commands it answers."""

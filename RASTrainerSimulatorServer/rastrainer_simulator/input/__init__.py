@@ -1,0 +1,1 @@
+"""Gamepads, keyboards and views: bindings, and the controls that they move."""

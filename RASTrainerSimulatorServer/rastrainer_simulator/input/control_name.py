@@ -1,0 +1,71 @@
+"""The names of the controls, and when each counts."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class ControlName(str, Enum):
+    """What the trainee can do. A stick is two controls, one for each way it can be pushed."""
+
+    TOUCH = "touch"
+    UNDO = "undo"
+    CAMERA = "camera"
+    FINE = "fine"
+    PAUSE = "pause"
+    MENU = "menu"
+    MOVE_LEFT = "move_left"
+    MOVE_RIGHT = "move_right"
+    MOVE_BACK = "move_back"
+    MOVE_FORWARD = "move_forward"
+    MOVE_DOWN = "move_down"
+    MOVE_UP = "move_up"
+    TURN_LEFT = "turn_left"
+    TURN_RIGHT = "turn_right"
+    TURN_DOWN = "turn_down"
+    TURN_UP = "turn_up"
+    ACCEPT = "accept"
+    BACK = "back"
+    UP = "up"
+    DOWN = "down"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class ControlContext(str, Enum):
+    """Whether the trainee drives the arm or is in a menu: an input may do one thing in each."""
+
+    WORK = "work"
+    MENU = "menu"
+
+
+TRANSLATION = (
+    (ControlName.MOVE_LEFT, ControlName.MOVE_RIGHT),
+    (ControlName.MOVE_BACK, ControlName.MOVE_FORWARD),
+    (ControlName.MOVE_DOWN, ControlName.MOVE_UP),
+)
+"""Right, forward and up, each with the control that pushes it below and above zero."""
+
+ROTATION = (
+    (ControlName.TURN_LEFT, ControlName.TURN_RIGHT),
+    (ControlName.TURN_DOWN, ControlName.TURN_UP),
+)
+
+STICKS = frozenset(name for pair in (*TRANSLATION, *ROTATION) for name in pair)
+
+IN_MENUS = (
+    ControlName.ACCEPT,
+    ControlName.BACK,
+    ControlName.UP,
+    ControlName.DOWN,
+    ControlName.LEFT,
+    ControlName.RIGHT,
+)
+
+SITUATIONS = {
+    name: {ControlContext.WORK, ControlContext.MENU}
+    if name in (ControlName.PAUSE, ControlName.MENU)
+    else {ControlContext.MENU if name in IN_MENUS else ControlContext.WORK}
+    for name in ControlName
+}
+"""Where each control counts; two that count in the same situation cannot share an input."""

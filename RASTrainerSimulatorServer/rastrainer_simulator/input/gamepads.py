@@ -1,0 +1,145 @@
+"""All gamepads of the simulator, read by SDL: their inputs, plugging in and out, vibration."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from types import ModuleType
+from typing import Any, Protocol
+
+from rastrainer.errors import RASTrainerError
+from rastrainer_simulator.input.inputs import AXES, BUTTONS, gamepad_inputs
+
+FULL_DEFLECTION = 32767.0
+LONGEST_RUMBLE_S = 2.0
+_HINTS = {
+    "PYGAME_HIDE_SUPPORT_PROMPT": "1",
+    "SDL_VIDEODRIVER": "dummy",
+    "SDL_NO_SIGNAL_HANDLERS": "1",
+    "SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS": "1",
+}
+"""Events come though no window of ours has the focus, and Ctrl-C stays the server's."""
+
+
+class GamepadListener(Protocol):
+    """Receives what happens to gamepads."""
+
+    def gamepad_came(self, number: int, name: str) -> None:
+        """A gamepad was plugged in."""
+
+    def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
+        """Something of a gamepad has changed; all its inputs, 0…1."""
+
+    def gamepad_went(self, number: int, name: str) -> None:
+        """A gamepad was unplugged."""
+
+    def gamepad_unknown(self, name: str) -> None:
+        """A gamepad was plugged in whose layout SDL does not know."""
+
+
+class Gamepads:
+    """Polls SDL; one poll takes some ten microseconds, and SDL's part of it leaves Python alone."""
+
+    def __init__(self, listener: GamepadListener) -> None:
+        """Start SDL and find what is plugged in at the first poll.
+
+        Raises:
+            NoGamepadsError: this computer cannot read gamepads.
+        """
+        self._pygame, self._controller = start_sdl()
+        self._listener = listener
+        self._open: dict[int, Any] = {}
+        self._reported: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {}
+        self._unknown: set[str] = set()
+        self._has_looked = False
+
+    def poll(self) -> None:
+        """Tell what has changed since the last poll."""
+        # `get` pumps SDL's events; what came or went is looked for by asking.
+        if self._pygame.event.get() or not self._has_looked:
+            self._has_looked = True
+            self._look()
+        for number, pad in self._open.items():
+            axes = tuple(pad.get_axis(axis) / FULL_DEFLECTION for axis in range(len(AXES)))
+            buttons = tuple(float(pad.get_button(button)) for button in range(len(BUTTONS)))
+            if self._reported.get(number) != (axes, buttons):
+                self._reported[number] = axes, buttons
+                self._listener.gamepad_moved(number, gamepad_inputs(axes, buttons))
+
+    def rumble(self, strength: float, seconds: float) -> None:
+        """Let all gamepads vibrate, those that can."""
+        milliseconds = int(1000.0 * min(seconds, LONGEST_RUMBLE_S))
+        for pad in self._open.values():
+            pad.rumble(strength, strength, milliseconds)
+
+    def close(self) -> None:
+        """Let go of all gamepads and of SDL."""
+        self._open.clear()
+        self._controller.quit()
+        self._pygame.display.quit()
+
+    def _look(self) -> None:
+        """Open what has come and forget what has gone."""
+        for number, pad in tuple(self._open.items()):
+            if not pad.attached():
+                del self._open[number]
+                self._reported.pop(number, None)
+                self._listener.gamepad_went(number, pad.name)
+        for index in range(self._pygame.joystick.get_count()):
+            if not self._controller.is_controller(index):
+                self._tell_unknown(index)
+                continue
+            pad = self._controller.Controller(index)
+            number = pad.as_joystick().get_instance_id()
+            if number not in self._open:
+                self._open[number] = pad
+                self._listener.gamepad_came(number, pad.name)
+
+    def _tell_unknown(self, index: int) -> None:
+        name = self._pygame.joystick.Joystick(index).get_name()
+        if name not in self._unknown:
+            self._unknown.add(name)
+            self._listener.gamepad_unknown(name)
+
+
+class NoGamepadsError(RASTrainerError):
+    """This computer cannot read gamepads; the sentence says why."""
+
+
+def start_sdl() -> tuple[ModuleType, ModuleType]:
+    """Return pygame and its module of game controllers, both ready.
+
+    Raises:
+        NoGamepadsError: pygame is not installed, or SDL does not start.
+    """
+    with _environment(_HINTS):
+        try:
+            import pygame
+            from pygame._sdl2 import controller
+        except ImportError as error:
+            raise NoGamepadsError(f"pygame-ce cannot be loaded: {error}") from None
+        try:
+            pygame.display.init()
+            controller.init()
+        except pygame.error as error:
+            raise NoGamepadsError(f"SDL does not start: {error}") from None
+    # Only the coming and going of devices is news; positions are asked for.
+    pygame.event.set_blocked(None)
+    pygame.event.set_allowed((pygame.JOYDEVICEADDED, pygame.JOYDEVICEREMOVED))
+    return pygame, controller
+
+
+@contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    """Set variables for a while: the windows that the server starts shall not inherit them."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

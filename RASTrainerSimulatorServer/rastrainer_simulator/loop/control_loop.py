@@ -1,0 +1,332 @@
+"""Own the time: step the simulation 250 times a second, record it, and publish the result."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import RASTrainerError
+from rastrainer.journal.journal_file import JournalReading
+from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES, CommandName
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.loop.loop_statistics import LoopStatistics, Punctuality
+from rastrainer_simulator.loop.pending_answers import PendingAnswers
+from rastrainer_simulator.loop.precise_clock import (
+    precise_timing,
+    raise_thread_priority,
+    sleep_until,
+)
+from rastrainer_simulator.loop.rate_limit import RateLimit, TrialLimits
+from rastrainer_simulator.loop.subscribers import Subscribers
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
+from rastrainer_simulator.ops.stamps import stamp
+from rastrainer_simulator.record.display_use import DisplayReport
+from rastrainer_simulator.record.durable_results import DurableResults
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
+from rastrainer_simulator.training.true_error import Truth
+
+CATCH_UP_S = 0.1
+"""How far behind the loop may fall and still make up for it tick by tick."""
+COMMANDS_PER_TICK = 16
+TOO_MANY_STARTS = "Trials are begun too often: wait some seconds, then begin it again."
+TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
+SHUTTING_DOWN = "The simulator is shutting down."
+ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
+
+_OF_ANY_TRIAL = (
+    CommandName.GET_TRIAL,
+    CommandName.ACKNOWLEDGE_TRIAL,
+    *ENDING_A_TRIAL,
+)
+_PASSING = frozenset(
+    {
+        CommandName.JOG,
+        CommandName.MOVE_TIP_TO,
+        CommandName.SET_CAMERA,
+        CommandName.PLAN_TARGET,
+        CommandName.LIST_TASKS,
+        CommandName.GET_TRIAL,
+    }
+)
+"""Commands that do not change the trial; all others are carried out one at a time."""
+
+_log = logging.getLogger(__name__)
+
+
+class ControlLoop:
+    """Runs a simulation in a thread of its own.
+
+    Every tick has its time, counted from the first, so that delays do not add up; a tick that is
+    late is counted in `statistics`. What a trial has gained is published only once it is on the
+    disk; only then is its answer given.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        records: Path,
+        rate_hz: float = 250.0,
+        speed: float | None = 1.0,
+        interrupted: JournalReading | None = None,
+        trial_limits: TrialLimits | None = None,
+    ) -> None:
+        """Prepare the loop; `start` sets it going.
+
+        Args:
+            simulation: belongs to the loop from now on.
+            records: folder of the trials' journals; it is created with the first trial.
+            rate_hz: ticks in a simulated second.
+            speed: simulated seconds in a second; None runs as fast as the machine can.
+            interrupted: journal of a trial that the simulation has loaded, which waits for Resume.
+            trial_limits: how often a trial may be begun, whoever asks; None for the default.
+        """
+        self._simulation = simulation
+        self._dt = 1.0 / rate_hz
+        self._period = 0.0 if speed is None else self._dt / speed
+        self._archive = TrialArchive(records)
+        self.is_first_in_line = self._period >= self._dt
+        """Whether it runs before all others; one that never sleeps would leave them nothing."""
+        self._writer = ThreadPoolExecutor(
+            max_workers=1,
+            thread_name_prefix="journal",
+            initializer=raise_thread_priority if self.is_first_in_line else None,
+        )
+        self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt)
+        if interrupted is not None:
+            self._recorder.resume_trial(simulation, interrupted)
+        self._state = simulation.state
+        self._held = DurableResults(self._state.training)
+        self._sticks = HANDS_OFF
+        self._arrived: deque[OperatorCommand] = deque()
+        self._displayed: deque[DisplayReport] = deque()
+        self._answers = PendingAnswers()
+        limits = trial_limits or TrialLimits()
+        self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
+        self._refused: str | None = None
+        self._successor: tuple[Simulation, int] | None = None
+        self._subscribers: Subscribers[StepResult] = Subscribers()
+        self._punctuality = Punctuality()
+        self._thread = threading.Thread(target=self._run, name="control loop", daemon=True)
+        self._is_stopping = threading.Event()
+        self._is_over = False
+        self.latest: SimulationState = self._state
+        """What may be told of the last tick; the same as the subscribers got."""
+
+    def __enter__(self) -> ControlLoop:
+        self.start()
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Begin to tick."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop ticking, and return when everything recorded is on the disk."""
+        self._is_stopping.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it ticks."""
+        return self._thread.is_alive()
+
+    @property
+    def statistics(self) -> LoopStatistics:
+        """How punctual it has been."""
+        return self._punctuality.statistics()
+
+    @property
+    def setup(self) -> SimulationSetup:
+        """What the present simulation was made from."""
+        return self._simulation.setup
+
+    @property
+    def truth(self) -> Truth:
+        """Where the head is: for what the trainee is shown; clients learn it with the score."""
+        return self._simulation.truth
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Sentences about journals in the records folder that cannot be used."""
+        return tuple(self._archive.problems)
+
+    def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
+        """Return the aborted and the registered trials that no client has acknowledged."""
+        return self._archive.unacknowledged()
+
+    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
+        """Have `callback` called in the loop's thread after each tick; it must return at once.
+
+        Returns what ends the subscription.
+        """
+        return self._subscribers.add(callback)
+
+    def hold_sticks(self, sticks: OperatorInput) -> None:
+        """Take the sticks as they are from now on; the commands in it are ignored."""
+        self._sticks = replace(sticks, commands=())
+
+    def note_display(self, report: DisplayReport) -> None:
+        """Have the trial's journal tell how a view draws it; the simulation takes no note."""
+        self._displayed.append(report)
+
+    def submit(
+        self, name: str, arguments: Mapping[str, Any] | None = None, sender: str = ""
+    ) -> Future[Answer]:
+        """Carry out a command in one of the next ticks.
+
+        `arguments` have passed `rastrainer.protocol.check_arguments`. The answer comes once what it
+        says is on the disk.
+        """
+        ticket, future = self._answers.expect()
+        arguments = dict(arguments or {})
+        if name == CommandName.START_TASK:
+            # Drawn outside of the simulation: a seed used twice must not make one trial of two.
+            arguments.setdefault("trialId", str(uuid.uuid4()))
+        self._arrived.append(OperatorCommand(name, arguments, ticket, sender))
+        if self._is_over:
+            self._answers.refuse_all(SHUTTING_DOWN)
+        return future
+
+    def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
+        """Go on with another simulation, such as one of another scenario, between two trials."""
+        ticket, future = self._answers.expect()
+        self._successor = (simulation, ticket)
+        return future
+
+    def _run(self) -> None:
+        try:
+            with precise_timing(self.is_first_in_line):
+                self._tick_on_time()
+        except Exception:
+            _log.exception("The control loop has broken down")
+        finally:
+            self._finish()
+
+    def _tick_on_time(self) -> None:
+        due = time.monotonic()
+        while not self._is_stopping.is_set():
+            self._punctuality.began(time.monotonic() - due if self._period else 0.0)
+            self._tick()
+            due += self._period
+            behind = time.monotonic() - due
+            if self._period and behind > CATCH_UP_S:
+                skipped = int(behind / self._period)
+                self._punctuality.skip(skipped)
+                due += skipped * self._period
+            sleep_until(due)
+
+    def _tick(self) -> None:
+        if self._successor is not None:
+            self._succeed(*self._successor)
+        commands = self._commands()
+        operator_input = replace(self._sticks, commands=commands) if commands else self._sticks
+        while self._displayed:
+            self._recorder.note_display(self._displayed.popleft(), self._state)
+        result = self._simulation.step(self._dt, operator_input)
+        written = self._recorder.record(self._simulation, self._state, operator_input, result)
+        self._state = result.state
+        told, self._refused = self._held.pass_on(result, written)
+        self._tell(told)
+
+    def _commands(self) -> tuple[OperatorCommand, ...]:
+        """Take what has arrived; a change of the trial waits until the last is on the disk."""
+        commands: list[OperatorCommand] = []
+        if self._refused is not None:
+            arguments = {"revision": self._held.revision, "reason": self._refused}
+            commands.append(OperatorCommand(RECORDING_FAILED, arguments))
+        while self._arrived and len(commands) < COMMANDS_PER_TICK:
+            command = self._arrived[0]
+            changes_trial = command.name not in _PASSING
+            if changes_trial and self._held.is_waiting:
+                break
+            self._arrived.popleft()
+            if self._is_for_the_archive(command):
+                self._ask_archive(command)
+                continue
+            if self._is_start_too_many(command):
+                self._answers.give(Answer(command.ticket, False, TOO_MANY_STARTS))
+                continue
+            commands.append(command)
+            if changes_trial:
+                break
+        return tuple(commands)
+
+    def _is_start_too_many(self, command: OperatorCommand) -> bool:
+        """Return whether a command would begin a trial too soon after others."""
+        if command.name != CommandName.START_TASK or self._is_trial_open:
+            return False
+        return not self._starts.allows(self._state.sim_time)
+
+    @property
+    def _is_trial_open(self) -> bool:
+        return self._state.training.phase in OPEN_PHASES
+
+    def _is_for_the_archive(self, command: OperatorCommand) -> bool:
+        """Return whether a command is about a trial whose record is written, unless it ends it."""
+        if command.name not in _OF_ANY_TRIAL:
+            return False
+        training = self._state.training
+        if command.name == CommandName.ACKNOWLEDGE_TRIAL:
+            return True
+        is_present = command.arguments["trialId"] == training.trial_id
+        if command.name in ENDING_A_TRIAL:
+            return not is_present
+        return not is_present or training.phase in FINISHED_PHASES
+
+    def _ask_archive(self, command: OperatorCommand) -> None:
+        times = stamp(self._state.tick, self._state.sim_time)
+
+        def ask() -> None:
+            try:
+                data = self._archive.answer(command.name, command.arguments, times)
+            except RASTrainerError as error:
+                self._answers.give(Answer(command.ticket, False, str(error)))
+            except Exception:
+                _log.exception("%s of an older trial has failed", command.name)
+                self._answers.give(Answer(command.ticket, False, ARCHIVE_FAILED))
+            else:
+                self._answers.give(Answer(command.ticket, True, data=data))
+
+        self._writer.submit(ask)
+
+    def _succeed(self, simulation: Simulation, ticket: int) -> None:
+        self._successor = None
+        if self._held.is_waiting or self._is_trial_open:
+            self._answers.give(Answer(ticket, False, TRIAL_IS_OPEN))
+            return
+        simulation.continue_from(StartingPoint.after(self._state))
+        self._simulation = simulation
+        self._answers.give(Answer(ticket, True))
+
+    def _tell(self, result: StepResult) -> None:
+        self.latest = result.state
+        for answer in result.answers:
+            self._answers.give(answer)
+        self._subscribers.publish(result)
+
+    def _finish(self) -> None:
+        """Write all, answer what was on its way to the disk, and refuse what came too late."""
+        self._recorder.stop(self._state)
+        self._writer.shutdown(wait=True)
+        for answer in self._held.pass_on(StepResult(self._state), None)[0].answers:
+            self._answers.give(answer)
+        self._is_over = True
+        self._answers.refuse_all(SHUTTING_DOWN)

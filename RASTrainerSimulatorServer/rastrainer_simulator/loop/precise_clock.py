@@ -1,0 +1,130 @@
+"""Sleep until a moment of the monotonic clock, to a fraction of a millisecond, and be let to."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+SWITCH_INTERVAL_S = 0.0001
+"""How long another Python thread may keep the interpreter once the control loop is due.
+
+Python's own 5 ms would let one busy thread make every second tick late, and with 0.5 ms two busy
+threads in a row make one in fifty late.
+"""
+
+FIRST, SECOND = 2, 1
+"""Real-time priorities of Linux: of the control loop, and of the threads that it waits for."""
+
+_WINDOWS_PRIORITY = {FIRST: 15, SECOND: 2}  # TIME_CRITICAL, HIGHEST
+
+
+def sleep_until(moment: float) -> None:
+    """Return at `moment` (s, `time.monotonic`), or at once if it has passed."""
+    remaining = moment - time.monotonic()
+    if remaining > 0.0:
+        time.sleep(remaining)
+
+
+@contextlib.contextmanager
+def precise_timing(is_first_in_line: bool) -> Iterator[None]:
+    """Let this process wake up on time; everything is as before when it ends.
+
+    With `is_first_in_line` the thread runs before all ordinary ones, if the system permits it. That
+    is for a thread that sleeps between its ticks: one that never sleeps would leave them nothing.
+    """
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    try:
+        with _fine_timer(), _in_line(FIRST) if is_first_in_line else contextlib.nullcontext():
+            yield
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def raise_thread_priority() -> None:
+    """Let this thread run before all ordinary ones from now on, but after the control loop.
+
+    It is for the threads that share the interpreter with the loop in every tick. One that is put
+    aside for another program while it holds the interpreter makes the loop wait for both, whatever
+    the loop's own priority (priority inversion). Nothing happens where the system does not permit
+    it; processes and threads that the thread starts stay ordinary.
+    """
+    if sys.platform == "win32":
+        _set_windows_priority(_WINDOWS_PRIORITY[SECOND])
+    elif hasattr(os, "SCHED_FIFO"):
+        set_real_time(SECOND)
+
+
+def is_real_time_permitted() -> bool:
+    """Tell whether a system with `SCHED_FIFO` lets the control loop run before ordinary threads."""
+    # Tried in a thread that ends with it: nothing has to be taken back.
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        return pool.submit(set_real_time, FIRST).result()
+
+
+@contextlib.contextmanager
+def _in_line(priority: int) -> Iterator[None]:
+    """Ask for real-time priority; Linux grants it to root and up to what `ulimit -r` tells."""
+    if sys.platform == "win32":
+        before = _set_windows_priority(_WINDOWS_PRIORITY[priority])
+        try:
+            yield
+        finally:
+            _set_windows_priority(before)
+        return
+    if not hasattr(os, "SCHED_FIFO"):
+        yield
+        return
+    policy, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+    if not set_real_time(priority):
+        yield
+        return
+    try:
+        yield
+    finally:
+        # Whoever is not root may not take the flag back.
+        os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameters)
+
+
+def set_real_time(priority: int) -> bool:
+    """Set the priority of this thread, and tell whether the system permits it."""
+    # What the thread starts, such as the window, stays ordinary.
+    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+    try:
+        os.sched_setscheduler(0, policy, os.sched_param(priority))
+    except PermissionError:
+        return False
+    return True
+
+
+if sys.platform == "win32":
+
+    def _set_windows_priority(priority: int) -> int:
+        """Set this thread's priority, which Windows permits to everyone; return the former one."""
+        import ctypes
+
+        kernel = ctypes.windll.kernel32
+        kernel.GetCurrentThread.restype = ctypes.c_void_p
+        thread = ctypes.c_void_p(kernel.GetCurrentThread())
+        before = kernel.GetThreadPriority(thread)
+        kernel.SetThreadPriority(thread, priority)
+        return before
+
+
+@contextlib.contextmanager
+def _fine_timer() -> Iterator[None]:
+    """Ask Windows for timers of 1 ms; its default of 15.6 ms is four ticks."""
+    if sys.platform != "win32":
+        yield
+        return
+    import ctypes
+
+    ctypes.windll.winmm.timeBeginPeriod(1)
+    try:
+        yield
+    finally:
+        ctypes.windll.winmm.timeEndPeriod(1)

@@ -1,0 +1,1 @@
+"""The OpenIGTLink server."""

@@ -1,0 +1,143 @@
+"""What clients receive without asking: each device at its rate, packed once for all of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from rastrainer.igtl.message import Message
+from rastrainer.protocol import Rate
+from rastrainer_simulator.net.igtl import devices
+from rastrainer_simulator.net.igtl.connection import ClientConnection
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
+from rastrainer_simulator.net.rates import Pacer
+from rastrainer_simulator.state import SimulationState, TrainingState
+
+
+class PoseSubscription:
+    """One client's wishes; a new one knows of no pose that was sent before.
+
+    Attributes:
+        tool_tip: when the tip's pose is due.
+        links: when those of the links are.
+    """
+
+    def __init__(
+        self,
+        tool_tip_hz: float = Rate.TOOL_TIP_HZ,
+        links_hz: float = Rate.LINKS_HZ,
+        is_steady: bool = False,
+    ):
+        """`is_steady` also wants poses that have not changed."""
+        self.tool_tip = Pacer(tool_tip_hz)
+        self.links = Pacer(links_hz)
+        self._is_steady = is_steady
+        self._sent: dict[str, bytes] = {}
+
+    @property
+    def next(self) -> float:
+        """When the next pose is due, in simulated time."""
+        return min(self.tool_tip.next, self.links.next)
+
+    def is_news(self, device: str, content: bytes) -> bool:
+        """Return whether a pose is to be sent, which then counts as sent.
+
+        Poses are compared as they travel: what 32 bits do not tell apart has not changed.
+        """
+        if self._sent.get(device) == content and not self._is_steady:
+            return False
+        self._sent[device] = content
+        return True
+
+
+class Publisher:
+    """Sends the simulation's state to its subscribers, at rates of simulated time.
+
+    While nothing changes nothing is sent: for Slicer each pose, even the same again, is a reason to
+    render all its views.
+
+    `is_due` may be called in the control loop's thread; everything else belongs to the event
+    loop's.
+    """
+
+    def __init__(self, latest: Callable[[], SimulationState]):
+        """`latest` gives the newest state, for those who subscribe between two publications."""
+        self._latest = latest
+        self._poses: dict[ClientConnection, PoseSubscription] = {}
+        self._state = Pacer(Rate.STATE_HZ)
+        self._number = 0
+        self._sent_state: dict[str, Any] = {}
+        self._sent_training: TrainingState | None = None
+        self._next = math.inf
+
+    def subscribe(self, connection: ClientConnection, poses: PoseSubscription) -> None:
+        """Send a client the present state, and from now on what changes; again for other rates."""
+        self._poses[connection] = poses
+        state = self._latest()
+        self._send([connection], devices.captured_points(state.training))
+        changing = devices.what_changes(state)
+        self._send([connection], devices.sim_state(changing, state, self._next_number()))
+        self._next = -math.inf
+
+    def unsubscribe(self, connection: ClientConnection) -> None:
+        """Send a client nothing more."""
+        self._poses.pop(connection, None)
+
+    def is_due(self, state: SimulationState) -> bool:
+        """Return whether `publish` would have something to look at."""
+        is_news = state.training is not self._sent_training
+        return bool(self._poses) and (is_news or state.sim_time >= self._next)
+
+    def publish(self, state: SimulationState) -> None:
+        """Send whatever is due, and new, to whom it is due."""
+        now = state.sim_time
+        everyone = tuple(self._poses)
+        if state.training is not self._sent_training:
+            self._publish_training(everyone, state.training)
+        if self._state.is_due(now):
+            self._publish_state(everyone, state)
+        tip_due = [who for who, poses in self._poses.items() if poses.tool_tip.is_due(now)]
+        if tip_due:
+            self._publish_poses(tip_due, (devices.tool_tip(state, self._number + 1),))
+        links_due = [who for who, poses in self._poses.items() if poses.links.is_due(now)]
+        if links_due:
+            self._publish_poses(links_due, devices.links(state, self._number + 1))
+        self._next = min([self._state.next, *(poses.next for poses in self._poses.values())])
+
+    def _publish_training(
+        self, everyone: Iterable[ClientConnection], training: TrainingState
+    ) -> None:
+        """Send the touched points whenever one was touched or taken back, and with a new trial."""
+        sent = self._sent_training
+        self._sent_training = training
+        if sent is None or (sent.touches, sent.trial_id) != (training.touches, training.trial_id):
+            self._send(everyone, devices.captured_points(training))
+
+    def _publish_state(self, everyone: Iterable[ClientConnection], state: SimulationState) -> None:
+        changing = devices.what_changes(state)
+        if changing != self._sent_state:
+            self._sent_state = changing
+            message = devices.sim_state(changing, state, self._next_number())
+            self._send(everyone, message)
+
+    def _publish_poses(self, due: Iterable[ClientConnection], messages: Iterable[Message]) -> None:
+        """Send each client what is new to it; the messages carry the next number."""
+        is_sent = False
+        for message in messages:
+            content = message.content.pack()
+            receivers = [who for who in due if self._poses[who].is_news(message.device, content)]
+            self._send(receivers, message)
+            is_sent = is_sent or bool(receivers)
+        if is_sent:
+            self._next_number()
+
+    def _next_number(self) -> int:
+        self._number += 1
+        return self._number
+
+    def _send(self, receivers: Iterable[ClientConnection], *messages: Message) -> None:
+        for message in messages:
+            outgoing = Outgoing(message)
+            for connection in receivers:
+                connection.send_latest(outgoing)

@@ -1,0 +1,197 @@
+"""The simulator on the link: what each message of a client leads to, and the server's heartbeat."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future
+from typing import Any
+
+import rastrainer
+from rastrainer.errors import InputError
+from rastrainer.igtl.content import Command, Transform
+from rastrainer.igtl.message import Message
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Phase, Rate
+from rastrainer.study.protocol.study_step import StepAnswers
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.net.igtl import devices
+from rastrainer_simulator.net.igtl.command_handler import CommandHandler
+from rastrainer_simulator.net.igtl.connection import ClientConnection
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
+from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
+from rastrainer_simulator.net.igtl.server import IgtlServer
+from rastrainer_simulator.net.limits import LinkLimits
+from rastrainer_simulator.state import Answer, SimulationState
+
+_OWN_DEVICES = frozenset({DeviceName.TOOL_TIP_TO_WORLD, *DeviceName.LINK_TO_WORLD})
+
+SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
+OFFERS_AT_ONCE = 8
+"""Trials in one round of offers."""
+
+_NUMBERS = 2**32
+
+
+class SimulatorLink:
+    """Answers commands, echoes foreign transforms and publishes the simulation's state.
+
+    A TRANSFORM whose device is none of ours is sent back to its sender, unchanged: the test of
+    the link and the measure of its delay. All else that is valid is taken and ignored, such as
+    the STATUS with which Slicer begins every connection.
+
+    Attributes:
+        server: listens or connects, and owns the clients.
+        publisher: sends them the state.
+        offers: the trials that wait to be acknowledged.
+    """
+
+    def __init__(
+        self,
+        latest: Callable[[], SimulationState],
+        submit: SubmitCommand,
+        unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
+        health: Callable[[], Mapping[str, Any]] = dict,
+        limits: LinkLimits | None = None,
+        answers: Callable[[], Sequence[StepAnswers]] = tuple,
+    ):
+        """Make a link, in the event loop's thread.
+
+        Args:
+            latest: gives the newest state.
+            submit: takes a command's name, checked arguments and sender, and returns the
+                answer's future at once.
+            unacknowledged: gives the records of the trials that no client has acknowledged.
+            health: gives what the heartbeat reports about the simulator, ready for JSON.
+            limits: what clients may cost.
+            answers: gives a study's answers that Slicer has not taken yet.
+        """
+        self.server = IgtlServer(self, limits)
+        self.publisher = Publisher(latest)
+        self.offers = TrialOffers(unacknowledged, lambda: self.server.clients)
+        self._last_phase = Phase.IDLE
+        self._submit_command = submit
+        self._health = health
+        self._answers = answers
+        self._commands = CommandHandler(self._submit, self.server.limits)
+
+    def connected(self, connection: ClientConnection) -> None:
+        """Send a client the present state."""
+        connection.send_latest(self._heartbeat())
+        self.publisher.subscribe(connection, PoseSubscription())
+
+    def received(self, connection: ClientConnection, message: Message) -> None:
+        """Do what a message asks for."""
+        content = message.content
+        if type(content) is Command:
+            self._commands.handle(connection, content)
+        elif type(content) is Transform and message.device not in _OWN_DEVICES:
+            # A name that cannot be sent back, as one without ASCII, gets no echo.
+            with contextlib.suppress(InputError):
+                connection.send_latest(Outgoing(message))
+
+    def disconnected(self, connection: ClientConnection) -> None:
+        """Forget a client."""
+        self.publisher.unsubscribe(connection)
+        self._commands.forget(connection)
+
+    def tell(self, state: SimulationState) -> None:
+        """Publish what is due, and offer a trial as soon as it is registered."""
+        self.publisher.publish(state)
+        phase = state.training.phase
+        if phase is Phase.REGISTERED and self._last_phase is not phase:
+            self.offers.offer_newest()
+        self._last_phase = phase
+
+    async def beat(self) -> None:
+        """Send the heartbeat every second and repeat the offers; never returns."""
+        seconds = 0
+        while True:
+            await asyncio.sleep(1.0 / Rate.HEARTBEAT_HZ)
+            beat = self._heartbeat()
+            for connection in self.server.clients:
+                connection.send_latest(beat)
+            self._send_answers()
+            seconds += 1
+            if seconds % Rate.OFFER_PERIOD_S == 0:
+                self.offers.repeat()
+
+    def _send_answers(self) -> None:
+        for number, answers in enumerate(self._answers(), start=1):
+            command = Command(number, CommandName.STEP_ANSWERED, json.dumps(answers.to_json()))
+            for connection in self.server.clients:
+                connection.send(Outgoing(Message(DeviceName.COMMAND, command)))
+
+    def _heartbeat(self) -> Outgoing:
+        clients = len(self.server.clients)
+        return Outgoing(devices.heartbeat({"clients": clients, **self._health()}))
+
+    def _submit(
+        self, connection: ClientConnection, name: str, arguments: Mapping[str, Any]
+    ) -> Future[Answer]:
+        if name != CommandName.HELLO:
+            return self._submit_command(name, arguments, connection.name)
+        greeted: Future[Answer] = Future()
+        greeted.set_result(self._greet(connection, arguments))
+        return greeted
+
+    def _greet(self, connection: ClientConnection, arguments: Mapping[str, Any]) -> Answer:
+        spoken = {
+            "protocolVersion": PROTOCOL_VERSION,
+            "server": "RASTrainer simulator",
+            "version": rastrainer.__version__,
+        }
+        version = arguments["protocolVersion"]
+        if version != PROTOCOL_VERSION:
+            sentence = (
+                f"This simulator speaks protocol version {PROTOCOL_VERSION}, not {version}: "
+                "install RASTrainer of the same version on both sides."
+            )
+            return Answer(0, False, sentence, spoken)
+        connection.name = arguments["client"]
+        wishes = {wish: arguments[wish] for wish in ("toolTipHz", "linksHz", "steady")}
+        self.publisher.subscribe(connection, PoseSubscription(*wishes.values()))
+        return Answer(0, True, data={**spoken, **wishes})
+
+
+class TrialOffers:
+    """Offers the trials that nobody has acknowledged.
+
+    Clients keep trials by their UUID, so an offer that arrives twice does no harm.
+    """
+
+    def __init__(
+        self,
+        unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
+        clients: Callable[[], Iterable[ClientConnection]],
+    ):
+        """`unacknowledged` gives the records that wait, oldest first; `clients` who is there."""
+        self._unacknowledged = unacknowledged
+        self._clients = clients
+        self._numbers = itertools.count(1)
+        self._start = 0
+
+    def offer_newest(self) -> None:
+        """Offer the trial that was registered last, or the one aborted last where none was."""
+        self._offer(self._unacknowledged()[-1:])
+
+    def repeat(self) -> None:
+        """Offer some again, others in the next round, so that none holds up the rest."""
+        records = tuple(self._unacknowledged())
+        start = self._start if self._start < len(records) else 0
+        self._offer((records[start:] + records[:start])[:OFFERS_AT_ONCE])
+        self._start = start + OFFERS_AT_ONCE if len(records) > OFFERS_AT_ONCE else 0
+
+    def _offer(self, records: Iterable[AbortedTrial | TrialRecord]) -> None:
+        for record in records:
+            body = json.dumps(record.to_json(), allow_nan=False)
+            number = next(self._numbers) % _NUMBERS
+            is_aborted = isinstance(record, AbortedTrial)
+            name = CommandName.TRIAL_ABORTED if is_aborted else CommandName.TRIAL_COMPLETED
+            command = Command(number, name, body)
+            offer = Outgoing(Message(DeviceName.COMMAND, command))
+            for connection in self._clients():
+                connection.send(offer)

@@ -1,0 +1,72 @@
+"""How often something may happen, and how much it may take: rates in three forms."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+
+_TOLERANCE_S = 1e-9
+_SAVED_AT_MOST_S = 0.02
+
+
+class AsyncRateLimiter:
+    """Lets `per_s` pass in a second on average, and as many at once after a quiet second.
+
+    It belongs to one event loop. Who waits keeps nobody else from being served, and costs nothing.
+    """
+
+    def __init__(self, per_s: float) -> None:
+        self._period_s = 1.0 / per_s
+        self._next = -1.0
+
+    async def passed(self) -> None:
+        """Return when it is the caller's turn."""
+        now = asyncio.get_running_loop().time()
+        self._next = max(self._next, now - 1.0) + self._period_s
+        if self._next > now:
+            await asyncio.sleep(self._next - now)
+
+
+class Pacer:
+    """Says when the next of `hz` moments a second has come; never with 0 Hz."""
+
+    def __init__(self, hz: float):
+        self._period = 1.0 / hz if hz > 0 else math.inf
+        self.next = -math.inf if hz > 0 else math.inf
+
+    def is_due(self, now: float) -> bool:
+        """Return whether the next moment has come, and plan the one after it.
+
+        The rate holds on average although `now` comes in ticks; moments that were missed are not
+        made up for.
+        """
+        has_restarted = now + 1.5 * self._period < self.next < math.inf
+        if now < self.next - _TOLERANCE_S and not has_restarted:
+            return False
+        self.next += self._period
+        if not now < self.next <= now + self._period:
+            self.next = now + self._period
+        return True
+
+
+class ReadingBudget:
+    """Time to spend on a client's bytes: it grows steadily, and debts are waited for.
+
+    A client that sends what is costly to read or much of it is thus read later, and never keeps
+    the control loop from its ticks. A new client begins with nothing saved, so that connecting
+    anew gains nothing.
+    """
+
+    def __init__(self, now: float):
+        self._saved = 0.0
+        self._since = now
+
+    def charge(self, spent: float, share: float, now: float) -> float:
+        """Take `spent` seconds off a budget that grows by `share` of the time.
+
+        Returns how long nothing more may be read, in s.
+        """
+        earned = self._saved + share * (now - self._since)
+        self._saved = min(earned, _SAVED_AT_MOST_S) - spent
+        self._since = now
+        return max(0.0, -self._saved / share)

@@ -1,0 +1,106 @@
+"""A certificate for HTTPS in a local network, made on this machine and kept by its user."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import socket
+import ssl
+import tempfile
+from datetime import datetime, timedelta, timezone
+from ipaddress import ip_address
+from pathlib import Path
+
+import trustme
+
+from rastrainer.errors import InputError
+from rastrainer.files.writing import make_private_folder
+
+VALID_DAYS = 90
+RENEWED_BEFORE_DAYS = 14
+FILE_NAME = "views.pem"
+NAMES_NAME = "views.names"
+
+
+def tls_context(folder: Path) -> ssl.SSLContext:
+    """Return TLS with this machine's certificate, made anew when it is old or has moved.
+
+    The file holds the private key: only its owner can read it, and it leaves the machine never.
+
+    Raises:
+        InputError: the file cannot be read or written.
+    """
+    file, names_file = folder / FILE_NAME, folder / NAMES_NAME
+    names = own_names()
+    try:
+        make_private_folder(folder)
+        if _is_usable(file, names_file, names):
+            # Torn, as by a full disk, it is made anew.
+            with contextlib.suppress(ssl.SSLError):
+                return _context(file)
+        _make(file, names_file, names)
+        return _context(file)
+    except OSError as error:
+        raise InputError(
+            f"The certificate for the local network cannot be kept in {folder}: {error.strerror}. "
+            "Allow writing to it, or choose another folder of settings."
+        ) from None
+
+
+def fingerprint(folder: Path) -> str:
+    """Return the SHA-256 fingerprint of the certificate that `tls_context` uses, as browsers do."""
+    content = (folder / FILE_NAME).read_text(encoding="ascii")
+    _before, begin, rest = content.partition(ssl.PEM_HEADER)
+    certificate, end, _after = rest.partition(ssl.PEM_FOOTER)
+    digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(begin + certificate + end))
+    return digest.digest().hex(":").upper()
+
+
+def own_names() -> tuple[str, ...]:
+    """Return the names and addresses by which others find this machine."""
+    host = socket.gethostname().lower().removesuffix(".local")
+    return ("localhost", host, f"{host}.local", "127.0.0.1", "::1", *own_addresses())
+
+
+def own_addresses() -> tuple[str, ...]:
+    """Return the addresses of this machine in its networks, the one others would use first."""
+    found: list[str] = []
+    with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        # Nothing is sent: this only asks for the way to an address that documents use.
+        probe.connect(("192.0.2.1", 9))
+        found.append(probe.getsockname()[0])
+    with contextlib.suppress(OSError):
+        found += [str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None)]
+    usable = [text.partition("%")[0] for text in found]
+    return tuple(dict.fromkeys(text for text in usable if not ip_address(text).is_loopback))
+
+
+def _context(file: Path) -> ssl.SSLContext:
+    context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    context.load_cert_chain(file)
+    return context
+
+
+def _is_usable(file: Path, names_file: Path, names: tuple[str, ...]) -> bool:
+    try:
+        made_for = names_file.read_text(encoding="utf-8").split()
+        made = datetime.fromtimestamp(file.stat().st_mtime, timezone.utc)
+    except OSError:
+        return False
+    age = datetime.now(timezone.utc) - made
+    is_young = timedelta(0) <= age < timedelta(days=VALID_DAYS - RENEWED_BEFORE_DAYS)
+    return is_young and set(names) <= set(made_for)
+
+
+def _make(file: Path, names_file: Path, names: tuple[str, ...]) -> None:
+    authority = trustme.CA(organization_name="RASTrainer on this machine")
+    until = datetime.now(timezone.utc) + timedelta(days=VALID_DAYS)
+    issued = authority.issue_cert(*names, not_after=until)
+    content = issued.private_key_and_cert_chain_pem.bytes()
+    handle, name = tempfile.mkstemp(dir=file.parent, prefix=file.name)
+    with os.fdopen(handle, "wb") as written:
+        written.write(content)
+    Path(name).replace(file)
+    names_file.write_text("\n".join(names), encoding="utf-8")

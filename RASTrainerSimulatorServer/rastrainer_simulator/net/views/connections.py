@@ -1,0 +1,98 @@
+"""Connections of any kind: how many there may be, how long they may hesitate, what is logged."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import socket
+
+from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
+
+KEEP_ALIVE_S = 75.0
+
+
+def http_log() -> logging.Logger:
+    """Return a log of our own mistakes only: what strangers send is not written down."""
+    log = logging.getLogger(f"{__name__}.http")
+    if not log.filters:
+        log.addFilter(_is_own_mistake)
+    return log
+
+
+def _is_own_mistake(record: logging.LogRecord) -> bool:
+    error = record.exc_info[1] if record.exc_info else None
+    return not isinstance(error, HttpProcessingError)
+
+
+class Connections:
+    """Makes who talks to each new connection; a protocol factory for `loop.create_server`.
+
+    Where there are as many as may be, the oldest that has shown no key yields to a new one: whoever
+    takes places and does not even read what was asked for keeps nobody out.
+    """
+
+    def __init__(self, most: int, first_request_s: float) -> None:
+        """Allow `most` connections at once, each of which asks for something within that time."""
+        self._most = most
+        self._first_request_s = first_request_s
+        self._silent: dict[asyncio.BaseProtocol, asyncio.TimerHandle] = {}
+        self._paired: set[asyncio.BaseProtocol] = set()
+        self._sent_away: set[asyncio.BaseProtocol] = set()
+        self.server: web.Server | None = None
+        """Talks to the connections; set once it is there."""
+
+    def __call__(self) -> asyncio.BaseProtocol:
+        """Return who talks to a new connection."""
+        if self.server is None or not self._has_room(self.server.connections):
+            return _Refused()
+        protocol = self.server()
+        self._silent[protocol] = asyncio.get_running_loop().call_later(
+            self._first_request_s, self._end_if_silent, protocol
+        )
+        return protocol
+
+    def note(self, request: web.BaseRequest) -> None:
+        """Take note that a connection has asked for something."""
+        timer = self._silent.pop(request.protocol, None)
+        if timer is not None:
+            # It would keep a connection that has long ended in memory.
+            timer.cancel()
+
+    def note_key(self, request: web.BaseRequest) -> None:
+        """Take note that a connection has shown the key of a session."""
+        self._paired.add(request.protocol)
+
+    def _has_room(self, there: list[web.RequestHandler]) -> bool:
+        """Return whether one more connection may be; the oldest without a key makes room for it."""
+        self._paired.intersection_update(there)
+        self._sent_away.intersection_update(there)
+        if len(there) - len(self._sent_away) < self._most:
+            return True
+        strangers = (each for each in there if each not in self._paired | self._sent_away)
+        oldest = next(strangers, None)
+        if oldest is None:
+            return False
+        self._sent_away.add(oldest)
+        _send_away(oldest)
+        return True
+
+    def _end_if_silent(self, protocol: web.RequestHandler) -> None:
+        if self._silent.pop(protocol, None) is not None:
+            protocol.force_close()
+
+
+def _send_away(protocol: web.RequestHandler) -> None:
+    """End a connection to which something may be on its way."""
+    if protocol.transport is not None:
+        # Closed, it would wait for its peer to read; so the write that is under way fails.
+        with contextlib.suppress(OSError):
+            protocol.transport.get_extra_info("socket").shutdown(socket.SHUT_RDWR)
+
+
+class _Refused(asyncio.Protocol):
+    """Ends a connection at once."""
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        transport.close()

@@ -1,0 +1,84 @@
+"""Sound and vibration of each event."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from rastrainer.protocol import Phase, Proximity
+from rastrainer_simulator.state import Event, EventKind
+
+
+class FeedbackEvent(str, Enum):
+    """Everything that has a sound or a vibration; the kinds of the views' events."""
+
+    TOUCH = "touch"
+    UNDO = "undo"
+    ERROR = "error"
+    PROXIMITY_IN = "proximity-in"
+    PROXIMITY_OUT = "proximity-out"
+    CONTACT = "contact"
+    CONTACT_OUT = "contact-out"
+    FINISH = "finish"
+    FOCUS = "focus"
+    ACCEPT = "accept"
+    TEST = "test"
+
+
+@dataclass(frozen=True)
+class FeedbackEffect:
+    """The sound and the vibration of an event.
+
+    Attributes:
+        sound: name of the sound, "" for none.
+        rumble: strength of the vibration, 0 to 1.
+        seconds: how long it vibrates.
+    """
+
+    sound: str
+    rumble: float = 0.0
+    seconds: float = 0.0
+
+
+FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
+    FeedbackEvent.TOUCH: FeedbackEffect("touch", 0.5, 0.12),
+    FeedbackEvent.UNDO: FeedbackEffect("undo", 0.3, 0.12),
+    FeedbackEvent.ERROR: FeedbackEffect("error", 0.7, 0.3),
+    FeedbackEvent.PROXIMITY_IN: FeedbackEffect("proximity", 0.35, 0.2),
+    FeedbackEvent.PROXIMITY_OUT: FeedbackEffect("", 0.15, 0.08),
+    FeedbackEvent.CONTACT: FeedbackEffect("contact", 1.0, 0.4),
+    FeedbackEvent.CONTACT_OUT: FeedbackEffect("", 0.2, 0.08),
+    FeedbackEvent.FINISH: FeedbackEffect("finish", 0.6, 0.5),
+    FeedbackEvent.FOCUS: FeedbackEffect("focus"),
+    FeedbackEvent.ACCEPT: FeedbackEffect("accept"),
+    FeedbackEvent.TEST: FeedbackEffect("", 0.6, 0.2),
+}
+
+
+def feedback_event(event: Event, not_recorded: bool = False) -> FeedbackEvent | None:
+    """Return the feedback to an event of the simulation, None where it has none.
+
+    `not_recorded` says that a change of the phase took back what the disk had refused.
+    """
+    if event.kind is EventKind.TOUCH:
+        return FeedbackEvent.TOUCH
+    if event.kind is EventKind.UNDO:
+        return FeedbackEvent.UNDO
+    if event.kind is EventKind.REJECTED:
+        return FeedbackEvent.ERROR
+    if event.kind is EventKind.PROXIMITY:
+        return _of_proximity(Proximity(event.data["from"]), Proximity(event.data["to"]))
+    if event.kind is EventKind.PHASE and not_recorded:
+        return FeedbackEvent.ERROR
+    if event.kind is EventKind.PHASE and event.data["phase"] == Phase.REGISTERED:
+        return FeedbackEvent.FINISH
+    return None
+
+
+def _of_proximity(before: Proximity, after: Proximity) -> FeedbackEvent:
+    if after is Proximity.CONTACT:
+        return FeedbackEvent.CONTACT
+    if after is Proximity.FREE:
+        return FeedbackEvent.PROXIMITY_OUT
+    return FeedbackEvent.CONTACT_OUT if before is Proximity.CONTACT else FeedbackEvent.PROXIMITY_IN

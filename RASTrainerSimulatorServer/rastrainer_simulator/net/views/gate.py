@@ -1,0 +1,155 @@
+"""Who may pass: every request is looked at here before anything else happens."""
+
+from __future__ import annotations
+
+import asyncio
+import ipaddress
+import math
+import socket
+from collections.abc import Callable
+
+from aiohttp import hdrs, web
+from aiohttp.typedefs import Handler
+
+from rastrainer.errors import InputError
+from rastrainer.json_checks import text
+from rastrainer.protocol import decode_json_object
+from rastrainer_simulator.net.rates import AsyncRateLimiter
+from rastrainer_simulator.net.views.pairing import DIGITS, TOO_MANY, WRONG, PairingCode, Sessions
+
+COOKIE = "rastrainer-view"
+PAIR_FIRST = "Pair first: POST /pair with the code that the simulator shows."
+NOT_A_CODE = f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows.'
+BODY_S = 5.0
+_BEARER = "Bearer "
+_code_text = text(64)
+WRONG_HOST = "The simulator is not known under this name: use its address."
+FOREIGN = "A page of another origin may not connect."
+HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; "
+        "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; form-action 'self'; "
+        "frame-ancestors 'none'"
+    ),
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "xr-spatial-tracking=(self), gamepad=(self), camera=(), microphone=()",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+
+
+class Gate:
+    """Lets paired views pass, and everyone else to the page and to the pairing only."""
+
+    def __init__(
+        self,
+        sessions: Sessions,
+        code: PairingCode,
+        note: Callable[[web.Request], None],
+        note_key: Callable[[web.Request], None],
+        rate_limiter: AsyncRateLimiter,
+    ) -> None:
+        """Make a gate.
+
+        Args:
+            sessions: whose keys open it.
+            code: that a new session is given for.
+            note: is called with every request that arrives, and
+            note_key: of every one that shows a session's key.
+            rate_limiter: every request waits for its turn at it.
+        """
+        self._rate_limiter = rate_limiter
+        self._sessions = sessions
+        self._code = code
+        self._note = note
+        self._note_key = note_key
+
+    @web.middleware
+    async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        """Refuse what comes from elsewhere or without a session's key."""
+        self._note(request)
+        await self._rate_limiter.passed()
+        check_origin(request)
+        if self._sessions.knows(_key(request)):
+            self._note_key(request)
+        elif not _is_public(request):
+            raise web.HTTPUnauthorized(text=PAIR_FIRST)
+        return await handler(request)
+
+    async def pair(self, request: web.Request) -> web.Response:
+        """Give a key, and a cookie with it, for the pairing code."""
+        code = await _code(request)
+        wait = self._code.seconds_to_wait()
+        if wait > 0:
+            raise web.HTTPTooManyRequests(
+                text=TOO_MANY, headers={hdrs.RETRY_AFTER: str(math.ceil(wait))}
+            )
+        if not self._code.accepts(code):
+            raise web.HTTPForbidden(text=WRONG)
+        key = self._sessions.open()
+        response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
+        response.set_cookie(
+            COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
+        )
+        return response
+
+
+def _is_public(request: web.Request) -> bool:
+    resource = request.match_info.route.resource
+    return isinstance(resource, web.StaticResource) or (
+        resource is not None and resource.canonical in ("/", "/pair")
+    )
+
+
+def _key(request: web.Request) -> str:
+    authorization = request.headers.get(hdrs.AUTHORIZATION, "")
+    if authorization.startswith(_BEARER):
+        return authorization.removeprefix(_BEARER)
+    return request.cookies.get(COOKIE, "")
+
+
+async def _code(request: web.Request) -> str:
+    try:
+        body = await asyncio.wait_for(request.read(), BODY_S)
+        return _code_text(decode_json_object(body.decode()).get("code"))
+    except (InputError, ValueError, asyncio.TimeoutError, ConnectionError):
+        raise web.HTTPBadRequest(text=NOT_A_CODE) from None
+
+
+def check_origin(request: web.Request) -> None:
+    """Let a request pass if it is for us and, from a browser, from our own page.
+
+    A name that somebody else's name server points here (DNS rebinding) is not ours.
+
+    Raises:
+        web.HTTPForbidden: it may not pass.
+    """
+    if not _is_own_name(_without_port(request.host)):
+        raise web.HTTPForbidden(text=WRONG_HOST)
+    origin = request.headers.get("Origin")
+    if origin is not None and origin != f"{request.scheme}://{request.host}":
+        raise web.HTTPForbidden(text=FOREIGN)
+
+
+def _without_port(host: str) -> str:
+    name, colon, port = host.rpartition(":")
+    return name if colon and port.isdecimal() else host
+
+
+def _is_own_name(name: str) -> bool:
+    bare = name.removeprefix("[").removesuffix("]")
+    try:
+        ipaddress.ip_address(bare)
+    except ValueError:
+        own = socket.gethostname().lower().removesuffix(".local")
+        return bare.lower() in ("localhost", own, f"{own}.local")
+    return True
+
+
+async def add_security_headers(_request: web.Request, response: web.StreamResponse) -> None:
+    """Add them to any answer before it is sent."""
+    for name, value in HEADERS.items():
+        response.headers.setdefault(name, value)
+    response.headers.setdefault("Cache-Control", "no-cache")
+    response.headers.pop("Server", None)

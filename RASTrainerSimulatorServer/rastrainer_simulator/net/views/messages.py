@@ -1,0 +1,99 @@
+"""What views send: the names of the messages, and the check of all that arrives.
+
+docs/views.md says what each means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.finite_json import decode_message_object
+from rastrainer.json_checks import accepted, number, numbers, one_of, text, whole_number, yes_or_no
+
+PROTOCOL = 1
+SUBPROTOCOL = "rastrainer.views.1"
+
+HELLO = "hello"
+KEY = "key"
+PAD = "pad"
+STICKS = "sticks"
+PRESS = "press"
+ITEM = "item"
+TEXT = "text"
+FRAMES = "frames"
+VISIBILITY = "visibility"
+ALIVE = "alive"
+
+VIEW_KINDS = ("desktop", "page", "headset")
+MOST_AXES = 16
+MOST_BUTTONS = 32
+# Pads go a little beyond their end; what is farther out is no position of a stick.
+SLACK = 1.5
+
+
+@dataclass(frozen=True)
+class Received:
+    """A message that has passed its check; `values` are in the order of its members."""
+
+    type: str
+    values: tuple[Any, ...]
+
+
+def _maybe_empty(longest: int) -> Callable[[Any], str]:
+    """Accept printable text of up to `longest` characters."""
+    check = text(longest)
+    return lambda value: "" if value == "" else check(value)
+
+
+def _positions(most: int, lowest: float) -> Callable[[Any], tuple[float, ...]]:
+    """Accept a list of at most `most` positions from `lowest` to 1."""
+    check_one = number(-SLACK, SLACK)
+
+    def check(value: Any) -> tuple[float, ...]:
+        if not isinstance(value, list) or len(value) > most:
+            raise ValueError(f"a list of at most {most} numbers")
+        return tuple(min(1.0, max(lowest, check_one(item))) for item in value)
+
+    return check
+
+
+_RATE = number(0, 1000, "Hz")
+_COUNT = whole_number(0, 10_000)
+
+MEMBERS: Mapping[str, Mapping[str, Callable[[Any], Any]]] = {
+    HELLO: {"kind": one_of(*VIEW_KINDS), "device": _maybe_empty(80), "refreshHz": _RATE},
+    KEY: {"code": text(32), "isDown": yes_or_no, "text": _maybe_empty(16)},
+    PAD: {"axes": _positions(MOST_AXES, -1.0), "buttons": _positions(MOST_BUTTONS, 0.0)},
+    STICKS: {"translation": numbers(3, 1), "rotation": numbers(2, 1), "fine": yes_or_no},
+    PRESS: {"control": text(40)},
+    ITEM: {"name": text(80)},
+    TEXT: {"name": text(80), "value": _maybe_empty(200)},
+    FRAMES: {"shown": _COUNT, "dropped": _COUNT, "refreshHz": _RATE},
+    VISIBILITY: {"isVisible": yes_or_no},
+    ALIVE: {},
+}
+"""Every message a view may send, and how each of its members is checked."""
+
+
+def check_message(content: str) -> Received:
+    """Return the message that a text holds.
+
+    Raises:
+        InputError: it is none of ours; the sentence says what would be right.
+    """
+    values = decode_message_object(content, "A message")
+    kind = values.pop("type", None)
+    if not isinstance(kind, str) or kind not in MEMBERS:
+        raise InputError(f"The type of a message must be one of {', '.join(MEMBERS)}.")
+    members = MEMBERS[kind]
+    if values.keys() != members.keys():
+        names = ", ".join(members) or "no further member"
+        raise InputError(f"The message {kind} must have {names}.")
+    checked = (
+        accepted(check, values[name], f"The message {kind}: {name}")
+        for name, check in members.items()
+    )
+    return Received(kind, tuple(checked))

@@ -1,0 +1,139 @@
+"""The messages to views, as texts; docs/views.md says what each means."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.net.views.messages import PROTOCOL
+from rastrainer_simulator.net.views.presenter import Control, Feedback
+from rastrainer_simulator.net.views.screen import Screen, screen_to_json
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.teleoperation.axes import AxesChoice
+
+WELCOME = "welcome"
+SCENE = "scene"
+STATE = "state"
+SCREEN = "screen"
+EVENT = "event"
+CONTROL = "control"
+PAIRING = "pairing"
+
+BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand")
+# A micrometre, and less than that at the reach of the arm.
+DECIMALS = 6
+
+
+def welcome(view: int) -> str:
+    """Return the first message to a view."""
+    return _text(WELCOME, protocol=PROTOCOL, view=view, bodies=BODIES)
+
+
+def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
+    """Return where the scene is, and what goes with it; `axes` are those of the sticks."""
+    cameras = {
+        name: {
+            "position": (camera.position / MM_PER_M).tolist(),
+            "focalPoint": (camera.focal_point / MM_PER_M).tolist(),
+            "viewUp": camera.view_up.tolist(),
+            "viewAngleDeg": camera.view_angle_deg,
+        }
+        for name, camera in scenario.cameras.items()
+    }
+    fiducials = {}
+    if task:
+        chosen = scenario.task(task)
+        points = (chosen.fiducials / MM_PER_M).tolist()
+        fiducials = dict(zip(chosen.labels, points, strict=True))
+    url = f"/scene/{sha256}.glb"
+    return _text(SCENE, url=url, task=task, sticks=axes.value, cameras=cameras, fiducials=fiducials)
+
+
+def state(now: SimulationState, delayed: int) -> str:
+    """Return what moves; `delayed` counts the control loop's late and skipped ticks."""
+    training, planned = now.training, now.planned_target
+    matrices = (
+        *now.link_to_world,
+        now.tool_tip_to_world,
+        now.head_to_world,
+        now.stand_to_world,
+    )
+    return _text(
+        STATE,
+        tick=now.tick,
+        time=round(now.sim_time, DECIMALS),
+        poses=[_pose(matrix) for matrix in matrices],
+        clearanceMm=round(now.clearance * MM_PER_M, 3),
+        proximity=now.proximity.value,
+        camera=now.camera,
+        phase=training.phase.value,
+        next=training.next_point,
+        touched=[touch.label for touch in training.touches],
+        elapsed=round(now.elapsed, DECIMALS),
+        plannedTarget=None if planned is None else planned.position,
+        delayed=delayed,
+    )
+
+
+def screen(now: Screen) -> str:
+    """Return what the trainee reads."""
+    return _text(SCREEN, screen=screen_to_json(now))
+
+
+def event(feedback: Feedback) -> str:
+    """Return something to be heard and felt."""
+    return _text(
+        EVENT,
+        number=feedback.number,
+        kind=feedback.kind,
+        sound=feedback.sound,
+        volume=feedback.volume,
+        rumble=feedback.rumble,
+        data=feedback.data,
+    )
+
+
+def control(now: Control, view: int) -> str:
+    """Return who drives the arm, as it is sent to one view."""
+    return _text(CONTROL, holder=now.holder, isYou=now.view == view)
+
+
+def pairing(code: str, addresses: Sequence[str]) -> str:
+    """Return how another view is paired; for this computer's own views only."""
+    return _text(PAIRING, code=code, addresses=addresses)
+
+
+def _pose(matrix: np.ndarray) -> list[float]:
+    rows = matrix.tolist()
+    place = (rows[0][3], rows[1][3], rows[2][3])
+    return [round(value, DECIMALS) for value in (*place, *quaternion(rows))]
+
+
+def _text(kind: str, /, **members: Any) -> str:
+    message: Mapping[str, Any] = {"type": kind, **members}
+    return json.dumps(message, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def quaternion(rows: Sequence[Sequence[float]]) -> tuple[float, float, float, float]:
+    """Return the unit quaternion (x, y, z, w) of a rotation matrix, given row by row.
+
+    The largest of the four is found first and the others divided by it (Shepperd 1978), so that
+    no angle loses digits. A (4, 4) pose is taken for its rotation.
+    """
+    (xx, xy, xz, *_), (yx, yy, yz, *_), (zx, zy, zz, *_) = rows[:3]
+    squares = (1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz)
+    largest = max(range(4), key=squares.__getitem__)
+    twice = math.sqrt(squares[largest])
+    x, y, z, w = {
+        0: lambda: (twice, (xy + yx) / twice, (xz + zx) / twice, (zy - yz) / twice),
+        1: lambda: ((xy + yx) / twice, twice, (yz + zy) / twice, (xz - zx) / twice),
+        2: lambda: ((xz + zx) / twice, (yz + zy) / twice, twice, (yx - xy) / twice),
+        3: lambda: ((zy - yz) / twice, (xz - zx) / twice, (yx - xy) / twice, twice),
+    }[largest]()
+    return x / 2, y / 2, z / 2, w / 2

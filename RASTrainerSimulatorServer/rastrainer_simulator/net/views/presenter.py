@@ -1,0 +1,143 @@
+"""What stands between the views and the simulation: who reads what, and what each control does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from rastrainer_simulator.net.views.screen import Screen
+
+
+@dataclass(frozen=True)
+class Hello:
+    """What a view says of itself when it joins.
+
+    Attributes:
+        kind: "desktop", "page" or "headset".
+        device: model of the headset or name of the browser; "" where unknown.
+        refresh_hz: of its display; 0 where unknown.
+    """
+
+    kind: str
+    device: str = ""
+    refresh_hz: float = 0.0
+
+
+@dataclass(frozen=True)
+class Frames:
+    """How smoothly a view has drawn during the last second."""
+
+    shown: int
+    dropped: int
+    refresh_hz: float
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """Something to be heard and felt, once.
+
+    Attributes:
+        number: counts from 1 without a gap.
+        kind: what happened, such as "touch"; an `EventKind` or one of the flow's own.
+        sound: name of the sound to play, "" for none.
+        volume: of the sound, 0 to 1; 0 while sounds are muted.
+        rumble: strength of the vibration, 0 to 1.
+        data: what else there is to tell, ready for JSON; lengths in mm.
+    """
+
+    number: int
+    kind: str
+    sound: str = ""
+    volume: float = 1.0
+    rumble: float = 0.0
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Control:
+    """What drives the arm.
+
+    Attributes:
+        holder: what people read, such as "gamepad" or "keyboard"; "" while nobody drives.
+        view: number of the view that the holder's input comes from; None for a gamepad at the
+            simulator, and while nobody drives.
+    """
+
+    holder: str = ""
+    view: int | None = None
+
+
+ViewUpdate = Screen | Feedback | Control
+
+
+class Presenter(Protocol):
+    """The flow and the controls, as the view server sees them.
+
+    Everything is called in the event loop's thread, and what is subscribed is called there too;
+    every call returns at once. Values have been checked: numbers are finite and within their
+    range, texts short and printable, `view` is the number of a view that has joined.
+    """
+
+    @property
+    def screen(self) -> Screen:
+        """What the trainee reads now."""
+
+    @property
+    def control(self) -> Control:
+        """What drives the arm now."""
+
+    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
+        """Have `listener` called with each new screen, feedback and holder of the control.
+
+        Returns what ends the subscription.
+        """
+
+    def view_joined(self, view: int, hello: Hello) -> None:
+        """Take note of a view."""
+
+    def view_left(self, view: int) -> None:
+        """Forget a view; what it held has been released before."""
+
+    def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
+        """Take a key: W3C `KeyboardEvent.code`, and what it types or "".
+
+        While a key is held it may come down again and again, as keyboards repeat it. A view
+        that leaves or falls silent releases each key that it held, with `is_down` False.
+        """
+
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        """Take a gamepad that a browser reads: the W3C standard gamepad, axes −1…1, buttons 0…1.
+
+        A view that leaves or falls silent sends it once more with nothing pressed.
+        """
+
+    def on_sticks(
+        self,
+        view: int,
+        translation: tuple[float, float, float],
+        rotation: tuple[float, float],
+        is_fine: bool,
+    ) -> None:
+        """Take the sticks of XR controllers, −1…1, as in `OperatorInput`.
+
+        A view that leaves or falls silent lets them go: zeros.
+        """
+
+    def on_press(self, view: int, control: str) -> None:
+        """Take one press of a control by its name in the settings of the controls; any name."""
+
+    def on_item(self, view: int, name: str) -> None:
+        """Take a click on an item of the menu; any name, the menu may have changed."""
+
+    def on_text(self, view: int, name: str, value: str) -> None:
+        """Take what now stands in a text item; any name, the menu may have changed."""
+
+    def on_frames(self, view: int, frames: Frames) -> None:
+        """Take how smoothly a view draws, once a second."""
+
+    def on_visibility(self, view: int, is_visible: bool) -> None:
+        """Take whether the trainee sees the view: the headset was doffed, the page hidden."""
+
+    def on_silence(self, view: int) -> None:
+        """Take that a view has said nothing for so long that its picture must stand still."""

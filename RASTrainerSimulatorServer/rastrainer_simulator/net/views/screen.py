@@ -1,0 +1,137 @@
+"""What the trainee reads and can choose at a moment, for every view to draw in its own way."""
+
+from __future__ import annotations
+
+import dataclasses
+from enum import Enum
+from typing import Any
+
+
+class Tone(str, Enum):
+    """How a sentence or a figure is meant; a view gives each its color."""
+
+    PLAIN = "plain"
+    GOOD = "good"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+class ItemKind(str, Enum):
+    """What one does with an item.
+
+    A button is pressed, a choice goes left and right through its options, a text is typed, and an
+    axis only shows a position from −1 to 1, as on the screen that tests the gamepad.
+    """
+
+    BUTTON = "button"
+    CHOICE = "choice"
+    TEXT = "text"
+    AXIS = "axis"
+
+
+@dataclasses.dataclass(frozen=True)
+class MenuItem:
+    """One line of a menu.
+
+    Attributes:
+        name: unique in its menu; what a view sends back when the item is clicked.
+        label: what the trainee reads.
+        kind: what one does with it.
+        value: the chosen option, the typed text or the axis's position, ready to be shown.
+        is_enabled: whether it can be chosen; a view draws others paler.
+        help: a sentence shown while the item has the focus, such as why it cannot be chosen.
+        picture: where a picture is that is shown while the item has the focus, a path of the
+            simulator's HTTP server such as "/scenarios/colin27.png"; "" where there is none.
+    """
+
+    name: str
+    label: str
+    kind: ItemKind = ItemKind.BUTTON
+    value: str = ""
+    is_enabled: bool = True
+    help: str = ""
+    picture: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Fact:
+    """One line of a table of results, its value with the unit."""
+
+    label: str
+    value: str
+    tone: Tone = Tone.PLAIN
+
+
+@dataclasses.dataclass(frozen=True)
+class Menu:
+    """A panel over the picture.
+
+    Attributes:
+        name: of the screen, such as "start" or "experiment"; for tests and logs, never shown.
+        title: its headline.
+        paragraphs: running text under it.
+        facts: a table under that.
+        items: the lines that can be chosen, in order.
+        focus: name of the item that has the focus; "" when there is none.
+        picture: which drawing a view puts beside the text: "" or "controls".
+    """
+
+    name: str
+    title: str
+    paragraphs: tuple[str, ...] = ()
+    facts: tuple[Fact, ...] = ()
+    items: tuple[MenuItem, ...] = ()
+    focus: str = ""
+    picture: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class ScreenMessage:
+    """A sentence to the trainee."""
+
+    text: str
+    tone: Tone = Tone.PLAIN
+
+
+@dataclasses.dataclass(frozen=True)
+class Hint:
+    """Which control does what just now, such as "A" and "Touch"."""
+
+    control: str
+    action: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Screen:
+    """Everything beside the scene.
+
+    Attributes:
+        menu: the open panel; None while the trainee works.
+        instruction: what to do now, at the top in the middle.
+        warnings: what is wrong for as long as it lasts: contact, no gamepad, connection lost.
+        status: short facts for the edge of the picture, such as "Task 2", "7 of 15", "03:21".
+        hints: the controls that matter just now, for the lower edge.
+        language: BCP 47 tag of all texts.
+        is_stepped: whether a headset's sticks step as in a menu, though none is open: while a trial
+            is shown again.
+    """
+
+    menu: Menu | None = None
+    instruction: ScreenMessage = ScreenMessage("")
+    warnings: tuple[ScreenMessage, ...] = ()
+    status: tuple[str, ...] = ()
+    hints: tuple[Hint, ...] = ()
+    language: str = "en"
+    is_stepped: bool = False
+
+
+def focused_picture(menu: Menu | None) -> str:
+    """Return where the picture of the item with the focus is, "" where it has none."""
+    if menu is None:
+        return ""
+    return next((item.picture for item in menu.items if item.name == menu.focus), "")
+
+
+def screen_to_json(screen: Screen) -> dict[str, Any]:
+    """Return a screen as a JSON object with the names of the attributes."""
+    return dataclasses.asdict(screen)

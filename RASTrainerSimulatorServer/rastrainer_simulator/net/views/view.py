@@ -1,0 +1,235 @@
+"""One connected view: its WebSocket, what waits to be sent to it, and what it holds down."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from aiohttp import WSCloseCode, WSMsgType, web
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.loop.rate_limit import RateLimit
+from rastrainer_simulator.net.limits import ViewLimits
+from rastrainer_simulator.net.views import messages
+from rastrainer_simulator.net.views.messages import Received, check_message
+from rastrainer_simulator.net.views.outgoing import CONTROL, PAIRING, SCENE, SCREEN, STATE, WELCOME
+from rastrainer_simulator.net.views.presenter import Frames, Presenter
+
+_log = logging.getLogger(__name__)
+
+TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's hands can give."
+TOO_MANY_EVENTS = "The view has not read its events; it may come back."
+NOT_TEXT = "Messages are texts."
+MOST_KEYS = 32
+_BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING)
+
+
+class View:
+    """A view's WebSocket.
+
+    Attributes:
+        number: of the view; none is used twice.
+        is_local: whether it is on this computer, as far as the network can tell.
+        outbox: what waits to be sent to it.
+        held: what it holds down.
+    """
+
+    def __init__(
+        self,
+        number: int,
+        socket: web.WebSocketResponse,
+        presenter: Presenter,
+        limits: ViewLimits,
+        is_local: bool = False,
+    ) -> None:
+        self.number = number
+        self.is_local = is_local
+        self.outbox = Outbox(limits.waiting_events)
+        self.held = HeldInput(number, presenter)
+        self._socket = socket
+        self._presenter = presenter
+        self._rate = RateLimit(limits.messages_per_s, at_once=limits.messages_per_s)
+        self._clock = asyncio.get_running_loop().time
+        self._last_message = self._clock()
+        self._has_reported_frames = False
+        self._take = self._takers()
+
+    async def serve(self) -> None:
+        """Send and receive until either side ends it."""
+        sending = asyncio.create_task(self._send())
+        try:
+            await self._receive()
+        except InputError as error:
+            _log.warning("View %d is closed: %s", self.number, error)
+            await self._close(WSCloseCode.POLICY_VIOLATION, str(error))
+        finally:
+            sending.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await sending
+
+    def release_if_silent(self, silent_s: float) -> None:
+        """Let go of what is held by a view that has not been heard for `silent_s`."""
+        if self.held.is_anything_held and self._clock() - self._last_message > silent_s:
+            self.held.release()
+
+    def has_fallen_silent(self, lost_s: float) -> bool:
+        """Return, once, whether a view that reports its frames has not been heard for `lost_s`."""
+        is_silent = self._has_reported_frames and self._clock() - self._last_message > lost_s
+        if is_silent:
+            self._has_reported_frames = False
+        return is_silent
+
+    async def close(self, message: str) -> None:
+        """End it because the simulator ends."""
+        await self._close(WSCloseCode.GOING_AWAY, message)
+
+    async def _send(self) -> None:
+        with contextlib.suppress(ConnectionError):
+            while not self.outbox.is_overfull:
+                await self._socket.send_str(await self.outbox.take())
+            await self._close(WSCloseCode.TRY_AGAIN_LATER, TOO_MANY_EVENTS)
+
+    async def _receive(self) -> None:
+        async for message in self._socket:
+            now = self._clock()
+            if not self._rate.allows(now):
+                raise InputError(TOO_MANY_MESSAGES)
+            if message.type is WSMsgType.PING:
+                await self._socket.pong(message.data)
+            elif message.type is WSMsgType.TEXT:
+                self._last_message = now
+                self._handle(check_message(message.data))
+            elif message.type is not WSMsgType.PONG:
+                raise InputError(NOT_TEXT)
+
+    def _handle(self, received: Received) -> None:
+        if received.type not in self._take:
+            raise InputError(f"A second {received.type} is not expected.")
+        self._take[received.type](*received.values)
+
+    def _takers(self) -> Mapping[str, Callable[..., None]]:
+        """Return what is done with each message after the first."""
+        presenter, view = self._presenter, self.number
+
+        def to_presenter(take: Callable[..., None]) -> Callable[..., None]:
+            return lambda *values: take(view, *values)
+
+        def nothing(*_values: Any) -> None:
+            """A sign of life needs no more than to have arrived."""
+
+        return {
+            messages.KEY: self.held.key,
+            messages.PAD: self.held.pad,
+            messages.STICKS: self.held.sticks,
+            messages.PRESS: to_presenter(presenter.on_press),
+            messages.ITEM: to_presenter(presenter.on_item),
+            messages.TEXT: to_presenter(presenter.on_text),
+            messages.FRAMES: lambda *values: self._take_frames(Frames(*values)),
+            messages.VISIBILITY: to_presenter(presenter.on_visibility),
+            messages.ALIVE: nothing,
+        }
+
+    def _take_frames(self, frames: Frames) -> None:
+        self._has_reported_frames = True
+        self._presenter.on_frames(self.number, frames)
+
+    async def _close(self, code: int, reason: str) -> None:
+        # The protocol has room for 123 bytes.
+        with contextlib.suppress(ConnectionError):
+            await self._socket.close(code=code, message=reason.encode()[:120])
+
+
+class HeldInput:
+    """Passes a view's keys, pads and sticks on to the presenter and can release them all."""
+
+    def __init__(self, view: int, presenter: Presenter) -> None:
+        self._view = view
+        self._presenter = presenter
+        self._keys: dict[str, None] = {}
+        self._pad: tuple[int, int] | None = None
+        self._has_sticks = False
+
+    @property
+    def is_anything_held(self) -> bool:
+        """Whether `release` would have something to do."""
+        return bool(self._keys) or self._pad is not None or self._has_sticks
+
+    def key(self, code: str, is_down: bool, text: str) -> None:
+        """Take a key; no hand holds more than a few, so further ones are passed over."""
+        if not is_down:
+            self._keys.pop(code, None)
+        elif code in self._keys or len(self._keys) < MOST_KEYS:
+            self._keys[code] = None
+        else:
+            return
+        self._presenter.on_key(self._view, code, is_down, text)
+
+    def pad(self, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        """Take a gamepad's position."""
+        self._pad = (len(axes), len(buttons)) if any(axes) or any(buttons) else None
+        self._presenter.on_pad(self._view, axes, buttons)
+
+    def sticks(
+        self,
+        translation: tuple[float, float, float],
+        rotation: tuple[float, float],
+        is_fine: bool,
+    ) -> None:
+        """Take the sticks of XR controllers."""
+        self._has_sticks = any(translation) or any(rotation) or is_fine
+        self._presenter.on_sticks(self._view, translation, rotation, is_fine)
+
+    def release(self) -> None:
+        """Let go of everything."""
+        for code in tuple(self._keys):
+            self.key(code, False, "")
+        if self._pad is not None:
+            axes, buttons = self._pad
+            self.pad((0.0,) * axes, (0.0,) * buttons)
+        if self._has_sticks:
+            self.sticks((0.0, 0.0, 0.0), (0.0, 0.0), False)
+
+
+class Outbox:
+    """The messages for a view; it belongs to the event loop's thread."""
+
+    def __init__(self, most_events: int) -> None:
+        self._most_events = most_events
+        self._latest: dict[str, str] = {}
+        self._events: deque[str] = deque()
+        self._is_filled = asyncio.Event()
+        self.is_overfull = False
+        """Whether more events have come than may wait."""
+
+    def put_latest(self, kind: str, text: str) -> None:
+        """Have a text sent, in place of one of its kind that still waits."""
+        self._latest[kind] = text
+        self._is_filled.set()
+
+    def put_event(self, text: str) -> None:
+        """Have an event sent after those before it."""
+        if len(self._events) >= self._most_events:
+            self.is_overfull = True
+        else:
+            self._events.append(text)
+        self._is_filled.set()
+
+    async def take(self) -> str:
+        """Wait for something to send and return it; what moves comes last."""
+        await self._is_filled.wait()
+        text = self._next()
+        if not self._latest and not self._events:
+            self._is_filled.clear()
+        return text
+
+    def _next(self) -> str:
+        for kind in _BEFORE_EVENTS:
+            if kind in self._latest:
+                return self._latest.pop(kind)
+        if self._events:
+            return self._events.popleft()
+        return self._latest.pop(STATE)

@@ -1,0 +1,252 @@
+"""HTTP and the stream, in the simulator's event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import socket
+import ssl
+from collections.abc import Callable
+from ipaddress import ip_address
+from pathlib import Path
+
+from aiohttp import WSCloseCode, WSMsgType, web
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.net.limits import ViewLimits
+from rastrainer_simulator.net.listener import Listener
+from rastrainer_simulator.net.rates import AsyncRateLimiter
+from rastrainer_simulator.net.state_feed import StateFeed, StateSource
+from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
+from rastrainer_simulator.net.views.gate import Gate, add_security_headers
+from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL, check_message
+from rastrainer_simulator.net.views.page import NOT_BUILT, page_folder
+from rastrainer_simulator.net.views.pairing import PairingCode, Sessions
+from rastrainer_simulator.net.views.presenter import Hello, Presenter
+from rastrainer_simulator.net.views.view import View
+from rastrainer_simulator.net.views.views import Views
+from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, read_scene
+
+FOREVER = "private, max-age=31536000, immutable"
+FULL = "As many views as can be served are connected."
+HELLO_FIRST = "The first message of a view must be a hello."
+LARGEST_BODY = 1024
+SHUTDOWN_S = 1.0
+
+
+class ViewServer:
+    """Serves the page, the scene, the sounds, pictures of scenarios and the stream.
+
+    Attributes:
+        code: pairs a view; to be shown to people, and sent to this computer's own views.
+        addresses: where browsers find the page, such as "http://127.0.0.1:18945".
+        sessions: keys of the views that may look.
+        port: where it listens; 0 before it does.
+    """
+
+    def __init__(
+        self,
+        source: StateSource,
+        presenter: Presenter,
+        on_new_code: Callable[[str], None],
+        robot_meshes: Path | None = None,
+        limits: ViewLimits | None = None,
+        scenario_picture: Callable[[str], Path | None] = lambda _name: None,
+    ) -> None:
+        """Make a server, in the event loop's thread; nothing listens yet.
+
+        Args:
+            source: whose states are sent.
+            presenter: what the views' input goes to, and where their screens come from.
+            on_new_code: is given a pairing code that replaces `code`, to be shown.
+            robot_meshes: those that the setups are loaded with.
+            limits: what views may cost.
+            scenario_picture: returns the picture of a scenario by its name.
+        """
+        self._scenario_picture = scenario_picture
+        self._source = source
+        self._presenter = presenter
+        self._limits = limits or ViewLimits()
+        self.code = PairingCode(asyncio.get_running_loop().time, self._renewed)
+        self.addresses: list[str] = []
+        self._on_new_code = on_new_code
+        self.sessions = Sessions(self._limits.sessions)
+        self.port = 0
+        self._scenes = SceneFiles(cache_folder(), robot_meshes)
+        self._views = Views(source, presenter, self._scenes, self._limits)
+        self._streams = 0
+        self._page = page_folder()
+        self._connections = Connections(self._limits.connections, self._limits.first_message_s)
+        self._runner = web.AppRunner(
+            self._application(),
+            access_log=None,
+            logger=http_log(),
+            keepalive_timeout=KEEP_ALIVE_S,
+            shutdown_timeout=SHUTDOWN_S,
+        )
+        self._listeners: list[Listener] = []
+        self._unsubscribe: Callable[[], None] = lambda: None
+
+    async def listen(self, host: str, port: int) -> int:
+        """Listen, and return on which port; 0 is any free one.
+
+        Raises:
+            InputError: the address cannot be listened on.
+        """
+        self.port = await self._open(host, port, None)
+        self.announce(f"http://{host}:{self.port}")
+        await self._runner.setup()
+        self._connections.server = self._runner.server
+        feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
+        self._unsubscribe = self._source.subscribe(feed)
+        return self.port
+
+    async def listen_in_network(self, port: int, tls: ssl.SSLContext) -> int:
+        """Listen to other computers, too, by TLS only; return on which port.
+
+        Raises:
+            InputError: the port cannot be listened on.
+        """
+        return await self._open("0.0.0.0", port, tls)
+
+    def announce(self, *addresses: str) -> None:
+        """Send this computer's views where else browsers find the page."""
+        self.addresses += addresses
+        self._views.tell_pairing(self.code.code, self.addresses)
+
+    async def close(self) -> None:
+        """Close the views and stop listening."""
+        self._unsubscribe()
+        for listener in self._listeners:
+            listener.close()
+        await self._views.close()
+        await self._runner.cleanup()
+
+    def _renewed(self, code: str) -> None:
+        self._on_new_code(code)
+        self._views.tell_pairing(code, self.addresses)
+
+    async def _open(self, host: str, port: int, tls: ssl.SSLContext | None) -> int:
+        listener = Listener(
+            self._connections,
+            self._limits.new_connections_per_s,
+            tls,
+            self._limits.first_message_s,
+        )
+        try:
+            found = await listener.listen(host, port)
+        except (OSError, OverflowError) as error:
+            raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
+        self._listeners.append(listener)
+        return found
+
+    def _application(self) -> web.Application:
+        rate_limiter = AsyncRateLimiter(self._limits.requests_per_s)
+        connections = self._connections
+        gate = Gate(self.sessions, self.code, connections.note, connections.note_key, rate_limiter)
+        app = web.Application(middlewares=[gate.check], client_max_size=LARGEST_BODY)
+        app.on_response_prepare.append(add_security_headers)
+        app.add_routes(
+            [
+                web.get("/", self._send_page),
+                web.post("/pair", gate.pair),
+                web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
+                web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
+                web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
+                web.get("/stream", self._stream),
+            ]
+        )
+        if self._page is not None:
+            app.add_routes([web.static("/", self._page)])
+        return app
+
+    async def _send_page(self, _request: web.Request) -> web.StreamResponse:
+        if self._page is None:
+            return web.Response(text=NOT_BUILT, content_type="text/html")
+        return web.FileResponse(self._page / "index.html")
+
+    async def _send_scene(self, request: web.Request) -> web.Response:
+        file = self._scenes.find(request.match_info["sha256"])
+        content = None if file is None else await asyncio.to_thread(read_scene, file)
+        if content is None:
+            raise web.HTTPNotFound
+        return web.Response(
+            body=content,
+            content_type="model/gltf-binary",
+            headers={"Cache-Control": FOREVER},
+        )
+
+    async def _send_sound(self, request: web.Request) -> web.StreamResponse:
+        path = asset_path("sounds", f"{request.match_info['name']}.wav")
+        if not path.is_file():
+            raise web.HTTPNotFound
+        return web.FileResponse(path)
+
+    async def _send_picture(self, request: web.Request) -> web.StreamResponse:
+        path = self._scenario_picture(request.match_info["name"])
+        if path is None or not path.is_file():
+            raise web.HTTPNotFound
+        return web.FileResponse(path, headers={"Content-Type": "image/png"})
+
+    async def _stream(self, request: web.Request) -> web.StreamResponse:
+        stream = web.WebSocketResponse(
+            protocols=(SUBPROTOCOL,),
+            max_msg_size=self._limits.message_bytes,
+            heartbeat=self._limits.gone_s / 2.0,
+            compress=False,
+            # Pings are answered by the view, where they count as any message does.
+            autoping=False,
+            # Every message waits until the one before it has left: only so the latest is sent.
+            writer_limit=0,
+        )
+        if stream.can_prepare(request).protocol != SUBPROTOCOL:
+            raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
+        if self._streams >= self._limits.views:
+            raise web.HTTPServiceUnavailable(text=FULL)
+        self._streams += 1
+        try:
+            await stream.prepare(request)
+            self._keep_little_waiting(request)
+            await self._serve(stream, _is_local(request))
+        finally:
+            self._streams -= 1
+        return stream
+
+    async def _serve(self, stream: web.WebSocketResponse, is_local: bool) -> None:
+        try:
+            hello = await self._first_message(stream)
+        except InputError as error:
+            await stream.close(code=WSCloseCode.POLICY_VIOLATION, message=str(error).encode()[:120])
+            return
+        view = View(self._views.next_number(), stream, self._presenter, self._limits, is_local)
+        await self._views.serve(view, hello)
+
+    async def _first_message(self, stream: web.WebSocketResponse) -> Hello:
+        try:
+            first = await stream.receive(self._limits.first_message_s)
+        except asyncio.TimeoutError:
+            raise InputError(HELLO_FIRST) from None
+        if first.type is not WSMsgType.TEXT:
+            raise InputError(HELLO_FIRST)
+        received = check_message(first.data)
+        if received.type != HELLO:
+            raise InputError(HELLO_FIRST)
+        return Hello(*received.values)
+
+    def _keep_little_waiting(self, request: web.Request) -> None:
+        transport = request.transport
+        if transport is None:
+            return
+        transport.set_write_buffer_limits(high=0)
+        with contextlib.suppress(OSError):
+            peer = transport.get_extra_info("socket")
+            peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._limits.buffer_bytes)
+
+
+def _is_local(request: web.Request) -> bool:
+    """Tell whether a request comes from this computer; a headset on its cable does, too."""
+    try:
+        return ip_address(request.remote or "").is_loopback
+    except ValueError:
+        return False

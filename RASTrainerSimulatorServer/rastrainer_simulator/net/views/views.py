@@ -1,0 +1,165 @@
+"""All connected views, and what is sent to them."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+import time
+from collections.abc import Sequence
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.net.limits import ViewLimits
+from rastrainer_simulator.net.rates import Pacer
+from rastrainer_simulator.net.state_feed import StateSource
+from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.presenter import (
+    Control,
+    Feedback,
+    Hello,
+    Presenter,
+    ViewUpdate,
+)
+from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.view import View
+from rastrainer_simulator.scene.scene_files import SceneFiles
+from rastrainer_simulator.state import SimulationState
+
+_log = logging.getLogger(__name__)
+
+_WATCH_PERIOD_S = 0.05
+_BEFORE_BUILDING_AHEAD_S = 3.0
+ENDING = "The simulator has been stopped."
+
+
+class Views:
+    """The joined views; `is_due` may be called in any thread, all else in the event loop's."""
+
+    def __init__(
+        self, source: StateSource, presenter: Presenter, scenes: SceneFiles, limits: ViewLimits
+    ) -> None:
+        self._source = source
+        self._presenter = presenter
+        self._scenes = scenes
+        self._limits = limits
+        self._views: dict[int, View] = {}
+        self._numbers = itertools.count(1)
+        self._pacer = Pacer(limits.state_hz)
+        self._setup: SimulationSetup | None = None
+        self._task = ""
+        self._scene = ""
+        self._pairing = ""
+        self._loading: asyncio.Task[None] | None = None
+        self._watching: asyncio.Task[None] | None = None
+        self._unsubscribe = presenter.subscribe(self._send_update)
+
+    def next_number(self) -> int:
+        """Return a number for a view that no other has had."""
+        return next(self._numbers)
+
+    async def serve(self, view: View, hello: Hello) -> None:
+        """Have a view take part until it leaves."""
+        self._views[view.number] = view
+        try:
+            self._presenter.view_joined(view.number, hello)
+            self._send_all(view)
+            self._watch()
+            await view.serve()
+        finally:
+            view.held.release()
+            del self._views[view.number]
+            self._presenter.view_left(view.number)
+
+    def tell_pairing(self, code: str, addresses: Sequence[str]) -> None:
+        """Send the views of this computer how others are paired, now and whenever one joins."""
+        self._pairing = outgoing.pairing(code, addresses)
+        for view in self._views.values():
+            self._put_pairing(view)
+
+    async def close(self) -> None:
+        """Send everyone away and stop."""
+        self._unsubscribe()
+        tasks = [task for task in (self._loading, self._watching) if task is not None]
+        for task in tasks:
+            task.cancel()
+        closings = [view.close(ENDING) for view in self._views.values()]
+        await asyncio.gather(*tasks, *closings, return_exceptions=True)
+
+    def is_due(self, _state: SimulationState) -> bool:
+        """Return whether the views are due for what moves, by wall-clock time."""
+        return bool(self._views) and self._pacer.is_due(time.monotonic())
+
+    def tell(self, now: SimulationState) -> None:
+        """Send what moves, and look whether it needs another scene."""
+        self._look_for_scene(now)
+        text = self._state_text(now)
+        for view in self._views.values():
+            view.outbox.put_latest(outgoing.STATE, text)
+
+    def _send_all(self, view: View) -> None:
+        """Send a view that has just joined the present state."""
+        now = self._source.latest
+        self._look_for_scene(now)
+        put = view.outbox.put_latest
+        put(outgoing.WELCOME, outgoing.welcome(view.number))
+        if self._scene:
+            put(outgoing.SCENE, self._scene)
+        put(outgoing.CONTROL, outgoing.control(self._presenter.control, view.number))
+        put(outgoing.SCREEN, outgoing.screen(self._presenter.screen))
+        put(outgoing.STATE, self._state_text(now))
+        self._put_pairing(view)
+
+    def _put_pairing(self, view: View) -> None:
+        if view.is_local and self._pairing:
+            view.outbox.put_latest(outgoing.PAIRING, self._pairing)
+
+    def _state_text(self, now: SimulationState) -> str:
+        statistics = self._source.statistics
+        return outgoing.state(now, statistics.late + statistics.skipped)
+
+    def _send_update(self, update: ViewUpdate) -> None:
+        if isinstance(update, Screen):
+            text = outgoing.screen(update)
+            for view in self._views.values():
+                view.outbox.put_latest(outgoing.SCREEN, text)
+        elif isinstance(update, Feedback):
+            text = outgoing.event(update)
+            for view in self._views.values():
+                view.outbox.put_event(text)
+        elif isinstance(update, Control):
+            for view in self._views.values():
+                view.outbox.put_latest(outgoing.CONTROL, outgoing.control(update, view.number))
+
+    def _look_for_scene(self, now: SimulationState) -> None:
+        setup, task = self._source.setup, now.training.task
+        if setup is self._setup and task == self._task:
+            return
+        self._setup, self._task = setup, task
+        if self._loading is not None:
+            self._loading.cancel()
+        self._loading = asyncio.create_task(self._load_scene(setup, task))
+
+    async def _load_scene(self, setup: SimulationSetup, task: str) -> None:
+        try:
+            file = await self._scenes.scene(setup, task)
+            self._scene = outgoing.scene(file.sha256, setup.scenario, task, setup.settings.axes)
+            for view in self._views.values():
+                view.outbox.put_latest(outgoing.SCENE, self._scene)
+            # The views that have just got this scene need the processor first.
+            await asyncio.sleep(_BEFORE_BUILDING_AHEAD_S)
+            await self._scenes.build_all(setup)
+        except InputError as error:
+            _log.error("%s", error)
+
+    def _watch(self) -> None:
+        if self._watching is None:
+            self._watching = asyncio.create_task(self._release_silent())
+
+    async def _release_silent(self) -> None:
+        while True:
+            await asyncio.sleep(_WATCH_PERIOD_S)
+            for view in tuple(self._views.values()):
+                view.release_if_silent(self._limits.silent_s)
+                if view.has_fallen_silent(self._limits.lost_s):
+                    self._presenter.on_silence(view.number)

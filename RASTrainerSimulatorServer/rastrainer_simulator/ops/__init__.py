@@ -1,0 +1,1 @@
+"""Logs, child processes and folders of the running program."""

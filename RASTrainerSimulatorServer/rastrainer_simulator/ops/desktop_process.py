@@ -1,0 +1,58 @@
+"""The window that a simulator opens beside itself: another process, which may come and go."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from rastrainer.processes.private_folder import python_words
+from rastrainer_simulator.ops.child_process import VIEW_KEY_VARIABLE
+
+ENDING_S = 3.0
+GONE = (
+    "continues without its window, which ended with status {status}: open another with `rastrainer "
+    "window --connect {url} --code` and the pairing code"
+)
+
+
+class DesktopProcess:
+    """Runs the desktop window of one simulator."""
+
+    def __init__(self, url: str, key: str, logs: Path):
+        """`url` is where views are served, `key` one they are served for; it logs to `logs`."""
+        self._url = url
+        self._key = key
+        self._logs = logs
+        self._process: asyncio.subprocess.Process | None = None
+
+    async def run(self, on_closed: Callable[[], None], tell: Callable[[str], None]) -> None:
+        """Open the window and wait for its end.
+
+        `on_closed` is called if its user has closed it. If it ended in any other way the
+        simulator stays, with the trial that is running; `tell` says how to come back.
+        """
+        options = ("--connect", self._url, "--log-folder", str(self._logs))
+        command = python_words("rastrainer_simulator.cli.main", "window", *options)
+        environment = {**os.environ, VIEW_KEY_VARIABLE: self._key}
+        self._process = await asyncio.create_subprocess_exec(*command, env=environment)
+        status = await self._process.wait()
+        if status == 0:
+            on_closed()
+        else:
+            tell(GONE.format(status=status, url=self._url))
+
+    async def close(self) -> None:
+        """Close the window if it is still open."""
+        process = self._process
+        if process is None or process.returncode is not None:
+            return
+        with contextlib.suppress(ProcessLookupError):
+            process.terminate()
+        try:
+            await asyncio.wait_for(process.wait(), ENDING_S)
+        except asyncio.TimeoutError:
+            process.kill()
+            await process.wait()

@@ -1,0 +1,197 @@
+"""Logs go to files that rotate; warnings go to the terminal, too.
+
+No secret and no pseudonym is ever logged: pairing codes and keys are printed or passed by the
+environment, and a trial is named by its UUID, so that a deleted trainee leaves no trace here.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import logging.handlers
+import os
+import queue
+import threading
+from collections.abc import Iterator
+from datetime import datetime, timezone
+from io import TextIOWrapper
+from pathlib import Path
+
+from rastrainer.errors import RASTrainerError
+from rastrainer.files.writing import make_private_folder, open_private
+from rastrainer.journal.folder_lock import lock
+from rastrainer_simulator.ops.stamps import iso
+
+LARGEST_FILE = 1_000_000
+OLDER_FILES = 5
+MOST_LOGS = 9
+"""Of one name that are written to at the same time."""
+TERMINAL_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
+
+_OURS = ("rastrainer", "rastrainer_simulator")
+
+_log = logging.getLogger(__name__)
+_crashes = logging.getLogger("rastrainer.crash")
+LONGEST_MESSAGE = 8000
+"""Characters of a message or a traceback; what is longer is cut."""
+MOST_WAITING = 1000
+CLOSE_TIMEOUT_S = 1.0
+
+
+class _LogFile(logging.handlers.RotatingFileHandler):
+    """A file that gives up silently: a full disk is reported where the trial is recorded."""
+
+    def _open(self) -> TextIOWrapper:
+        """Open the file for its user alone; an older one is this one, renamed."""
+        descriptor = open_private(self.baseFilename, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        return os.fdopen(descriptor, "a", encoding=self.encoding, errors=self.errors)
+
+    def handleError(self, _record: logging.LogRecord) -> None:  # noqa: N802 - logging's own name
+        """Do nothing."""
+
+
+@contextlib.contextmanager
+def keep_logs(folder: Path, name: str) -> Iterator[None]:
+    """Log to `NAME.log` in a folder, and warnings to the terminal.
+
+    Where another program logs to that file it is `NAME-2.log`, and so on: two that rotate one file
+    would lose each other's lines. A folder that cannot be written to is reported in one warning:
+    nothing depends on a log.
+    """
+    terminal = logging.StreamHandler()
+    terminal.setLevel(logging.WARNING)
+    terminal.setFormatter(logging.Formatter(TERMINAL_FORMAT))
+    with contextlib.ExitStack() as ends:
+        _add(ends, logging.getLogger(), BackgroundHandler(terminal))
+        opened = _opened(ends, folder, name)
+        if opened is not None:
+            file = BackgroundHandler(opened)
+            _add(ends, logging.getLogger(), file)
+            _add(ends, _crashes, file)
+            _crashes.propagate = False
+            for package in _OURS:
+                logging.getLogger(package).setLevel(logging.INFO)
+        with _crashes_logged():
+            yield
+
+
+def _opened(ends: contextlib.ExitStack, folder: Path, name: str) -> _LogFile | None:
+    try:
+        make_private_folder(folder)
+        file = _LogFile(
+            folder / f"{_free_name(ends, folder, name)}.log",
+            maxBytes=LARGEST_FILE,
+            backupCount=OLDER_FILES,
+            encoding="utf-8",
+        )
+    except OSError as error:
+        _log.warning("There is no log: %s cannot be written to (%s).", folder, error.strerror)
+        return None
+    file.setFormatter(JsonLines())
+    return file
+
+
+def _free_name(ends: contextlib.ExitStack, folder: Path, name: str) -> str:
+    """Return the first name that no other program logs by, and hold it."""
+    for own in (name, *(f"{name}-{number}" for number in range(2, MOST_LOGS + 1))):
+        flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
+        descriptor = open_private(folder / f".{own}.lock", flags)
+        ends.callback(os.close, descriptor)
+        with contextlib.suppress(OSError):
+            lock(descriptor)
+            return own
+    # Locks are not to be had here, as on some disks of other computers.
+    return name
+
+
+def _add(ends: contextlib.ExitStack, logger: logging.Logger, handler: logging.Handler) -> None:
+    logger.addHandler(handler)
+    ends.callback(handler.close)
+    ends.callback(logger.removeHandler, handler)
+
+
+@contextlib.contextmanager
+def _crashes_logged() -> Iterator[None]:
+    """Log why the program ends; the terminal is told by whoever catches it."""
+    try:
+        yield
+    except RASTrainerError as error:
+        _crashes.error("%s", error)
+        raise
+    except Exception:
+        _crashes.critical("The program has crashed.", exc_info=True)
+        raise
+
+
+class JsonLines(logging.Formatter):
+    """Formats a record as `{"utc": …, "level": …, "logger": …, "message": …}`.
+
+    What was passed as `extra={"data": {…}}` stands under `data`, a traceback under `traceback`.
+    """
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line, without a newline."""
+        line = {
+            "utc": iso(datetime.fromtimestamp(record.created, timezone.utc)),
+            "level": record.levelname.lower(),
+            "logger": record.name,
+            "process": record.process,
+            "message": record.getMessage()[:LONGEST_MESSAGE],
+        }
+        data = getattr(record, "data", None)
+        if data is not None:
+            line["data"] = data
+        if record.exc_info:
+            line["traceback"] = self.formatException(record.exc_info)[-LONGEST_MESSAGE:]
+        return json.dumps(line, default=str)
+
+
+class BackgroundHandler(logging.Handler):
+    """Hands records to another handler in a thread of its own, in order.
+
+    A pipe whose reader has stopped, a terminal in which text is being selected and a disk that is
+    asleep all make a write wait, and a server that waits answers nobody. Records that the other
+    handler cannot take in time are lost; a line in their place says how many. The standard
+    library's QueueHandler and QueueListener neither count what they lose nor give up when the
+    program ends, and they drop tracebacks.
+    """
+
+    def __init__(self, handler: logging.Handler) -> None:
+        """`handler` belongs to it from now on; its level counts."""
+        super().__init__(handler.level)
+        self._handler = handler
+        self._waiting: queue.Queue[logging.LogRecord | None] = queue.Queue(MOST_WAITING)
+        self._lost = 0
+        self._thread = threading.Thread(target=self._write, name="log", daemon=True)
+        self._thread.start()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Put a record into the queue, or lose it where that is full."""
+        try:
+            if self._lost:
+                self._waiting.put_nowait(_gap(self._lost))
+                self._lost = 0
+            self._waiting.put_nowait(record)
+        except queue.Full:
+            self._lost += 1
+
+    def close(self) -> None:
+        """Write what waits, for at most a second."""
+        with contextlib.suppress(queue.Full):
+            if self._lost:
+                self._waiting.put(_gap(self._lost), timeout=CLOSE_TIMEOUT_S)
+            self._waiting.put(None, timeout=CLOSE_TIMEOUT_S)
+        self._thread.join(CLOSE_TIMEOUT_S)
+        if not self._thread.is_alive():
+            self._handler.close()
+        super().close()
+
+    def _write(self) -> None:
+        while (record := self._waiting.get()) is not None:
+            self._handler.handle(record)
+
+
+def _gap(lost: int) -> logging.LogRecord:
+    words = "%d lines are missing here: nobody took them in time."
+    return logging.LogRecord(__name__, logging.WARNING, __file__, 0, words, (lost,), None)

@@ -1,0 +1,1 @@
+"""The sentences of the simulator's screens, one file a language."""

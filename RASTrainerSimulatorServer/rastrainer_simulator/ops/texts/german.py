@@ -1,0 +1,545 @@
+"""The same sentences in German."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+_ITEMS: Mapping[str, str] = {
+    "sus_1": "würde es gern häufig benutzen",
+    "sus_2": "unnötig komplex",
+    "sus_3": "einfach zu benutzen",
+    "sus_4": "brauche die Hilfe einer technisch kundigen Person",
+    "sus_5": "Funktionen gut aufeinander abgestimmt",
+    "sus_6": "zu viele Unstimmigkeiten",
+    "sus_7": "die meisten lernen es schnell",
+    "sus_8": "umständlich",
+    "sus_9": "fühlte mich sicher",
+    "sus_10": "musste vorher viel lernen",
+    "sus.low": "stimme gar nicht zu",
+    "sus.high": "stimme völlig zu",
+    "tlx_mental": "Geistige Anforderung",
+    "tlx_physical": "Körperliche Anforderung",
+    "tlx_temporal": "Zeitliche Anforderung",
+    "tlx_performance": "Leistung",
+    "tlx_performance.low": "perfekt",
+    "tlx_performance.high": "Misserfolg",
+    "tlx_effort": "Anstrengung",
+    "tlx_frustration": "Frustration",
+    "nasa-tlx.low": "sehr gering",
+    "nasa-tlx.high": "sehr hoch",
+    "ssq_discomfort": "Allgemeines Unwohlsein",
+    "ssq_fatigue": "Müdigkeit",
+    "ssq_headache": "Kopfschmerzen",
+    "ssq_eyestrain": "Überanstrengte Augen",
+    "ssq_focusing": "Schwierigkeiten, scharf zu sehen",
+    "ssq_salivation": "Erhöhter Speichelfluss",
+    "ssq_sweating": "Schwitzen",
+    "ssq_nausea": "Übelkeit",
+    "ssq_concentrating": "Konzentrationsschwierigkeiten",
+    "ssq_fullness": "Druckgefühl im Kopf",
+    "ssq_blurred": "Verschwommenes Sehen",
+    "ssq_dizzy_open": "Schwindel bei offenen Augen",
+    "ssq_dizzy_closed": "Schwindel bei geschlossenen Augen",
+    "ssq_vertigo": "Drehschwindel",
+    "ssq_stomach": "Magen macht sich bemerkbar",
+    "ssq_burping": "Aufstoßen",
+    "ssq.low": "gar nicht",
+    "ssq.high": "stark",
+}
+
+_FEEDBACK: Mapping[str, str] = {
+    "feedback.touch": "Punkt {label} lag {residual:.1f} mm daneben{where}{hurry}{tremor}.",
+    "feedback.touch above": ", vor allem in der Tiefe ({depth:.1f} mm über der Haut)",
+    "feedback.touch below": ", vor allem in der Tiefe ({depth:.1f} mm unter der Haut)",
+    "feedback.touch aside": ", vor allem entlang der Haut",
+    "feedback.touch hurry": "; du warst in Eile: halte einen Moment still, bevor du berührst",
+    "feedback.touch tremor": "; die Spitze hat gezittert: nimm für den letzten Zentimeter die "
+    "feine Geschwindigkeit",
+    "feedback.no touch": "Keine Berührung fällt auf: die Fehler sind gleichmäßig verteilt.",
+    "feedback.contact": "Du bist unterwegs einmal an den Kopf gestoßen. Heb ab, bevor du zum "
+    "nächsten Punkt fährst.",
+    "feedback.contacts": "Du bist unterwegs {count}-mal an den Kopf gestoßen. Heb ab, bevor du zum "
+    "nächsten Punkt fährst.",
+    "feedback.dragging": "Das Werkzeug lag abseits der Punkte {time:.0f} s auf dem Kopf, über "
+    "{path:.0f} mm: heb ab, bevor du zum nächsten Punkt fährst.",
+    "feedback.pressing": "Du hast an den Punkten {depth:.1f} mm in den Kopf gedrückt: halt an, "
+    "sobald die Spitze die Haut berührt.",
+    "feedback.worst touch": "Achte mehr auf den Punkt {points}: ohne diesen Fehler wäre die "
+    "Registrierung etwa {share:.0f} % genauer.",
+    "feedback.worst touches": "Achte mehr auf die Punkte {points}: ohne diese Fehler wäre die "
+    "Registrierung etwa {share:.0f} % genauer.",
+    "feedback.depth": "Der Fehler liegt vor allem in der Tiefe: bring die Spitze ganz auf die "
+    "Haut, und schau von der Seite, bevor du berührst.",
+    "feedback.idle time": "Das Werkzeug stand {idle:.0f} s von {time:.0f} s still: such den "
+    "nächsten Punkt, während du noch an diesem bist.",
+    "feedback.detours": "Das Werkzeug fuhr das {times:.1f}-Fache des kürzesten Wegs: fahr näher "
+    "und in einem Zug um den Kopf.",
+    "feedback.repeated touch": "1 Berührung wurde abgelehnt oder zurückgenommen: prüf die Nummer "
+    "des Punkts, bevor du berührst.",
+    "feedback.repeated touches": "{count} Berührungen wurden abgelehnt oder zurückgenommen: prüf "
+    "die Nummer des Punkts, bevor du berührst.",
+    "feedback.pace": "Du hast {time:.0f} s gebraucht, üblich sind {usual:.0f} s: fahr zwischen den "
+    "Punkten schneller und erst nah an der Haut langsam.",
+    "feedback.first trial": "Das ist dein erster Versuch dieser Aufgabe in diesem Modus.",
+    "feedback.first of this score": "Deine früheren Versuche dieser Aufgabe haben Punktzahlen "
+    "einer früheren Version, die sich mit dieser nicht vergleichen lassen.",
+    "feedback.more points": "{points:.0f} Punkte mehr als im Mittel deiner letzten {trials} "
+    "Versuche dieser Aufgabe.{best}",
+    "feedback.less points": "{points:.0f} Punkte weniger als im Mittel deiner letzten {trials} "
+    "Versuche dieser Aufgabe.{best}",
+    "feedback.more points than last": "{points:.0f} Punkte mehr als in deinem letzten Versuch "
+    "dieser Aufgabe.{best}",
+    "feedback.less points than last": "{points:.0f} Punkte weniger als in deinem letzten Versuch "
+    "dieser Aufgabe.{best}",
+    "feedback.best": " Es ist dein bisher bester.",
+    "feedback.unacceptable": "Nicht bestanden: der wahre Fehler im Gehirn oder der Kontakt mit dem "
+    "Kopf ist größer als zulässig.",
+    "feedback.passed": "Bestanden: die Marke ist {mark:.0f}.",
+    "feedback.not passed": "Noch nicht bestanden: {points:.0f} Punkte bis zur Marke von "
+    "{mark:.0f}.",
+    "feedback.competent": "Deine Versuche zeigen Können seit Nummer {number}: von denen, die noch "
+    "in {failing:.0f} % ihrer Versuche scheitern, kommen durch Zufall {risk:.0f} % in {trials} "
+    "Versuchen so weit (LC-CUSUM).",
+    "feedback.not competent": "{share:.0f} % des Wegs zum nachgewiesenen Können (LC-CUSUM; "
+    "Versuche bisher: {trials}).",
+}
+
+GERMAN: Mapping[str, str] = MappingProxyType(
+    {
+        # What the trainee reads at the top of the picture.
+        "idle": "Wähle eine Aufgabe, um zu beginnen.",
+        "start": "{trainee}, berühre Punkt {point}.",
+        "touched": "{trainee}, Punkt {label} ist aufgenommen. Berühre jetzt Punkt {point}.",
+        "undone": "{trainee}, Punkt {label} ist zurückgenommen. Berühre ihn noch einmal.",
+        "complete": "{trainee}, alle {count} Punkte sind berührt. Registriere sie jetzt.",
+        "paused": "{trainee}, der Versuch ist angehalten. Mach weiter, wenn du bereit bist.",
+        "resumed": "{trainee}, weiter mit Punkt {point}.",
+        "registered": "{trainee}, deine Punkte werden nun registriert und bewertet.",
+        "scored": "{trainee}, du hast {score:.0f} von 100: {fre:.2f} mm Registrierungsfehler, "
+        "{tre:.2f} mm wahrer Fehler am Ziel.",
+        "aborted": "{trainee}, der Versuch wurde abgebrochen. Wähle eine Aufgabe, um neu zu "
+        "beginnen.",
+        # Touches that do not count.
+        "too far": "Zu weit von Punkt {point}: {distance:.1f} mm; eine Berührung zählt bis "
+        "{radius:g} mm.",
+        "above the skin": "{height:.1f} mm über der Haut: Senke die Spitze auf Punkt {point}.",
+        "wrong point": "Falscher Punkt: Das ist Punkt {label}, {nearest:.1f} mm entfernt; Punkt "
+        "{point} ist an der Reihe.",
+        # Commands in the wrong phase.
+        "no trial": "Es läuft kein Versuch: Beginne einen mit StartTask.",
+        "trial is open": "{trainee} ist noch bei {task}: Register oder Abort vor StartTask.",
+        "not all touched": "{kept} von {count} Punkten sind berührt: Register kommt nach dem "
+        "letzten; Punkt {point} ist an der Reihe.",
+        "not paused": "Der Versuch ist nicht angehalten: Capture für Punkt {point}, oder erst "
+        "Pause.",
+        "is paused": "Der Versuch ist angehalten: erst Resume.",
+        "already paused": "Der Versuch ist schon angehalten: Resume oder Abort.",
+        "all touched": "Alle {count} Punkte sind berührt: Register, oder Undo für den letzten.",
+        "is registered": "Der Versuch ist registriert und aufbewahrt: StartTask beginnt den "
+        "nächsten.",
+        "nothing to undo": "Noch ist kein Punkt berührt: erst Capture für Punkt {point}.",
+        "not registered": "Der Versuch ist noch nicht registriert: erst Capture für seine {count} "
+        "Punkte und Register.",
+        "no registration": "Der Versuch ist noch nicht registriert: Vor TrialScored kommt "
+        "SubmitRegistration.",
+        "registration is final": "Die Registrierung dieses Versuchs steht fest: Auf sie hin wurde "
+        "die Wahrheit gesagt, deshalb gilt keine andere mehr.",
+        "no such trial": "Es gibt hier keinen Versuch {trial_id}: GetTrial, SubmitRegistration und "
+        "TrialScored nehmen die ID, mit der StartTask geantwortet hat.",
+        "not a simulation command": "{command} ist kein Befehl der Simulation.",
+        # When the record cannot be written.
+        "not recorded": "Der Versuch kann nicht aufgezeichnet werden ({reason}). Was nicht "
+        "aufgezeichnet wurde, zählt nicht; schaffe Platz oder wähle einen anderen Ordner und mach "
+        "dann weiter.",
+        # Wenn der Simulator mitten in einem Versuch geendet hat und wieder da ist.
+        "interrupted": "{trainee}, dieser Versuch wurde unterbrochen; {kept} von {count} Punkten "
+        "sind gesichert. Mach mit Punkt {point} weiter, wenn du bereit bist, oder brich ihn ab.",
+        "interrupted complete": "{trainee}, dieser Versuch wurde unterbrochen; alle {count} Punkte "
+        "sind gesichert. Registriere sie jetzt.",
+        # Wenn niemand den Versuch sehen konnte, was ihn anhält.
+        "unseen.left": "Angehalten: Die Ansicht des Versuchs wurde geschlossen oder ging verloren.",
+        "unseen.hidden": "Angehalten: Der Versuch war nicht zu sehen.",
+        "unseen.still": "Angehalten: Das Bild stand einige Sekunden still, weil dieser Rechner zu "
+        "beschäftigt war. Geschieht das wieder, so schließ andere Programme.",
+        # The simulator's menus.
+        "start.title": "RASTrainer",
+        "start.text": "Übe die robotergestützte Patientenregistrierung an einem virtuellen KUKA "
+        "LBR iiwa 7. Nicht für den klinischen Gebrauch.",
+        "start.train": "Training beginnen",
+        "start.introduction": "Einführung",
+        "start.controls": "Steuerung",
+        "start.settings": "Einstellungen",
+        "start.quit": "Beenden",
+        "quit.title": "RASTrainer beenden?",
+        "quit.text": "Der Simulator endet für alle, die mit ihm verbunden sind.",
+        "quit.stay": "Bleiben",
+        "quit.leave": "Beenden",
+        "introduction.title.1": "Was du übst",
+        "introduction.text.1": "Bevor ein Roboter am Gehirn helfen kann, muss er wissen, wo der "
+        "Kopf liegt. Du zeigst es ihm: Mit seinem Werkzeug berührst du fünfzehn nummerierte "
+        "Punkte am Kopf, einen nach dem anderen, so genau du kannst.",
+        "introduction.title.2": "Wie eine Aufgabe abläuft",
+        "introduction.text.2": "Folge den Nummern und Pfeilen auf der Haut von Punkt 1 bis Punkt "
+        "15. Die Werkzeugspitze ist blau; näher als 20 mm am Kopf wird sie rot, und ein Ton warnt "
+        "dich. Berühre die Haut sanft und nimm den Punkt auf. Ein Ausrutscher lässt sich "
+        "zurücknehmen.",
+        "introduction.title.3": "Was daraus wird",
+        "introduction.text.3": "Nach dem letzten Punkt registrierst du: 3D Slicer bringt deine "
+        "Punkte mit der MRT zur Deckung und nennt dir den Fehler und deine Punktzahl. Beides "
+        "zählt: Genauigkeit und Zeit. Du beginnst mit fünf Minuten freiem Üben, dann kommen die "
+        "Aufgaben 1 bis 5.",
+        "introduction.sheet": "Seite {sheet} von {sheets}",
+        "introduction.next": "Weiter",
+        "introduction.skip": "Gleich zur Steuerung",
+        "introduction.back": "Zurück",
+        "controls.title": "Steuerung",
+        "controls.text": "Gamepad, Tastatur und die Controller eines Headsets können alle "
+        "dasselbe.",
+        "controls.move_horizontally": "Nach links, rechts, vorn, hinten",
+        "controls.move_vertically": "Nach oben und unten",
+        "controls.fine": "Langsam bewegen (halten)",
+        "controls.touch": "Berührung aufnehmen",
+        "controls.undo": "Letzte Berührung zurücknehmen",
+        "controls.camera": "Kamera nah oder fern",
+        "controls.pause": "Pause",
+        "controls.menu": "Menü",
+        "controls.next": "Weiter",
+        "controls.test": "Steuerung ausprobieren",
+        "controls.rebind": "Steuerung ändern",
+        "controls.back": "Zurück",
+        "experiment.title": "Experiment",
+        "experiment.trainee": "Deine ID",
+        "experiment.trainee help": "Diese ID gibt dir die Kursleitung; sie steht auf deinen "
+        "Versuchen.",
+        "experiment.mode": "Modus",
+        "mode.desktop": "Bildschirm",
+        "mode.hmd": "Headset",
+        "experiment.done": "erledigt",
+        "experiment.task help": "Diese Aufgabe beginnen.",
+        "experiment.no trainee": "Gib zuerst deine ID ein.",
+        "experiment.being set up": "Der Simulator übernimmt seine neuen Einstellungen.",
+        "experiment.order": "{task} kommt zuerst.",
+        "experiment.study": "Jetzt nicht. {step} Nur die Kursleitung kann einen Schritt auslassen, "
+        "in 3D Slicer und mit einem Grund.",
+        "study.questionnaire": "Schritt {number} von {count}: Beantworte den Fragebogen "
+        "{questionnaire}, hier oder dort, wo 3D Slicer läuft.",
+        "study.answered": "Deine Antworten zu {questionnaire} sind auf dem Weg zu 3D Slicer, das "
+        "sagen wird, was als Nächstes kommt.",
+        "study.trial-run": "Schritt {number} von {count}: Lerne {mode} {minutes:g} Minuten lang "
+        "den Probelauf kennen.",
+        "study.trial": "Schritt {number} von {count}: Spiele {task} {mode}.",
+        "study.break": "Schritt {number} von {count}: Mach mindestens {minutes:g} Minuten Pause, "
+        "noch {left}. Dann wird 3D Slicer sagen, was als Nächstes kommt.",
+        "study.all-done": "Alle Schritte der Studie sind getan. Danke!",
+        "study.repeat": "Schritt {number} von {count}: {task} wurde abgebrochen. Die Kursleitung "
+        "gibt in 3D Slicer an, warum der Versuch wiederholt wird.",
+        "study.played": "{task} ist erledigt. 3D Slicer wird sagen, was als Nächstes kommt.",
+        "study.desktop": "am Bildschirm",
+        "study.hmd": "mit dem Headset",
+        "experiment.scenario": "Kopf",
+        "experiment.answer": "Den Fragebogen beantworten",
+        "questionnaire.text": "{trainee}, beantworte jede Zeile: {lowest} bedeutet {low}, "
+        "{highest} bedeutet {high}, wenn in der Zeile nichts anderes steht. Deine Kursleitung hat "
+        "den Bogen mit dem vollen Wortlaut.",
+        "questionnaire.ends": "{topic}: {lowest} bedeutet {low}, {highest} bedeutet {high}",
+        "questionnaire.open": "Einige Zeilen sind noch nicht beantwortet.",
+        "questionnaire.keep": "Fertig",
+        "questionnaire.back": "Zurück, ohne Antworten",
+        **_ITEMS,
+        **_FEEDBACK,
+        "experiment.back": "Zurück",
+        "scenario.title": "Köpfe",
+        "scenario.text": "An welchem Kopf möchtest du üben?",
+        "scenario.looking": "Die Köpfe werden gesucht.",
+        "scenario.help": "Von nun an an diesem Kopf üben.",
+        "scenario.loading": "wird geladen",
+        "scenario.present": "in Gebrauch",
+        "scenario.back": "Zurück",
+        "task.trial-run": "Probelauf",
+        "task.task-1": "Aufgabe 1",
+        "task.task-2": "Aufgabe 2",
+        "task.task-3": "Aufgabe 3",
+        "task.task-4": "Aufgabe 4",
+        "task.task-5": "Aufgabe 5",
+        "keyboard.title": "Deine ID",
+        "keyboard.row": "Schreiben",
+        "keyboard.delete": "Löschen",
+        "keyboard.done": "Fertig",
+        "trial.title": "{task}",
+        "trial.paused": "{trainee}, der Versuch ist mit {kept} berührten Punkten angehalten. "
+        "Seine Zeit steht still.",
+        "trial.complete": "{trainee}, alle {kept} Punkte sind berührt.",
+        "trial.resume": "Weitermachen",
+        "trial.register": "Registrieren",
+        "trial.controls": "Steuerung",
+        "trial.settings": "Einstellungen",
+        "trial.finish": "Probelauf beenden",
+        "trial.abort": "Aufgabe abbrechen",
+        "abort.title": "Aufgabe abbrechen?",
+        "abort.text": "{trainee}, deine {kept} berührten Punkte würden nicht registriert.",
+        "abort.keep": "Weitermachen",
+        "abort.abort": "Abbrechen",
+        "practice.title": "Die Zeit zum Üben ist vorbei",
+        "practice.text": "{trainee}, du kannst jetzt zu Aufgabe 1 übergehen oder so lange üben, "
+        "wie du magst.",
+        "practice.study": "{trainee}, beende den Probelauf, um mit der Studie weiterzumachen, oder "
+        "übe weiter.",
+        "practice.finish": "Probelauf beenden",
+        "practice.resume": "Weiter üben",
+        "complete.title": "Alle Punkte sind berührt",
+        "complete.text": "{trainee}, registriere deine {count} Punkte, damit sie bewertet werden. "
+        "Danach lassen sie sich nicht mehr ändern.",
+        "complete.register": "Registrieren",
+        "complete.undo": "Letzten Punkt zurücknehmen",
+        "complete.abort": "Aufgabe abbrechen",
+        "waiting.title": "Registriert",
+        "waiting.slicer": "{trainee}, 3D Slicer bewertet deine Punkte.",
+        "waiting.nobody": "{trainee}, deine Punkte sind aufbewahrt. 3D Slicer ist nicht "
+        "verbunden: Er bewertet sie, sobald er es ist.",
+        "result.title": "{trainee}: {task}",
+        "result.score": "Punktzahl",
+        "result.fre": "Registrierungsfehler (FRE)",
+        "result.expected tre": "Erwarteter Fehler am Ziel (TRE)",
+        "result.interval note": "Der erwartete Fehler setzt voraus, dass die Berührungen "
+        "unabhängig voneinander, ohne systematische Abweichung und gleich stark streuen. Eine "
+        "Verschiebung, die alle gemeinsam haben, sieht er nicht.",
+        "result.true tre": "Wahrer Fehler am Ziel (TRE)",
+        "result.region tre": "Wahrer Fehler im Gehirn (TRE)",
+        "result.unacceptable score": "{score:.0f} / 100, nicht zulässig",
+        "result.not accurate": "Nicht zulässig: ein Instrument, das dieser Registrierung folgt, "
+        "würde sein Ziel verfehlen. Der wahre Fehler im Gehirn ist größer als zulässig.",
+        "result.not safe": "Nicht zulässig: das Werkzeug lag zu lange am Kopf an oder wurde zu "
+        "tief eingedrückt.",
+        "result.ctps": "CTPS",
+        "result.of 100": "{score:.0f} / 100",
+        "result.mm": "{error:.2f} mm",
+        "result.points": "{points:.1f}",
+        "result.time": "Zeit",
+        "result.refused": "Berührungen, die nicht zählten",
+        "result.undone": "Zurückgenommene Berührungen",
+        "result.next": "Weiter: {task}",
+        "result.again": "Noch einmal: {task}",
+        "result.replay": "Versuch noch einmal zeigen",
+        "result.worst": "Schlechteste Berührung zeigen",
+        "result.menu": "Experiment-Menü",
+        # Settings.
+        "settings.title": "Einstellungen",
+        "settings.back": "Zurück",
+        "settings.waits": "Das lässt sich erst nach dem Ende des Versuchs ändern.",
+        "settings.language": "Sprache",
+        "settings.language help": "Von allem, was du hier liest.",
+        "settings.language.en": "English",
+        "settings.language.de": "Deutsch",
+        "settings.volume": "Lautstärke",
+        "settings.volume help": "Aller Töne.",
+        "settings.muted": "Stumm",
+        "settings.muted help": "Ob es gar keine Töne gibt.",
+        "settings.muted.yes": "Ja",
+        "settings.muted.no": "Nein",
+        "settings.order": "Reihenfolge der Aufgaben",
+        "settings.order help": "Für die Kursleitung: ob eine Aufgabe auf die vorige wartet.",
+        "settings.order.fixed": "Eine nach der anderen",
+        "settings.order.any": "Beliebig",
+        "settings.coarse": "Geschwindigkeit",
+        "settings.coarse help": "Der Spitze, wenn ein Stick ganz ausgelenkt ist.",
+        "settings.fine": "Langsame Geschwindigkeit",
+        "settings.fine help": "Dasselbe, solange die Steuerung für langsames Bewegen gehalten "
+        "wird.",
+        "settings.axes": "Richtungen",
+        "settings.axes help": "Ob rechts, vorn und oben die der Kamera oder des Roboters sind.",
+        "settings.axes.camera": "Wie die Kamera sie sieht",
+        "settings.axes.robot": "Wie der Roboter steht",
+        "settings.touch": "Eine Berührung zählt",
+        "settings.touch help": "Nur auf der Haut oder überall im Umkreis von 10 mm um den Punkt, "
+        "wie in der veröffentlichten Studie. Die Aufzeichnung hält fest, was galt.",
+        "settings.touch.on skin": "Auf der Haut",
+        "settings.touch.within radius": "Im Umkreis von 10 mm",
+        "settings.direction": "Richtung des Werkzeugs",
+        "settings.direction help": "Wer bestimmt, wohin das Werkzeug zeigt: der Arm, du oder die "
+        "Haut.",
+        "settings.direction.free": "Frei (nur Position)",
+        "settings.direction.clear": "Frei, ohne den Kopf zu streifen",
+        "settings.direction.held": "Von dir gelenkt",
+        "settings.direction.normal": "Senkrecht auf die Haut",
+        "settings.direction.pose": "Von dir gelenkt, ohne Rollen",
+        # Controls: what they do, and what they are called.
+        "bindings.title": "Steuerung ändern",
+        "bindings.device": "Gerät",
+        "bindings.group": "Steuerung für",
+        "bindings.group.work": "Arbeiten",
+        "bindings.group.movement": "Bewegen des Werkzeugs",
+        "bindings.group.menus": "Menüs",
+        "bindings.defaults": "Zurück zum Anfang",
+        "bindings.back": "Zurück",
+        "bindings.are default": "Die ganze Steuerung ist wie am Anfang.",
+        "bindings.changed": "{control} ist jetzt {input}.",
+        "bindings.impossible": "Diese beiden lassen sich nicht tauschen: Eine von ihnen täte dann "
+        "zweierlei.",
+        "listen.title": "{control}",
+        "listen.gamepad": "Drücke die neue Taste oder bewege die neue Achse für {control} "
+        "({seconds} s).",
+        "listen.keyboard": "Drücke die neue Taste für {control} ({seconds} s).",
+        "listen.cancel": "Abbrechen",
+        "conflict.title": "Schon vergeben",
+        "conflict.text": "{input} ist jetzt {other}. Mit {control} tauschen?",
+        "conflict.exchange": "Tauschen",
+        "conflict.another": "Eine andere wählen",
+        "conflict.cancel": "Abbrechen",
+        "test.title": "Steuerung ausprobieren",
+        "test.text": "Bewege und drücke alles; jede Eingabe wird gezeigt und ist zu spüren. "
+        "{menu} führt zurück.",
+        "test.back": "Zurück",
+        "test.yes": "An",
+        "test.no": "Aus",
+        "test.nothing": "nichts",
+        "control.touch": "Berühren",
+        "control.undo": "Zurücknehmen",
+        "control.camera": "Kamera",
+        "control.fine": "Langsam",
+        "control.pause": "Pause",
+        "control.menu": "Menü",
+        "control.move_left": "Nach links",
+        "control.move_right": "Nach rechts",
+        "control.move_back": "Nach hinten",
+        "control.move_forward": "Nach vorn",
+        "control.move_down": "Nach unten",
+        "control.move_up": "Nach oben",
+        "control.turn_left": "Links drehen",
+        "control.turn_right": "Rechts drehen",
+        "control.turn_down": "Nach unten drehen",
+        "control.turn_up": "Nach oben drehen",
+        "control.accept": "Bestätigen",
+        "control.back": "Zurück",
+        "control.up": "Hoch",
+        "control.down": "Runter",
+        "control.left": "Links",
+        "control.right": "Rechts",
+        "control.taken": "Die Steuerung ist jetzt hier: {source}.",
+        "control.held": "Die Steuerung liegt hier: {source}. Warte, bis sie ruht, und drücke dann "
+        "{menu}, um sie zu übernehmen.",
+        "control.holder": "Steuerung: {source}",
+        "control.nobody": "Steuerung: niemand",
+        "source.gamepad": "Gamepad",
+        "source.keyboard": "Tastatur",
+        "source.mouse": "Maus",
+        "source.browser's gamepad": "Gamepad am Browser",
+        "source.headset's controllers": "Controller des Headsets",
+        "device.gamepad": "Gamepad",
+        "device.keyboard": "Tastatur",
+        "gamepad.a": "A",
+        "gamepad.b": "B",
+        "gamepad.x": "X",
+        "gamepad.y": "Y",
+        "gamepad.back": "Back-Taste",
+        "gamepad.guide": "Logo-Taste",
+        "gamepad.start": "Start-Taste",
+        "gamepad.leftstick": "Linker Stick gedrückt",
+        "gamepad.rightstick": "Rechter Stick gedrückt",
+        "gamepad.leftshoulder": "LB",
+        "gamepad.rightshoulder": "RB",
+        "gamepad.dpup": "Steuerkreuz hoch",
+        "gamepad.dpdown": "Steuerkreuz runter",
+        "gamepad.dpleft": "Steuerkreuz links",
+        "gamepad.dpright": "Steuerkreuz rechts",
+        "gamepad.-leftx": "Linker Stick links",
+        "gamepad.+leftx": "Linker Stick rechts",
+        "gamepad.-lefty": "Linker Stick hoch",
+        "gamepad.+lefty": "Linker Stick runter",
+        "gamepad.-rightx": "Rechter Stick links",
+        "gamepad.+rightx": "Rechter Stick rechts",
+        "gamepad.-righty": "Rechter Stick hoch",
+        "gamepad.+righty": "Rechter Stick runter",
+        "gamepad.-lefttrigger": "LT losgelassen",
+        "gamepad.+lefttrigger": "LT",
+        "gamepad.-righttrigger": "RT losgelassen",
+        "gamepad.+righttrigger": "RT",
+        # Where a headset's controllers differ from a gamepad.
+        "headset.fine": "Trigger",
+        "headset.menu": "X",
+        "headset.pause": "X",
+        "headset.up": "Stick hoch",
+        "headset.down": "Stick runter",
+        "headset.left": "Stick links",
+        "headset.right": "Stick rechts",
+        "keyboard.Space": "Leertaste",
+        "keyboard.Enter": "Eingabe",
+        "keyboard.NumpadEnter": "Eingabe am Ziffernblock",
+        "keyboard.Backspace": "Rücktaste",
+        "keyboard.Escape": "Esc",
+        "keyboard.Tab": "Tab",
+        "keyboard.ShiftLeft": "Linke Umschalttaste",
+        "keyboard.ShiftRight": "Rechte Umschalttaste",
+        "keyboard.ControlLeft": "Strg links",
+        "keyboard.ControlRight": "Strg rechts",
+        "keyboard.AltLeft": "Alt links",
+        "keyboard.AltRight": "Alt rechts",
+        "keyboard.ArrowLeft": "Pfeil links",
+        "keyboard.ArrowRight": "Pfeil rechts",
+        "keyboard.ArrowUp": "Pfeil hoch",
+        "keyboard.ArrowDown": "Pfeil runter",
+        "keyboard.PageUp": "Bild auf",
+        "keyboard.PageDown": "Bild ab",
+        # While the trainee works.
+        "work.complete": "{trainee}, alle {count} Punkte sind berührt. Drücke {touch}, um sie zu "
+        "registrieren.",
+        "work.off the way": "{trainee}, du bist abseits des Weges zu Punkt {point}.",
+        "warning.contact": "Kontakt: Das Werkzeug ist auf dem Kopf. Nicht drücken.",
+        "warning.pressing": "Du drückst {depth:.1f} mm tief: Lass nach.",
+        "warning.reach": "Weiter reicht der Arm in diese Richtung nicht.",
+        "warning.obstacle.links": "Der Arm ist am Kopf: Komm von einer anderen Seite.",
+        "warning.obstacle.self": "Der Arm ist an sich selbst: Nimm einen anderen Weg.",
+        "warning.obstacle.table": "Der Arm ist am Tisch: Komm von oben.",
+        "warning.slicer": "Die Verbindung zu 3D Slicer ist verloren. Mach weiter: Alles wird hier "
+        "aufgezeichnet und später bewertet.",
+        "warning.unplugged": "Das Gamepad {name} ist ausgesteckt: Der Roboter steht still. Steck "
+        "es wieder ein oder mach mit der Tastatur weiter.",
+        "warning.unmapped": "Das Gamepad {name} hat eine unbekannte Belegung: Nimm ein anderes "
+        "oder die Tastatur.",
+        "warning.no SDL": "Auf diesem Rechner lassen sich keine Gamepads lesen ({reason}): Nimm "
+        "die Tastatur.",
+        "warning.settings": "{reason} Es gelten die Voreinstellungen.",
+        "window.title": "RASTrainer",
+        "window.connecting": "Das Fenster verbindet sich mit dem Simulator.",
+        "window.lost": "Die Verbindung zum Simulator ist verloren. Sie wird wiederhergestellt, "
+        "sobald der Simulator antwortet.",
+        "window.unknown": "Der Simulator kennt dieses Fenster nicht: Schließ es und öffne eines "
+        "mit dem Kopplungscode, den der Simulator jetzt zeigt.",
+        "window.refused": "Der Simulator bedient so viele Ansichten, wie er kann: Schließ eine "
+        "andere.",
+        "window.pairing": "Browser oder Headset koppeln: Code {code} auf {addresses}",
+        "status.points": "{kept} von {count} Punkten",
+        "status.left": "noch {time}",
+        "status.toward": "Punkt {point}: {distance} mm {direction}",
+        "way.left": "links",
+        "way.right": "rechts",
+        "way.back": "zurück",
+        "way.forward": "vor",
+        "way.down": "runter",
+        "way.up": "hoch",
+        "hint.touch": "Berühren",
+        "hint.register": "Registrieren",
+        "hint.undo": "Zurücknehmen",
+        "hint.fine": "Langsam",
+        "hint.camera": "Kamera",
+        "hint.menu": "Menü",
+        "hint.choose": "Wählen",
+        "hint.accept": "Bestätigen",
+        "hint.back": "Zurück",
+        "hint.play": "Start, Pause",
+        "hint.seek": "5 s zurück, vor",
+        "hint.worst": "Schlechteste",
+        "hint.end": "Beenden",
+        "hint.result": "Ergebnis",
+        "replay.title": "{task} von {trainee}, noch einmal gezeigt",
+        "replay.worst": "Punkt {point}, die schlechteste Berührung, in halber Geschwindigkeit",
+        "replay.paused": "Angehalten",
+        "replay.loading": "Dein Versuch wird geladen",
+        "replay.back": "Zum Ergebnis",
+        "replay.no worst": "Welche Berührung dieses Versuchs die schlechteste war, lässt sich "
+        "nicht sagen.",
+        "replay.no journal": "Der Versuch kann nicht noch einmal gezeigt werden: Sein Journal ist "
+        "nicht mehr im Ordner der Aufzeichnungen.",
+        "decimal sign": ",",
+    }
+)

@@ -1,0 +1,88 @@
+"""Say a sentence in a language, and say it again in another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from string import Formatter
+
+from rastrainer_simulator.ops.texts.english import ENGLISH
+from rastrainer_simulator.ops.texts.german import GERMAN
+
+LANGUAGES: Mapping[str, Mapping[str, str]] = {"en": ENGLISH, "de": GERMAN}
+"""BCP 47 tag → table. What a table lacks is said in English."""
+
+
+class LocalizedText(str):
+    """A sentence that remembers how it was made, so that a view can show it in its own language.
+
+    Attributes:
+        key: of the sentence in its table.
+        values: what was filled in.
+    """
+
+    key: str
+    values: Mapping[str, object]
+
+    def __new__(cls, text: str, key: str, values: Mapping[str, object]) -> LocalizedText:
+        """Make one of the finished sentence."""
+        said = super().__new__(cls, text)
+        said.key = key
+        said.values = values
+        return said
+
+    def __reduce__(self) -> tuple[type[LocalizedText], tuple[str, str, Mapping[str, object]]]:
+        """Return what a copy is made from, such as one for another process."""
+        return LocalizedText, (str(self), self.key, self.values)
+
+    def __deepcopy__(self, _memo: object) -> LocalizedText:
+        """Stay the same object, as any text does where a screen is turned into JSON."""
+        return self
+
+
+class _Formatter(Formatter):
+    """Fills in values; numbers get the language's decimal sign and a true minus sign."""
+
+    def __init__(self, decimal_sign: str) -> None:
+        self._decimal_sign = decimal_sign
+
+    def format_field(self, value: object, format_spec: str) -> str:
+        """Return one value as text."""
+        text = format(value, format_spec)
+        if isinstance(value, (int, float)):
+            text = text.replace("-", "−")
+        return text.replace(".", self._decimal_sign) if isinstance(value, float) else text
+
+
+class Texts:
+    """Says the sentences, in the language of its table."""
+
+    def __init__(self, table: Mapping[str, str] = ENGLISH) -> None:
+        self._table = {**ENGLISH, **table}
+        self._formatter = _Formatter(self._table["decimal sign"])
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._table
+
+    def say(self, key: str, **values: object) -> LocalizedText:
+        """Return the sentence with its values filled in."""
+        return LocalizedText(self._formatter.vformat(self._table[key], (), values), key, values)
+
+    def again(self, sentence: str) -> str:
+        """Return a sentence in this language; one that is not ours stays as it is."""
+        return (
+            self.say(sentence.key, **sentence.values)
+            if isinstance(sentence, LocalizedText)
+            else sentence
+        )
+
+
+def pair_label(first: str, second: str) -> str:
+    """Return what two inputs are called together, such as "Stick left / right"."""
+    shared, _, last = second.rpartition(" ")
+    return f"{first} / {last if first.rpartition(' ')[0] == shared else second}"
+
+
+def input_label(texts: Texts, device: str, name: str) -> str:
+    """Return what an input of a device ("gamepad" or "keyboard") is called."""
+    key = f"{device}.{name}"
+    return texts.say(key) if key in texts else name.removeprefix("Key").removeprefix("Digit")

@@ -1,1 +1,0 @@
-"""Propose tasks for a head: where the robot can touch it, and in which order a trainee shall."""

@@ -1,0 +1,76 @@
+"""Tell clients of a trial's progress only once it is on the disk."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import replace
+
+from rastrainer_simulator.record.trial_recorder import Written
+from rastrainer_simulator.state import Answer, Event, StepResult, TrainingState
+
+
+class DurableResults:
+    """Holds back what a tick changed in the trial until it has been written.
+
+    Meanwhile the arm goes on: poses are told at once, with the trial as it last was on the disk.
+    """
+
+    def __init__(self, training: TrainingState) -> None:
+        self._safe = training
+        self._awaited: deque[tuple[Written, StepResult]] = deque()
+        self._unwatched: deque[tuple[Written, StepResult]] = deque()
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether a change of the trial is still on its way to the disk."""
+        return bool(self._awaited)
+
+    @property
+    def revision(self) -> int:
+        """The trial's last revision that is on the disk."""
+        return self._safe.revision
+
+    def pass_on(self, result: StepResult, written: Written | None) -> tuple[StepResult, str | None]:
+        """Return what may be told now, and why the disk has refused (None if it has not)."""
+        if written is None and not self._awaited and not self._unwatched:
+            self._safe = result.state.training
+            return result, None
+        events: list[Event] = []
+        answers: list[Answer] = []
+        if written is not None:
+            (self._awaited if written.is_awaited else self._unwatched).append((written, result))
+        reason = self._collect(events, answers)
+        if written is None or not written.is_awaited:
+            events.extend(result.events)
+            answers.extend(result.answers)
+        if not self._awaited and reason is None:
+            self._safe = result.state.training
+        state = replace(result.state, training=self._safe)
+        return StepResult(state, tuple(events), tuple(answers)), reason
+
+    def _collect(self, events: list[Event], answers: list[Answer]) -> str | None:
+        """Add what has been written since the last tick, in its order; return why if it failed."""
+        while self._unwatched and self._unwatched[0][0].future.done():
+            error = self._unwatched.popleft()[0].future.exception()
+            if error is not None:
+                return self._refuse(error, answers)
+        while self._awaited and self._awaited[0][0].future.done():
+            written, result = self._awaited[0]
+            error = written.future.exception()
+            if error is not None:
+                return self._refuse(error, answers)
+            self._awaited.popleft()
+            self._safe = result.state.training
+            events.extend(result.events)
+            answers.extend(result.answers)
+        return None
+
+    def _refuse(self, error: BaseException, answers: list[Answer]) -> str:
+        """Answer all that waits with the reason: the control loop takes it back."""
+        sentence = f"This could not be recorded and does not count: {error}."
+        for _written, result in self._awaited:
+            for answer in result.answers:
+                answers.append(Answer(answer.ticket, ok=False, message=sentence))
+        self._awaited.clear()
+        self._unwatched.clear()
+        return str(error)

@@ -1,0 +1,1 @@
+"""Pictures of the scene by VTK, off screen."""

@@ -1,0 +1,112 @@
+"""Render the robot at the head, in its room, into a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty, vtkRenderer
+
+from rastrainer.scenario.scenario import Camera
+from rastrainer_simulator.rendering.lighting import Shadows, light_room
+from rastrainer_simulator.rendering.moment import SceneMoment
+from rastrainer_simulator.rendering.offscreen import OffscreenWindow, write_png
+from rastrainer_simulator.robot.model import RobotModel
+from rastrainer_simulator.scene.materials import Material
+from rastrainer_simulator.scene.nodes import Node, Surface
+from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
+
+
+def apply_material(material: Material, target: vtkProperty) -> None:
+    """Set a material on an actor's property."""
+    if material.glowing:
+        # Shadows need a lit material: switching its lighting off breaks their shader.
+        target.SetColor(*material.color)
+        target.SetAmbient(1.0)
+        target.SetDiffuse(0.0)
+        return
+    target.SetInterpolationToPBR()
+    target.SetColor(*material.linear_color)
+    target.SetRoughness(material.roughness)
+    target.SetMetallic(material.metallic)
+
+
+def node_actors(
+    nodes: Sequence[Node], poses: Mapping[str, np.ndarray], looks: Mapping[str, Material]
+) -> list[vtkActor]:
+    """Return the actors of nodes that stand in World.
+
+    `poses` has a (4, 4) float pose in World, m, by the name of each node that is moved; `looks` a
+    material by the name of each node that has another color than in the scene.
+    """
+    actors = []
+    for node in nodes:
+        pose = poses.get(node.name, np.eye(4))
+        for part in node.walk():
+            for shape in part.surfaces:
+                actors.append(_actor(shape, looks.get(part.name, shape.material), pose))
+    return actors
+
+
+def _actor(shape: Surface, material: Material, pose: np.ndarray) -> vtkActor:
+    data = surface(shape.vertices, shape.triangles)
+    normals = np.ascontiguousarray(shape.normals, dtype=np.float32)
+    data.GetPointData().SetNormals(numpy_to_vtk(normals, deep=True))
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.ScalarVisibilityOff()
+    made = vtkActor()
+    made.SetMapper(mapper)
+    made.SetUserMatrix(vtk_matrix(pose))
+    apply_material(material, made.GetProperty())
+    return made
+
+
+INSET_SHARE = 0.31
+FRAME_SHARE = 0.006
+
+
+def render_picture(
+    path: Path,
+    nodes: Sequence[Node],
+    robot: RobotModel,
+    moment: SceneMoment,
+    camera: Camera,
+    inset: Camera | None = None,
+    size: tuple[int, int] = (1600, 900),
+    shadows: Shadows = Shadows.FULL,
+) -> None:
+    """Write a PNG of a scene at one moment, in place of an older one.
+
+    `nodes` are the scene's, as `scene_nodes` gives them, and `robot` is the one among them; the
+    cameras are a scenario's; `inset` is a second view, laid into the upper right corner; `size` is
+    the picture's width and height in pixels. Takes some seconds where VTK renders in software, half
+    of them with small shadows.
+
+    Raises:
+        InputError: the picture cannot be written.
+    """
+    renderer = vtkRenderer()
+    for actor in node_actors(nodes, moment.poses(robot), moment.looks()):
+        renderer.AddActor(actor)
+    light_room(renderer, shadows)
+    window = OffscreenWindow(renderer)
+    pixels = window.frame(camera, size)
+    if inset:
+        width, height = (round(INSET_SHARE * length) for length in size)
+        _lay_in_corner(pixels, window.frame(inset, (width, height)))
+    window.close()
+    write_png(pixels, path)
+
+
+def _lay_in_corner(pixels: np.ndarray, inset: np.ndarray) -> None:
+    """Lay a framed inset over the upper right corner; both (height, width, 3) uint8."""
+    frame = max(1, round(FRAME_SHARE * pixels.shape[0]))
+    margin = 3 * frame
+    height, width = inset.shape[:2]
+    left = pixels.shape[1] - margin - width - 2 * frame
+    pixels[margin : margin + height + 2 * frame, left : left + width + 2 * frame] = 255
+    top, left = margin + frame, left + frame
+    pixels[top : top + height, left : left + width] = inset

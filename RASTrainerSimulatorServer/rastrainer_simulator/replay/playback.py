@@ -1,0 +1,159 @@
+"""What the views show: the arm as it is, or a recorded trial that is played."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.loop.loop_statistics import LoopStatistics
+from rastrainer_simulator.loop.subscribers import Subscribers
+from rastrainer_simulator.replay.recorded_trial import RecordedTrial
+from rastrainer_simulator.state import Event, SimulationState, StepResult
+
+PERIOD_S = 1.0 / 60.0
+
+
+class Playback:
+    """Plays a recorded trial, in the event loop's thread.
+
+    Attributes:
+        trial: what is played.
+        setup: head and robot.
+        time_s: where in the trial it is.
+        is_playing: False while it stands still.
+        until_s: where it stops.
+        speed: seconds of the trial in a second.
+        latest: the state that is shown.
+        changed: called whenever any of this has changed.
+    """
+
+    statistics = LoopStatistics()
+
+    def __init__(self, trial: RecordedTrial, setup: SimulationSetup) -> None:
+        self.trial = trial
+        self.setup = setup
+        self.time_s = 0.0
+        self.is_playing = True
+        self.until_s = trial.duration_s
+        self.speed = 1.0
+        self.latest: SimulationState = trial.state_at(0.0)
+        self.changed: Callable[[], None] = lambda: None
+        self._camera: str | None = None
+        self._subscribers: Subscribers[StepResult] = Subscribers()
+        self._shown_s = -math.inf
+
+    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
+        """Have `callback` called with each state; returns what ends that."""
+        return self._subscribers.add(callback)
+
+    def play_from(self, time_s: float, until_s: float | None = None, speed: float = 1.0) -> None:
+        """Play from a time in s, up to another or the end."""
+        self.time_s = min(max(0.0, time_s), self.trial.duration_s)
+        end_s = self.trial.duration_s
+        self.until_s = end_s if until_s is None else min(until_s, end_s)
+        self.speed, self.is_playing = speed, True
+        self._show(is_jump=True)
+
+    def pause(self, is_paused: bool) -> None:
+        """Pause or resume; at the end, resume from the beginning."""
+        if not is_paused and self.time_s >= self.until_s:
+            at_end = self.time_s >= self.trial.duration_s
+            self.play_from(0.0 if at_end else self.time_s)
+        self.is_playing = not is_paused
+        self.changed()
+
+    def look(self, camera: str) -> None:
+        """Use another camera than the trainee did, from now on."""
+        self._camera = camera
+        self._show(is_jump=True)
+
+    def advance(self, seconds: float) -> None:
+        """Let so much of the wall's time pass."""
+        if not self.is_playing:
+            # For views that have just joined.
+            self._publish(())
+            return
+        self.time_s = min(self.time_s + seconds * self.speed, self.until_s)
+        if self.time_s >= self.until_s:
+            self.is_playing = False
+        self._show(is_jump=False)
+
+    async def run(self) -> None:
+        """Play until it is canceled."""
+        before = time.monotonic()
+        while True:
+            await asyncio.sleep(PERIOD_S)
+            now = time.monotonic()
+            self.advance(now - before)
+            before = now
+
+    def _show(self, is_jump: bool) -> None:
+        events = () if is_jump else self.trial.events_between(self._shown_s, self.time_s)
+        self._shown_s = self.time_s
+        self.latest = self.trial.state_at(self.time_s)
+        if self._camera is not None:
+            self.latest = replace(self.latest, camera=self._camera)
+        self._publish(events)
+        self.changed()
+
+    def _publish(self, events: tuple[Event, ...]) -> None:
+        self._subscribers.publish(StepResult(self.latest, events))
+
+
+class PlaybackSwitch:
+    """A `StateSource` that passes on the control loop's states, or those of a playback.
+
+    The control loop runs on unchanged.
+    """
+
+    def __init__(self, control_loop: ControlLoop) -> None:
+        self._control_loop = control_loop
+        self._playback: Playback | None = None
+        self._subscribers: Subscribers[StepResult] = Subscribers()
+        self._end_playback: Callable[[], None] = lambda: None
+        self._unsubscribe = control_loop.subscribe(self._take_tick)
+
+    @property
+    def latest(self) -> SimulationState:
+        """The state that is shown."""
+        return (self._playback or self._control_loop).latest
+
+    @property
+    def setup(self) -> SimulationSetup:
+        """What the present simulation was made from."""
+        return self._control_loop.setup
+
+    @property
+    def statistics(self) -> LoopStatistics:
+        """How punctual the control loop has been."""
+        return self._control_loop.statistics
+
+    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
+        """Have `callback` called with what is shown; returns what ends that.
+
+        It is called in the control loop's or the playback's thread, and must return at once.
+        """
+        return self._subscribers.add(callback)
+
+    def show(self, playback: Playback | None) -> None:
+        """Show a playback from now on, or with None the arm as it is."""
+        if playback is self._playback:
+            return
+        self._end_playback()
+        self._playback = playback
+        if playback is not None:
+            self._end_playback = playback.subscribe(self._subscribers.publish)
+
+    def close(self) -> None:
+        """Unsubscribe from the control loop."""
+        self.show(None)
+        self._unsubscribe()
+
+    def _take_tick(self, result: StepResult) -> None:
+        if self._playback is None:
+            self._subscribers.publish(result)

@@ -1,0 +1,267 @@
+"""A recorded trial as the states that a view shows: nothing of it is simulated."""
+
+from __future__ import annotations
+
+import bisect
+import threading
+from concurrent.futures import Future
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.journal.replay_track import RecordedEvent, ReplayTrack, read_track
+from rastrainer.protocol import Phase, Proximity
+from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.core.arm import moving_links
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.core.simulation import stand_pose
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.state import (
+    Event,
+    EventKind,
+    Motion,
+    PlanInWorld,
+    SimulationState,
+    TouchState,
+    TrainingState,
+)
+from rastrainer_simulator.vectors import Vector
+
+AFTER_S = 0.25
+"""The worst touch is shown until so long after it was made."""
+
+
+@dataclass(frozen=True)
+class _Situation:
+    """What is seen besides the arm, from one event to the next."""
+
+    training: TrainingState
+    proximity: Proximity
+    camera: str
+    planned_target: PlanInWorld | None = None
+
+
+class RecordedTrial:
+    """A trial from its start to its end, in the trial's time: a pause takes none.
+
+    Joint angles and clearance are interpolated linearly between the journal's 50 samples a second;
+    touches, phases, contact, camera and planned target are as recorded.
+
+    Attributes:
+        trainee: pseudonym.
+        task: name.
+        duration_s: how long it takes.
+        worst: label of the touch with the largest error, and from when to when it was approached,
+            in s; None for a trial that was not registered.
+    """
+
+    def __init__(self, track: ReplayTrack, setup: SimulationSetup) -> None:
+        """Prepare a trial; `setup` has the scenario and the robot that it was recorded with.
+
+        Raises:
+            InputError: it was recorded with others, or its entries are not those of a trial.
+        """
+        try:
+            self._prepare(track, setup)
+        except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+            raise InputError(
+                f"The trial cannot be shown again: an entry is not as it should be ({error!r})."
+            ) from None
+
+    def _prepare(self, track: ReplayTrack, setup: SimulationSetup) -> None:
+        header, scenario = track.header, setup.scenario
+        recorded_with = (header["scenario"]["sha256"], header["robot"])
+        if recorded_with != (setup.scenario_sha256, setup.robot.name):
+            raise InputError("The trial was recorded with another scenario or robot.")
+        if not track.events:
+            raise InputError("The trial cannot be shown again: its journal holds no event.")
+        self.trainee, self.task = str(header["trainee"]), str(header["task"])
+        self._track = track
+        self._kinematics = make_kinematics(setup.robot)
+        self._links, self._tip = moving_links(setup.robot), setup.robot.tip.name
+        self._head_to_world = scenario.perturbed_head_to_world(header["seed"])
+        self._head_to_world[:3, 3] /= MM_PER_M
+        base = read_head_mesh(scenario.head_mesh).base / MM_PER_M
+        self._stand_to_world = stand_pose(self._head_to_world, base)
+        self._event_times = [event.time_s for event in track.events]
+        self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
+        settings = setup.settings
+        self._situations = _situations(
+            track, scenario.task(self.task).labels, header["before"]["camera"] or settings.camera
+        )
+        self._start_tick, self._tick_s = int(header["before"]["tick"]), float(header["tickS"])
+        self._start_s = float(header["simTime"]) - self._tick_s
+        self.worst = _worst(track, setup)
+
+    def state_at(self, time_s: float) -> SimulationState:
+        """Return what is seen at a time."""
+        trajectory = self._track.trajectory
+        times = trajectory.times_s
+        after = min(max(1, int(np.searchsorted(times, time_s, side="right"))), len(times) - 1)
+        begin, end = times[after - 1 : after + 1]
+        share = float(np.clip((time_s - begin) / (end - begin), 0.0, 1.0))
+
+        def between(rows: np.ndarray) -> np.ndarray:
+            return (1.0 - share) * rows[after - 1] + share * rows[after]
+
+        q = tuple(between(self._track.q).tolist())
+        poses = self._kinematics.links(q)
+        depth = trajectory.depth_mm
+        # What happened in the first tick is seen from the beginning.
+        now = self._situations[max(0, bisect.bisect_right(self._event_times, time_s) - 1)]
+        return SimulationState(
+            tick=self._start_tick + round(time_s / self._tick_s),
+            sim_time=self._start_s + time_s,
+            q=q,
+            tool_tip_to_world=poses[self._tip],
+            link_to_world=tuple(poses[name] for name in self._links),
+            head_to_world=self._head_to_world,
+            stand_to_world=self._stand_to_world,
+            proximity=now.proximity,
+            clearance=float(between(trajectory.clearance_mm)) / MM_PER_M,
+            training=now.training,
+            elapsed=_elapsed(now.training, time_s),
+            motion=Motion.NONE,
+            operator="",
+            camera=now.camera,
+            planned_target=now.planned_target,
+            depth=0.0 if depth is None else float(between(depth)) / MM_PER_M,
+        )
+
+    def events_between(self, after_s: float, until_s: float) -> tuple[Event, ...]:
+        """Return what happened later than one time and no later than another."""
+        first = bisect.bisect_right(self._event_times, after_s)
+        end = bisect.bisect_right(self._event_times, until_s)
+        return tuple(map(_event, self._track.events[first:end]))
+
+
+class TrialLoading:
+    """Loads a trial beside the control loop, in a thread.
+
+    Attributes:
+        trial: comes when it is loaded; an `InputError` says in one sentence why there is none.
+    """
+
+    def __init__(self, journal: Path, setup: SimulationSetup) -> None:
+        """Begin; the journal is only read."""
+        self.trial: Future[RecordedTrial] = Future()
+        self._is_canceled = False
+        threading.Thread(
+            target=self._load, args=(journal, setup), name="trial loading", daemon=True
+        ).start()
+
+    def cancel(self) -> None:
+        """Stop loading, unless it is done."""
+        self._is_canceled = True
+
+    def _load(self, journal: Path, setup: SimulationSetup) -> None:
+        try:
+            self.trial.set_result(RecordedTrial(read_track(journal, self._check), setup))
+        except Exception as error:
+            self.trial.set_exception(error)
+
+    def _check(self) -> None:
+        if self._is_canceled:
+            raise InputError("The trial cannot be shown again: loading it was canceled.")
+
+
+def _situations(track: ReplayTrack, labels: tuple[str, ...], camera: str) -> list[_Situation]:
+    """Return the situation after each event."""
+    header = track.header
+    training = TrainingState(
+        trainee=header["trainee"],
+        task=header["task"],
+        mode=header["mode"],
+        trial_id=header["trialId"],
+    )
+    situation = _Situation(training, Proximity.FREE, camera)
+    situations = []
+    for event in track.events:
+        situation = _after(situation, event, labels)
+        situations.append(situation)
+    return situations
+
+
+def _after(before: _Situation, event: RecordedEvent, labels: tuple[str, ...]) -> _Situation:
+    entry, kind = event.entry, event.entry["kind"]
+    if kind == "proximity":
+        return replace(before, proximity=Proximity(entry["to"]))
+    if kind == "camera":
+        return replace(before, camera=entry["camera"])
+    if kind == "plan":
+        position, entry_point = _metres(entry["positionMm"]), entry["entryMm"]
+        entry_point = None if entry_point is None else _metres(entry_point)
+        plan = PlanInWorld(entry["name"], position, entry_point, entry["reachable"])
+        return replace(before, planned_target=plan)
+    return replace(before, training=_training_after(before.training, event, labels))
+
+
+def _training_after(
+    before: TrainingState, event: RecordedEvent, labels: tuple[str, ...]
+) -> TrainingState:
+    entry, touches = event.entry, before.touches
+    if entry["kind"] == "rejected":
+        return replace(before, rejected=before.rejected + 1, instruction=entry["message"])
+    if entry["kind"] == "touch":
+        place = _metres(entry["positionMm"])
+        touch = TouchState(entry["label"], place, entry["simTime"], event.time_s)
+        touches = (*touches, touch)
+        following = labels[len(touches)] if len(touches) < len(labels) else None
+        return replace(before, touches=touches, next_point=following)
+    if entry["kind"] == "undo":
+        return replace(
+            before,
+            touches=touches[: entry["kept"]],
+            next_point=entry["nextPoint"],
+            undone=before.undone + 1,
+        )
+    following = entry["nextPoint"]
+    # What the disk refused was taken back: the phase says from which fiducial on.
+    kept = labels.index(following) if following in labels else len(touches)
+    return replace(
+        before,
+        phase=Phase(entry["phase"]),
+        next_point=following,
+        instruction=entry["instruction"],
+        touches=touches[:kept],
+    )
+
+
+def _elapsed(training: TrainingState, time_s: float) -> float:
+    if training.phase is Phase.IDLE:
+        return 0.0
+    if training.phase in (Phase.RUNNING, Phase.PAUSED):
+        return time_s
+    return training.touches[-1].elapsed
+
+
+def _event(event: RecordedEvent) -> Event:
+    kind = event.entry["kind"]
+    is_phase = kind in ("registered", "aborted")
+    return Event(
+        EventKind.PHASE if is_phase else EventKind(kind), event.entry["simTime"], event.entry
+    )
+
+
+def _worst(track: ReplayTrack, setup: SimulationSetup) -> tuple[str, float, float] | None:
+    """Return the worst touch with its interval."""
+    registered = next((e.entry for e in track.events if e.entry["kind"] == "registered"), None)
+    if registered is None:
+        return None
+    record = TrialRecord.from_json(registered["record"])
+    worst = analyze_trial(record, setup.scenario, trajectory=track.trajectory).feedback.worst
+    ends = {touch.label: touch.time_s for touch in track.trajectory.touches}
+    labels = [point.label for point in record.points]
+    place = labels.index(worst.label)
+    begin = ends[labels[place - 1]] if place else 0.0
+    return worst.label, begin, ends[worst.label] + AFTER_S
+
+
+def _metres(position_mm: tuple[float, float, float]) -> Vector:
+    x, y, z = position_mm
+    return x / MM_PER_M, y / MM_PER_M, z / MM_PER_M

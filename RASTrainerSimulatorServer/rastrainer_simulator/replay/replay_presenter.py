@@ -1,0 +1,157 @@
+"""What the views show and take while a recorded trial is played."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import reduce
+
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.loop.subscribers import Subscribers
+from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, feedback_event
+from rastrainer_simulator.net.views.presenter import Control, Feedback, Frames, Hello, ViewUpdate
+from rastrainer_simulator.net.views.screen import Hint, Screen
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.player import ACTIONS, Player, PlayerAction
+from rastrainer_simulator.state import StepResult
+
+_KEYS = {
+    "Space": PlayerAction.PLAY,
+    "Enter": PlayerAction.PLAY,
+    "ArrowLeft": PlayerAction.BACK,
+    "ArrowRight": PlayerAction.FORWARD,
+    "ArrowUp": PlayerAction.WORST,
+    "KeyT": PlayerAction.WORST,
+    "KeyC": PlayerAction.CAMERA,
+    "KeyM": PlayerAction.END,
+    "Escape": PlayerAction.END,
+}
+"""W3C `KeyboardEvent.code` → what it does."""
+_PAD = {
+    0: PlayerAction.PLAY,
+    1: PlayerAction.END,
+    2: PlayerAction.WORST,
+    3: PlayerAction.CAMERA,
+    9: PlayerAction.END,
+    12: PlayerAction.WORST,
+    14: PlayerAction.BACK,
+    15: PlayerAction.FORWARD,
+}
+"""Buttons of the W3C standard gamepad."""
+_PRESSES = {
+    **{control.value: action for control, action in ACTIONS.items()},
+    ControlName.TOUCH.value: PlayerAction.PLAY,
+    ControlName.UNDO.value: PlayerAction.END,
+}
+_HINTS = (
+    (("Space",), "hint.play"),
+    (("ArrowLeft", "ArrowRight"), "hint.seek"),
+    (("ArrowUp",), "hint.worst"),
+    (("KeyC",), "hint.camera"),
+    (("Escape",), "hint.end"),
+)
+"""Keys, and the text of what they do."""
+
+
+class ReplayPresenter:
+    """A `Presenter` whose user plays, pauses and seeks; nobody drives the arm.
+
+    Attributes:
+        screen: what is read.
+        control: held by nobody.
+    """
+
+    control = Control()
+
+    def __init__(self, playback: Playback, language: str, end: Callable[[], None]) -> None:
+        """`language` is a BCP 47 tag; `end` is called when the user has seen enough."""
+        self._playback = playback
+        self._language = language
+        self._texts = Texts(LANGUAGES[language])
+        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
+        self._count = 0
+        self._held: dict[int, frozenset[int]] = {}
+        self._player = Player(playback, end)
+        self.screen = self._make_screen()
+        playback.changed = self._refresh
+        playback.subscribe(self._feel)
+
+    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
+        """Have `listener` called with each new screen and event; returns what ends that."""
+        return self._subscribers.add(listener)
+
+    def view_joined(self, view: int, hello: Hello) -> None:
+        """Take note of a view."""
+
+    def view_left(self, view: int) -> None:
+        """Forget a view."""
+        self._held.pop(view, None)
+
+    def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:  # noqa: ARG002
+        """Take a key."""
+        if is_down:
+            self._do(_KEYS.get(code))
+
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
+        """Take a gamepad: what is newly pressed counts."""
+        held = frozenset(number for number, value in enumerate(buttons) if value > 0.5)
+        for number in held - self._held.get(view, frozenset()):
+            self._do(_PAD.get(number))
+        self._held[view] = held
+
+    def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
+        """Take a button of an XR controller."""
+        self._do(_PRESSES.get(control))
+
+    def on_sticks(self, view: int, *positions: object) -> None:
+        """Nobody drives."""
+
+    def on_item(self, view: int, name: str) -> None:
+        """There is no menu."""
+
+    def on_text(self, view: int, name: str, value: str) -> None:
+        """There is no menu."""
+
+    def on_frames(self, view: int, frames: Frames) -> None:
+        """Nothing is recorded."""
+
+    def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
+        """Who does not look misses nothing."""
+        if not is_visible:
+            self._playback.pause(True)
+
+    def on_silence(self, view: int) -> None:  # noqa: ARG002
+        """Nor does whoever looks at a picture that stands still."""
+        self._playback.pause(True)
+
+    def _do(self, action: PlayerAction | None) -> None:
+        if action is not None:
+            self._player.do(action)
+
+    def _feel(self, result: StepResult) -> None:
+        """Tell what happened then, to be heard and felt again."""
+        for event in result.events:
+            kind = feedback_event(event)
+            if kind is None:
+                continue
+            self._count += 1
+            felt = FEEDBACK_EFFECTS[kind]
+            data = {"rumbleMs": round(1000 * felt.seconds)}
+            self._tell(Feedback(self._count, kind.value, felt.sound, 1.0, felt.rumble, data))
+
+    def _refresh(self) -> None:
+        screen = self._make_screen()
+        if screen != self.screen:
+            self.screen = screen
+            self._tell(screen)
+
+    def _tell(self, news: ViewUpdate) -> None:
+        self._subscribers.publish(news)
+
+    def _make_screen(self) -> Screen:
+        hints = tuple(self._hint(codes, key) for codes, key in _HINTS)
+        return self._player.screen(self._texts, hints, self._language)
+
+    def _hint(self, codes: tuple[str, ...], key: str) -> Hint:
+        labels = (input_label(self._texts, "keyboard", code) for code in codes)
+        return Hint(reduce(pair_label, labels), self._texts.say(key))

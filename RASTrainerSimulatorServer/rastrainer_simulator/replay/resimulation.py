@@ -1,0 +1,247 @@
+"""Play a trial again from its journal and compare every number with what was recorded."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_file import Integrity, JournalReading
+from rastrainer.protocol import FINISHED_PHASES
+from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, recorded_command
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
+from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.state import StartingPoint, StepResult
+
+LONGEST_TRIAL_TICKS = 10_000_000
+"""A journal that claims more (11 hours at 250 Hz) is not replayed."""
+SHORTEST_TICK_S, LONGEST_TICK_S = 1e-4, 0.1
+
+_NOT_SIMULATED = frozenset(
+    {"header", "display", "stopped", "attempt", "registration", "scored", "acknowledged"}
+)
+_ADDED_LATER = frozenset({"depthMm"})
+"""Keys that older journals lack; where a part of a journal has one it is compared there."""
+_OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record", "versions"})
+
+
+@dataclass(frozen=True)
+class ReplayReport:
+    """What a replay has found.
+
+    Attributes:
+        trial_id: of the trial.
+        ticks: simulated again.
+        compared: how many entries of each kind were compared.
+        difference: the first difference in words; None where all is equal to the last bit.
+        changed_versions: name → (recorded, present), where they differ.
+        motion: the motion metrics of the replayed trial, as its record has them.
+    """
+
+    trial_id: str
+    ticks: int
+    compared: Mapping[str, int]
+    difference: str | None
+    changed_versions: Mapping[str, tuple[str, str]]
+    motion: Mapping[str, float]
+
+    @property
+    def is_identical(self) -> bool:
+        """Whether trajectory and touches are equal to the last bit."""
+        return self.difference is None
+
+
+def replay(
+    reading: JournalReading,
+    setup: SimulationSetup,
+    watch: Callable[[StepResult], None] = lambda _result: None,
+) -> ReplayReport:
+    """Simulate a trial again from its recorded inputs.
+
+    The replay forms the journal's entries anew and compares them with the recorded ones: events,
+    touches, 50 postures a second, and the hash over the posture of every single tick. `watch` is
+    given each step as it is simulated.
+
+    Raises:
+        InputError: the journal's entries are not those of a trial.
+    """
+    try:
+        return _replay(reading, setup, watch)
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+        raise InputError(
+            f"{reading.path} cannot be replayed: an entry is not as it should be ({error!r})."
+        ) from None
+
+
+def tick_span(reading: JournalReading) -> tuple[int, int]:
+    """Return the tick before a trial and its last one.
+
+    Raises:
+        InputError: the journal's entries are not those of a trial.
+    """
+    try:
+        first = StartingPoint(**reading.header["before"]).tick
+        simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
+        return first, max((entry["tick"] for entry in simulated), default=first)
+    except (KeyError, TypeError) as error:
+        raise InputError(
+            f"{reading.path} cannot be replayed: its ticks are missing ({error!r})."
+        ) from None
+
+
+def _replay(
+    reading: JournalReading, setup: SimulationSetup, watch: Callable[[StepResult], None]
+) -> ReplayReport:
+    header = reading.header
+    start = StartingPoint(**header["before"])
+    _, last = tick_span(reading)
+    if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
+        raise InputError(f"{reading.path} claims {last - start.tick} ticks: no trial is so long.")
+    if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:
+        raise InputError(f"{reading.path} claims ticks of {header['tickS']} s: no loop has them.")
+    simulation = Simulation(setup, header["seed"])
+    simulation.continue_from(start)
+    player = _Player(simulation, header["tickS"], watch)
+    compared: dict[str, int] = defaultdict(int)
+    for first, end in _parts(reading.entries):
+        part = [e for e in reading.entries[first:end] if e["kind"] not in _NOT_SIMULATED]
+        again: Sequence[Mapping[str, Any]] = player.play_part(reading.entries[:first], part)
+        if end < len(reading.entries) or reading.integrity is Integrity.CUT_SHORT:
+            again = _without_what_was_cut(again, part)
+        for entry in part:
+            compared[entry["kind"]] += 1
+        difference = _first_difference(part, again)
+        if difference is not None:
+            break
+    return ReplayReport(
+        trial_id=header["trialId"],
+        ticks=simulation.state.tick - start.tick,
+        compared=dict(compared),
+        difference=difference,
+        changed_versions=_changed(header["versions"], player.versions),
+        motion=player.motion,
+    )
+
+
+def _parts(entries: Sequence[Mapping[str, Any]]) -> Iterator[tuple[int, int]]:
+    """Yield first and end of what each server has written: a trial may have been interrupted."""
+    starts = [n for n, entry in enumerate(entries) if entry["kind"] == "continued"]
+    return zip((0, *starts), (*starts, len(entries)), strict=True)
+
+
+class _Player:
+    """Simulates the parts of one trial and forms their entries anew."""
+
+    def __init__(
+        self, simulation: Simulation, dt: float, watch: Callable[[StepResult], None]
+    ) -> None:
+        self._simulation = simulation
+        self._dt = dt
+        self._watch = watch
+        self._entries: TrialEntries | None = None
+        self.versions: Mapping[str, str] = {}
+        self.motion: Mapping[str, float] = {}
+
+    def play_part(
+        self, earlier: Sequence[Mapping[str, Any]], part: Sequence[Mapping[str, Any]]
+    ) -> list[dict[str, Any]]:
+        """Return the entries of one part, but for the header, formed anew."""
+        if earlier:
+            self._resume(earlier, part[0])
+        self._play(part)
+        if self._entries is None:
+            return []
+        self.versions = self._entries.versions
+        # Of a registered trial it is known: what the arm did until the score came is no part of it.
+        if self._simulation.state.training.phase not in FINISHED_PHASES:
+            self.motion = self._entries.motion()
+        return self._entries.taken()[0 if earlier else 1 :]
+
+    def _resume(self, earlier: Sequence[Mapping[str, Any]], continued: Mapping[str, Any]) -> None:
+        """Resume the trial as the server did that found the earlier parts."""
+        interrupted = InterruptedTrial.of(earlier)
+        if interrupted is None:
+            raise InputError("The journal resumes a trial that was not open.")
+        point = StartingPoint(continued["tick"], continued["simTime"], camera=continued["camera"])
+        self._simulation.resume_trial(interrupted, point)
+        since = interrupted.point.sim_time
+        self._entries = TrialEntries.continued(
+            self._simulation, self._simulation.state, earlier, since, self._dt
+        )
+
+    def _play(self, part: Sequence[Mapping[str, Any]]) -> None:
+        simulation, dt = self._simulation, self._dt
+        first = simulation.state.tick
+        last = max((entry["tick"] for entry in part), default=first)
+        for operator_input in _inputs(part, first, last):
+            before = simulation.state
+            result = simulation.step(dt, operator_input)
+            self._watch(result)
+            if self._entries is None:
+                self._entries = TrialEntries.begun(simulation, before, result, dt)
+            if self._entries.add(simulation, operator_input, result) is not None:
+                self.motion = self._entries.motion()
+
+
+def _inputs(
+    recorded: Sequence[Mapping[str, Any]], before: int, last: int
+) -> Iterator[OperatorInput]:
+    """Yield the operator's input of every tick after `before` up to `last`."""
+    sticks: dict[int, OperatorInput] = {}
+    commands: dict[int, list[OperatorCommand]] = defaultdict(list)
+    for entry in recorded:
+        if entry["kind"] == "input":
+            sticks[entry["tick"]] = OperatorInput(
+                translation=tuple(entry["translation"]),
+                rotation=tuple(entry["rotation"]),
+                fine=entry["fine"],
+                operator=entry["operator"],
+            )
+        elif entry["kind"] == "command":
+            commands[entry["tick"]].append(recorded_command(entry))
+    held = HANDS_OFF
+    for tick in range(before + 1, last + 1):
+        held = sticks.get(tick, held)
+        yield replace(held, commands=tuple(commands[tick])) if tick in commands else held
+
+
+def _first_difference(
+    recorded: Sequence[Mapping[str, Any]], again: Sequence[Mapping[str, Any]]
+) -> str | None:
+    absent = _ADDED_LATER.difference(*recorded)
+    for old, new in zip(recorded, again, strict=False):
+        line, old, new = old["n"], _comparable(old), _comparable(json.loads(json.dumps(new)))
+        for key in old.keys() | (new.keys() - absent):
+            if old.get(key) != new.get(key):
+                return f"line {line}: {key} was {old.get(key)!r}, now it is {new.get(key)!r}"
+    if len(recorded) != len(again):
+        return f"{len(recorded)} entries were recorded, now there are {len(again)}"
+    return None
+
+
+def _without_what_was_cut(
+    again: Sequence[Mapping[str, Any]], recorded: Sequence[Mapping[str, Any]]
+) -> Sequence[Mapping[str, Any]]:
+    """Leave out what the last tick says beyond the cut, which may lie between its lines."""
+    beyond = again[len(recorded) :]
+    is_last_tick = all(entry["tick"] == recorded[-1]["tick"] for entry in beyond)
+    return again[: len(recorded)] if is_last_tick else again
+
+
+def _comparable(entry: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in entry.items() if key not in _OF_THE_CLOCK}
+
+
+def _changed(recorded: Mapping[str, str], present: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    return {
+        name: (recorded.get(name, "absent"), present.get(name, "absent"))
+        for name in sorted(recorded.keys() | present.keys())
+        if recorded.get(name) != present.get(name)
+    }

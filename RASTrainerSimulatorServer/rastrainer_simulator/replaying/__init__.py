@@ -1,1 +1,0 @@
-"""A recorded trial shown again in the simulator's views."""

@@ -1,1 +1,0 @@
-"""Make scenarios of heads, check them, and pack them for others."""

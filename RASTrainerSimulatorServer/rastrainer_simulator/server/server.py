@@ -1,0 +1,363 @@
+"""The simulator's process: the control loop, its clients and the clean end of both."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import gc
+import itertools
+import logging
+import signal
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass
+from ipaddress import ip_address
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.journal.journal_file import JournalReading
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, FIDUCIAL_COUNT, CommandName
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.core.interrupted_trial import find_interrupted
+from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.session.preferences import (
+    PREFERENCES_FILE,
+    Preferences,
+    read_preferences,
+)
+from rastrainer_simulator.flow.session.study_steps import StudySteps
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
+from rastrainer_simulator.net.limits import read_limits
+from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
+from rastrainer_simulator.ops.desktop_process import DesktopProcess
+from rastrainer_simulator.ops.folders import config_folder, log_folder
+from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.record.records_folder import RecordsFolder
+from rastrainer_simulator.record.versions import versions
+from rastrainer_simulator.robot.kinematics import kinematics_name
+from rastrainer_simulator.server.scenario_loader import ScenarioLoader
+from rastrainer_simulator.state import Answer
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.flow.running_presenter import RunningPresenter
+    from rastrainer_simulator.net.views.view_server import ViewServer
+
+_log = logging.getLogger(__name__)
+
+_LOOK_AFTER_LOOP_S = 1.0
+
+
+@dataclass(frozen=True)
+class ServerOptions:
+    """What the simulator is started with.
+
+    Attributes:
+        records: folder of the trials' journals.
+        seed: of the heads' poses in the trials; who knows it knows the truth.
+        host: address to listen on.
+        port: to listen on; 0 is any free one.
+        connect_to: host and port of a listening Slicer, in place of listening.
+        speed: simulated seconds in a second.
+        scenario: folder; None is the one that comes with RASTrainer.
+        robot_meshes: folder of the robot's official meshes; None is our own.
+        view_port: of the views; 0 is any free one, None the usual one or else any free one.
+        has_views: whether views are served at all, and a trainee can operate.
+        has_network: whether views of other computers are served, too.
+        has_gamepad: whether gamepads at this computer are read.
+        has_desktop: whether a window is opened; the simulator ends when its user closes it.
+        config: folder of the user's settings; None is the usual one.
+        logs: folder of the logs of the window; None is the usual one.
+        resumes: whether a trial that the simulator's end has interrupted is resumed.
+    """
+
+    records: Path
+    seed: int
+    host: str = DEFAULT_HOST
+    port: int = DEFAULT_PORT
+    connect_to: tuple[str, int] | None = None
+    speed: float = 1.0
+    scenario: Path | None = None
+    robot_meshes: Path | None = None
+    view_port: int | None = None
+    has_views: bool = True
+    has_network: bool = False
+    has_gamepad: bool = True
+    has_desktop: bool = False
+    config: Path | None = None
+    logs: Path | None = None
+    resumes: bool = True
+
+
+class SimulatorServer:
+    """One simulation and everyone who watches or commands it."""
+
+    def __init__(self, options: ServerOptions):
+        """Load the scenario and the robot, which takes about a second.
+
+        Raises:
+            InputError: one of their files or that of the limits cannot be used, or another
+                simulator writes to the folder of the journals.
+        """
+        self._options = options
+        self._limits = read_limits(self._config)
+        self._settings = self._preferred_settings()
+        self._seeds = itertools.count(options.seed)
+        self._study = StudySteps()
+        # First: until the folder is ours, another simulator may add to the trial to resume.
+        self._records = RecordsFolder(options.records)
+        with contextlib.ExitStack() as unless_ready:
+            unless_ready.callback(self._records.close)
+            taken_up = self._take_up() if options.resumes else None
+            simulation, reading = taken_up or (self._make_simulation(options.scenario), None)
+            self._has_resumed = reading is not None
+            self._control_loop = ControlLoop(
+                simulation,
+                options.records,
+                speed=options.speed,
+                interrupted=reading,
+                trial_limits=self._limits.trials,
+            )
+            unless_ready.pop_all()
+        self._scenarios = ScenarioLoader(
+            self._control_loop, self._make_simulation, _is_loopback(_peers_host(options))
+        )
+
+    async def run(self, on_ready: Callable[[str], None]) -> None:
+        """Serve until SIGTERM or Ctrl-C; `on_ready` is told where, and each new pairing code.
+
+        Raises:
+            InputError: the address cannot be listened on.
+            RASTrainerError: the control loop has broken down.
+        """
+        for problem in self._control_loop.problems:
+            _log.warning("%s", problem)
+        if self._control_loop.is_first_in_line:
+            raise_thread_priority()
+        loop = asyncio.get_running_loop()
+        link = SimulatorLink(
+            latest=lambda: self._control_loop.latest,
+            submit=self._submit,
+            unacknowledged=self._control_loop.unacknowledged,
+            health=self._health,
+            limits=self._limits.clients,
+            answers=self._study.unacknowledged_answers,
+        )
+        feed = StateFeed(link.publisher.is_due, link.tell, loop)
+        unsubscribe = self._control_loop.subscribe(feed)
+        self._control_loop.subscribe(TrialLog(loop))
+        tasks = [loop.create_task(link.beat())]
+        stop = asyncio.Event()
+        presenter = self._presenter(link, stop) if self._options.has_views else None
+        serve_views, views, window = self._views_to_serve(presenter), None, None
+        # What was loaded stays: no garbage collection needs to look at it between two ticks.
+        gc.collect()
+        gc.freeze()
+        with stop_on_signals(loop, stop):
+            self._control_loop.start()
+            _log.info("The simulator has started.", extra={"data": versions()})
+            try:
+                port = await self._open(link, tasks, on_ready)
+                self._records.announce(self._options.host, port, "")
+                if serve_views is not None and presenter is not None:
+                    views = await serve_views(on_ready)
+                    page = f"http://{DEFAULT_HOST}:{views.port}"
+                    self._records.announce(self._options.host, port, page)
+                    tasks.append(loop.create_task(presenter.run()))
+                if self._has_resumed:
+                    on_ready(self._interruption())
+                on_ready(f"computes the robot's kinematics by {kinematics_name()}")
+                if self._options.has_desktop and views is not None:
+                    window = DesktopProcess(
+                        page,
+                        views.sessions.open(),
+                        self._options.logs or log_folder(),
+                    )
+                    tasks.append(loop.create_task(window.run(stop.set, on_ready)))
+                await self._until(stop)
+            finally:
+                for task in tasks:
+                    task.cancel()
+                unsubscribe()
+                if window is not None:
+                    await window.close()
+                if views is not None:
+                    await views.close()
+                if presenter is not None:
+                    presenter.close()
+                # What was commanded is still answered, and then the connections are closed.
+                await loop.run_in_executor(None, self._stop)
+                await link.server.close()
+                self._records.close()
+                _log.info("The simulator has ended.", extra={"data": self._health()})
+
+    def _preferred_settings(self) -> SimulationSettings:
+        """Return how the trainee wants the simulation to behave; without views, as by default."""
+        if not self._options.has_views:
+            return SimulationSettings()
+        try:
+            preferences = read_preferences(self._config / PREFERENCES_FILE)
+        except InputError:
+            # Whether the file is missing or wrong, the presenter looks at it again, and says so.
+            preferences = Preferences()
+        return preferences.applied_to(SimulationSettings())
+
+    def _take_up(self) -> tuple[Simulation, JournalReading] | None:
+        """Return a simulation with the trial that was interrupted, and its journal."""
+        try:
+            found = find_interrupted(self._options.records)
+            if found is None:
+                return None
+            reading, interrupted = found
+            setup = setup_of(reading.header, self._options.scenario, self._options.robot_meshes)
+        except InputError as error:
+            _log.warning("An interrupted trial cannot be resumed: %s", error)
+            return None
+        simulation = Simulation(setup, next(self._seeds))
+        simulation.resume_trial(interrupted)
+        return simulation, reading
+
+    def _interruption(self) -> str:
+        training = self._control_loop.latest.training
+        kept = f"{len(training.touches)} of {FIDUCIAL_COUNT} points are kept"
+        return (
+            f"resumes the interrupted trial of {training.trainee} at {training.task}: {kept}; "
+            "resume or abort it"
+        )
+
+    @property
+    def _config(self) -> Path:
+        return self._options.config or config_folder()
+
+    def _presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
+        """Return the trainee's presenter."""
+        from rastrainer_simulator.flow.running_presenter import RunningPresenter
+        from rastrainer_simulator.flow.session.session import FlowServices
+
+        services = FlowServices(
+            config=self._config,
+            records=self._options.records,
+            use_settings=self._use_settings,
+            list_scenarios=self._scenarios.listed,
+            use_scenario=self._scenarios.load,
+            is_slicer_connected=lambda: bool(link.server.clients),
+            quit=stop.set,
+            study=self._study,
+        )
+        return RunningPresenter(self._control_loop, services, self._options.has_gamepad)
+
+    def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:
+        self._settings = settings
+        return self._scenarios.reload()
+
+    def _views_to_serve(
+        self, presenter: RunningPresenter | None
+    ) -> Callable[[Callable[[str], None]], Awaitable[ViewServer]] | None:
+        """Return what opens the view server; None where no views are wanted."""
+        if presenter is None:
+            return None
+        # Here, before the control loop ticks: the import of aiohttp would make ticks late.
+        from rastrainer_simulator.net.views.open_views import open_views
+
+        return lambda tell: open_views(
+            presenter.presenter.shown,
+            presenter.presenter,
+            tell,
+            self._options.view_port,
+            self._options.robot_meshes,
+            self._config / "certificates" if self._options.has_network else None,
+            self._scenarios.picture,
+            self._limits.views,
+        )
+
+    def _make_simulation(self, scenario: Path | None) -> Simulation:
+        setup = load_setup(scenario, self._settings, robot_meshes=self._options.robot_meshes)
+        return Simulation(setup, next(self._seeds))
+
+    async def _open(
+        self,
+        link: SimulatorLink,
+        tasks: list[asyncio.Task[None]],
+        on_ready: Callable[[str], None],
+    ) -> int:
+        """Listen and return the port; or connect to a listening Slicer and return 0."""
+        if self._options.connect_to is None:
+            port = await link.server.listen(self._options.host, self._options.port)
+            on_ready(f"ready on {self._options.host}:{port}")
+            return port
+        host, port = self._options.connect_to
+        tasks.append(asyncio.create_task(link.server.keep_connected_to(host, port)))
+        on_ready(f"ready; it connects to {host}:{port}")
+        return 0
+
+    async def _until(self, stop: asyncio.Event) -> None:
+        while not stop.is_set():
+            with contextlib.suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(stop.wait(), _LOOK_AFTER_LOOP_S)
+            if not self._control_loop.is_running:
+                raise RASTrainerError("The control loop has broken down: the log says why.")
+
+    def _stop(self) -> None:
+        self._scenarios.close()
+        self._control_loop.stop()
+
+    def _submit(self, name: str, arguments: Mapping[str, Any], sender: str) -> Future[Answer]:
+        if name == CommandName.LOAD_SCENARIO:
+            return self._scenarios.load(arguments["folder"])
+        if name == CommandName.STUDY_STEP:
+            self._study.take(StudyStep.from_arguments(arguments))
+            taken: Future[Answer] = Future()
+            taken.set_result(Answer(0, True))
+            return taken
+        return self._control_loop.submit(name, arguments, sender)
+
+    def _health(self) -> dict[str, Any]:
+        """Return how punctual the control loop is."""
+        statistics = self._control_loop.statistics
+        return {
+            "ticks": statistics.ticks,
+            "lateTicks": statistics.late,
+            "skippedTicks": statistics.skipped,
+            "worstDelayMs": round(1000.0 * statistics.worst_delay_s, 3),
+        }
+
+
+def _peers_host(options: ServerOptions) -> str:
+    """Return the address by which peers are met."""
+    return options.host if options.connect_to is None else options.connect_to[0]
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+@contextlib.contextmanager
+def stop_on_signals(loop: asyncio.AbstractEventLoop, stop: asyncio.Event) -> Iterator[None]:
+    """Set the event on SIGTERM, on Ctrl-C and when the terminal is closed."""
+
+    def end(name: str) -> None:
+        _log.info("The simulator is asked to end by %s.", name)
+        stop.set()
+
+    def ask(number: int, *_frame: object) -> None:
+        loop.call_soon_threadsafe(end, signal.Signals(number).name)
+
+    # Not by the event loop's own means, which Windows lacks.
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    hang_up = getattr(signal, "SIGHUP", None)
+    # Who starts a program by nohup wants it to outlive the terminal.
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
+        numbers.append(hang_up)
+    before = {number: signal.signal(number, ask) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

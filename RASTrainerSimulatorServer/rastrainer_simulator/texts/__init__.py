@@ -1,1 +1,0 @@
-"""Everything that the simulator says to people, one table a language."""

@@ -1,1 +1,0 @@
-"""What people see of the simulation; views draw what it says and decide nothing."""

@@ -1,0 +1,1 @@
+"""Scripted trainees, and cohorts of them."""

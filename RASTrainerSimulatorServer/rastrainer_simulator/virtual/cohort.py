@@ -1,0 +1,143 @@
+"""A whole simulated study: played, stored like a real one, with the truth beside it.
+
+What interrupts it (Ctrl-C, a full disk, a power failure) leaves a study that the same call resumes:
+its jobs follow from the seed, and only those are played whose trials are not there.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import rastrainer
+from rastrainer.files.writing import make_empty_folder, write_text
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.cohort_store import CohortStore
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_text
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.core.setup import DEFAULT_SCENARIO, scenario_sha256
+from rastrainer_simulator.virtual.engines import PROCESSES, run_jobs
+from rastrainer_simulator.virtual.play import PlayedTrial, PlaySettings, play_job
+from rastrainer_simulator.virtual.population import Population, TrialJob, trial_jobs
+
+DATABASE, TRUTH, PROTOCOL, RECORDS = "study.db", "truth.json", "protocol.json", "records"
+
+
+@dataclass(frozen=True)
+class CohortRun:
+    """How a simulation went.
+
+    Attributes:
+        found: Trials that had been played before, where the cohort was resumed.
+        played: Trials that were finished and stored now.
+        stuck: Trials of now in which the virtual trainee did not get to a fiducial.
+        seconds: Wall time of playing and storing.
+        simulated_s: Trial time of the trials that were finished now.
+    """
+
+    found: int
+    played: int
+    stuck: int
+    seconds: float
+    simulated_s: float
+
+
+def simulate_cohort(
+    protocol: StudyProtocol,
+    population: Population,
+    trainees: int,
+    seed: int,
+    folder: Path,
+    settings: PlaySettings,
+    with_journals: bool = False,
+    engine: str = PROCESSES,
+    workers: int | None = None,
+    address: str | None = None,
+    on_trial: Callable[[int], None] | None = None,
+) -> CohortRun:
+    """Play the study of a protocol with virtual trainees and store it in a folder.
+
+    The folder is empty, or holds such a study of equal arguments that was interrupted: then only
+    what is missing is played, and the study becomes what it would have been. Questionnaires, breaks
+    and trial runs are left out: virtual trainees have no opinion and need no rest. The protocol
+    that is stored says so. `on_trial` is told how many trials are done.
+
+    Raises:
+        InputError: the folder holds something else, a task is not in the scenario, or the engine
+            fails.
+        WorkerDiedError: several worker processes in turn died at one trial; the study is resumable.
+    """
+    if not (folder / DATABASE).is_file():
+        make_empty_folder(folder)
+    protocol = _virtual(protocol)
+    began = time.perf_counter()
+    records = folder / RECORDS if with_journals else None
+    played_with = PlaySettings(settings.scenario, settings.step_s, protocol.references, records)
+    function = functools.partial(play_job, settings=played_with)
+    truth = {"seed": seed, "trainees": trainees, "population": asdict(population)}
+    plan = {**truth, **_circumstances(settings, with_journals)}
+    planned = trainees * len(protocol.modes) * len(protocol.tasks) * protocol.repetitions
+    counts = dict.fromkeys(("found", "played", "stuck"), 0)
+    simulated_s = 0.0
+    with Study.open(folder / DATABASE) as study:
+        store = CohortStore(study)
+        store.begin(plan, planned)
+        StudyProgress(study).begin(protocol)
+        write_text(folder / PROTOCOL, protocol_text(protocol))
+        write_text(folder / TRUTH, json.dumps(truth, indent=2) + "\n")
+        if records is not None:
+            records.mkdir(exist_ok=True)
+        missing = []
+        for job in trial_jobs(protocol, population, trainees, seed):
+            if store.has_played(job.trial_id):
+                counts["found"] += 1
+            else:
+                missing.append(job)
+        for trial in run_jobs(function, missing, engine, workers, address, _name_of):
+            _store(store, trial)
+            counts["stuck" if trial.analysis is None else "played"] += 1
+            simulated_s += 0.0 if trial.analysis is None else trial.record.completion_time_s
+            if on_trial is not None:
+                on_trial(sum(counts.values()))
+        store.finish()
+    return CohortRun(**counts, seconds=time.perf_counter() - began, simulated_s=simulated_s)
+
+
+def _virtual(protocol: StudyProtocol) -> StudyProtocol:
+    return replace(
+        protocol,
+        title=f"{protocol.title[:90]} (virtual trainees)",
+        trial_run_min=0.0,
+        break_between_modes_min=0.0,
+        break_between_tasks_min=0.0,
+        asked=(),
+    )
+
+
+def _circumstances(settings: PlaySettings, with_journals: bool) -> dict[str, Any]:
+    """Return what else the trials follow from: half a cohort of each would be neither."""
+    folder = settings.scenario or asset_path(*DEFAULT_SCENARIO)
+    return {
+        "step": settings.step_s,
+        "scenario": scenario_sha256(load_scenario(folder)),
+        "records": with_journals,
+        "version of RASTrainer": rastrainer.__version__,
+    }
+
+
+def _name_of(job: TrialJob) -> str:
+    return f"The trial of {job.trainee}, {job.task} ({job.mode}),"
+
+
+def _store(store: CohortStore, trial: PlayedTrial) -> None:
+    if trial.analysis is None:
+        store.add_stuck(trial.job.trial_id)
+    else:
+        store.add(trial.analysis)

@@ -1,0 +1,245 @@
+"""A model of what trials give, without the physics: thousands of studies in a second.
+
+Completion time and registration error of a trial are drawn from the distributions that the theory
+gives: times log-normal about task, trainee, mode and practice; errors as the FRE of fifteen points
+whose localization error depends on task, trainee and mode (FRE² = FLE²·(1 − 2/N)·χ²/dof). What is
+estimated from such data can be compared with what was put in. It is not the simulator: hands, arm
+and head play no part.
+
+Practice is the power law (Newell and Rosenbloom 1981); a hurried trial is the less exact one, as
+where errors are in proportion to the speed (Schmidt et al. 1979: exponent 1); a view that misleads
+all touches alike leaves the registration's residuals as they are, and moves the target.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
+from rastrainer_simulator.virtual.population import pseudonym
+
+DOF = 3 * FIDUCIAL_COUNT - 6
+REFERENCE_RMSE_MM, REFERENCE_TRE_MM = 1.4, 0.4
+"""The published study's mean RMSE over fifteen fiducials, and what it means at their center."""
+
+
+@dataclass(frozen=True)
+class OutcomeModel:
+    """The truth of a simulated study.
+
+    Attributes:
+        task_times_s: Median completion time of each task at the first trial in the first mode.
+        task_fle_mm: Localization error of each task, the same length.
+        trainee_time_sd: Between trainees, of the logarithm of the time.
+        trainee_fle_sd: Between trainees, of the logarithm of the localization error.
+        interaction_sd: How differently modes affect trainees, of both logarithms.
+        trial_time_sd: Between trials of a trainee, of the logarithm of the time.
+        learning: b; the n-th trial takes n^−b of the first one's time.
+        carries_practice: Whether n counts the trials of both modes, as for the virtual trainees
+            that are played; else each mode begins anew.
+        mode_time: Factor on the time in each mode; 1 for those left out.
+        mode_fle: Factor on the localization error in each mode.
+        accuracy_learning: As `learning`, of the localization error.
+        trade_off: k; a trial that takes x times as long as the trainee's others of its kind has a
+            localization error x^−k times as large.
+        lapses: Share of trials in which a touch slips, is noticed and taken back.
+        lapse_time: Factor on the time of such a trial.
+        mode_bias_mm: By how many mm the view of a mode misleads all touches alike; 0 for those left
+            out.
+    """
+
+    task_times_s: Sequence[float]
+    task_fle_mm: Sequence[float]
+    trainee_time_sd: float = 0.15
+    trainee_fle_sd: float = 0.15
+    interaction_sd: float = 0.05
+    trial_time_sd: float = 0.12
+    learning: float = 0.1
+    carries_practice: bool = False
+    mode_time: Mapping[str, float] = field(default_factory=dict)
+    mode_fle: Mapping[str, float] = field(default_factory=dict)
+    accuracy_learning: float = 0.0
+    trade_off: float = 0.0
+    lapses: float = 0.0
+    lapse_time: float = 1.05
+    mode_bias_mm: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class DrawnTrials:
+    """What was drawn; all arrays are (trainees, modes, tasks).
+
+    Attributes:
+        times_s: Completion times.
+        errors_mm: RMSE of the registrations.
+        true_tre_mm: True errors at a target in the middle of the points.
+        lapses: Whether a touch was taken back.
+    """
+
+    times_s: np.ndarray
+    errors_mm: np.ndarray
+    true_tre_mm: np.ndarray
+    lapses: np.ndarray
+
+
+def draw_study(
+    model: OutcomeModel,
+    trainees: int,
+    modes: Sequence[str],
+    random: np.random.Generator,
+    orders: Sequence[Sequence[str]] | None = None,
+) -> StudyData:
+    """Return a study in which every trainee does every task once in every mode.
+
+    `orders` are the modes in the order of each trainee; by default that of `modes` for all.
+    """
+    orders = orders or [tuple(modes)] * trainees
+    times, errors = draw_outcomes(model, trainees, modes, random, orders)
+    scores = model_scores(model, times, errors)
+    rows = [
+        TrialRow(
+            pseudonym(i),
+            mode,
+            f"task-{k + 1}",
+            k + 1,
+            {
+                "completion_time_s": float(times[i, m, k]),
+                "rmse_mm": float(errors[i, m, k]),
+                "score": float(scores[i, m, k]),
+            },
+        )
+        for i in range(trainees)
+        for mode, m in sorted(
+            ((mode, m) for m, mode in enumerate(modes)), key=lambda one: orders[i].index(one[0])
+        )
+        for k in range(len(model.task_times_s))
+    ]
+    return StudyData("Simulated outcomes", tuple(rows), has_order=True)
+
+
+def draw_outcomes(
+    model: OutcomeModel,
+    trainees: int,
+    modes: Sequence[str],
+    random: np.random.Generator,
+    orders: Sequence[Sequence[str]] | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return times in s and RMSE in mm, both (trainees, modes, tasks) float.
+
+    `orders` are the modes in the order of each trainee; by default that of `modes` for all.
+    """
+    numbers = trial_numbers(orders or [tuple(modes)] * trainees, modes, len(model.task_times_s))
+    times, errors, _, _ = _draw(model, modes, random, numbers)
+    return times, errors
+
+
+def draw_trials(
+    model: OutcomeModel, modes: Sequence[str], random: np.random.Generator, numbers: np.ndarray
+) -> DrawnTrials:
+    """Return everything of a study's trials.
+
+    Args:
+        model: The truth.
+        modes: Of the second axis of the arrays.
+        random: Of the draws.
+        numbers: (trainees, modes, tasks) int, which trial of the trainee's each is, from 1.
+    """
+    times, errors, fle, lapses = _draw(model, modes, random, numbers)
+    # In the middle of the points the expected TRE² is FLE²/N (Fitzpatrick 1998).
+    sd = (fle / math.sqrt(3 * FIDUCIAL_COUNT))[..., None]
+    offsets = random.normal(size=(*numbers.shape, 3)) * sd
+    offsets[..., 0] += np.array([model.mode_bias_mm.get(mode, 0.0) for mode in modes])[:, None]
+    return DrawnTrials(times, errors, np.linalg.norm(offsets, axis=-1), lapses)
+
+
+def trial_numbers(orders: Sequence[Sequence[str]], modes: Sequence[str], tasks: int) -> np.ndarray:
+    """Return which trial each is of those who do all tasks in turn, mode by mode.
+
+    The array is (trainees, modes, tasks) int, from 1.
+    """
+    periods = np.array([[own.index(mode) for mode in modes] for own in orders])
+    return periods[..., None] * tasks + np.arange(1, tasks + 1)
+
+
+def _draw(
+    model: OutcomeModel, modes: Sequence[str], random: np.random.Generator, numbers: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return times in s, RMSE and localization errors in mm, and lapses, all as `numbers`."""
+    shape = numbers.shape
+    own_time, own_fle = (
+        random.normal(0, sd, (shape[0], 1, 1))
+        + random.normal(0, model.interaction_sd, (shape[0], shape[1], 1))
+        for sd in (model.trainee_time_sd, model.trainee_fle_sd)
+    )
+    median_times, median_fle = _medians(model, modes)
+    practice, accuracy = _practice(model, numbers)
+    haste = random.normal(0, model.trial_time_sd, shape)
+    times = median_times * practice * np.exp(own_time + haste)
+    fle = median_fle * accuracy * np.exp(own_fle - model.trade_off * haste)
+    # The expected FRE² is FLE²·(1 − 2/N), and 3N − 6 residuals are left after a rigid fit.
+    squares = fle**2 * (1 - 2 / FIDUCIAL_COUNT) * random.chisquare(DOF, shape) / DOF
+    lapses = random.random(shape) < model.lapses if model.lapses else np.zeros(shape, dtype=bool)
+    return times * np.where(lapses, model.lapse_time, 1.0), np.sqrt(squares), fle, lapses
+
+
+def model_scores(model: OutcomeModel, times_s: np.ndarray, errors_mm: np.ndarray) -> np.ndarray:
+    """Return the scores of drawn trials, in their shape (…, tasks).
+
+    The target error is what the registration error means at the center of the head; nobody touches
+    it but at the fiducials; the reference of a task is its own time.
+    """
+    scores = np.empty(times_s.shape)
+    for index in np.ndindex(times_s.shape):
+        reference = ScoreReference(model.task_times_s[index[-1]], REFERENCE_TRE_MM)
+        error = float(REFERENCE_TRE_MM / REFERENCE_RMSE_MM * errors_mm[index])
+        measures = ScoreMeasures(float(times_s[index]), error, 0.0, 0.0, 0.0)
+        scores[index] = score_trial(measures, reference).score
+    return scores
+
+
+def expected_outcomes(model: OutcomeModel, modes: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the means that very many trainees have: times in s and RMSE in mm, (modes, tasks).
+
+    Where practice is carried over, they are the means over all periods: what modes do apart from
+    their order. A log-normal's mean is exp(σ²/2) times its median; that of χ is
+    √2·Γ((k + 1)/2)/Γ(k/2).
+    """
+    times, fle = _medians(model, modes)
+    # Each mode in each period; modes in the second axis make no difference here.
+    numbers = trial_numbers([tuple(modes)], modes, len(model.task_times_s))[0]
+    practice, accuracy = (factor.mean(axis=0) for factor in _practice(model, numbers))
+    time_sds = (model.trainee_time_sd, model.interaction_sd, model.trial_time_sd)
+    fle_sds = (model.trainee_fle_sd, model.interaction_sd, model.trade_off * model.trial_time_sd)
+    of_time, of_fle = (math.exp(sum(sd**2 for sd in sds) / 2) for sds in (time_sds, fle_sds))
+    of_time *= 1 + model.lapses * (model.lapse_time - 1)
+    chi = math.sqrt(2) * math.exp(math.lgamma((DOF + 1) / 2) - math.lgamma(DOF / 2))
+    residual = math.sqrt((1 - 2 / FIDUCIAL_COUNT) / DOF) * chi
+    return times * practice * of_time, fle * accuracy * of_fle * residual
+
+
+def _medians(model: OutcomeModel, modes: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return time in s and localization error in mm of the typical trainee, (modes, tasks).
+
+    The time is without practice.
+    """
+    mode_time, mode_fle = (
+        np.array([factors.get(mode, 1.0) for mode in modes])[:, None]
+        for factors in (model.mode_time, model.mode_fle)
+    )
+    times = mode_time * np.asarray(model.task_times_s)
+    return times, mode_fle * np.asarray(model.task_fle_mm)
+
+
+def _practice(model: OutcomeModel, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the factors of practice on time and localization error of such trials (…, tasks)."""
+    practiced = numbers
+    if not model.carries_practice:
+        # A trial's number within its mode.
+        practiced = numbers.argsort(axis=-1).argsort(axis=-1) + 1
+    return practiced ** -float(model.learning), practiced ** -float(model.accuracy_learning)

@@ -1,0 +1,158 @@
+"""Play one trial of a cohort with the whole simulation: arm, contact, hands, registration, score.
+
+The function is the same on one core, on all, and on another machine: it needs only its job.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from rastrainer.journal.folder import SUFFIX
+from rastrainer.protocol import Mode
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import ScoreReference
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.ops.stamps import file_stamp, iso
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
+from rastrainer_simulator.state import SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.virtual.population import TrialJob
+from rastrainer_simulator.virtual.virtual_trial import UnfinishedTrialError, play_virtual_trial
+
+STEP_S = 0.05
+
+
+@dataclass(frozen=True)
+class PlaySettings:
+    """How the jobs of a cohort are played.
+
+    Attributes:
+        scenario: Folder; None for the one that comes with RASTrainer.
+        step_s: Length of a step of the simulation.
+        references: Of the score, by task; the scenario's for tasks that it leaves out.
+        records: Folder for the journals; None for none.
+    """
+
+    scenario: Path | None = None
+    step_s: float = STEP_S
+    references: Mapping[str, ScoreReference] | None = None
+    records: Path | None = None
+
+
+@dataclass(frozen=True)
+class PlayedTrial:
+    """What a job gave; `analysis` is None where the trainee got stuck."""
+
+    job: TrialJob
+    analysis: TrialAnalysis | None
+
+    @property
+    def record(self) -> TrialRecord:
+        """The record of a trial that was finished."""
+        assert self.analysis is not None, "The trainee got stuck."
+        return self.analysis.record
+
+
+def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
+    """Play, register and score one trial; equal jobs give equal trials on any machine alike."""
+    simulation = _simulation(settings.scenario)
+    # Nothing of the trial before: a job alone says what comes of it.
+    simulation.continue_from(StartingPoint())
+    watch = _Watch(settings.step_s)
+    try:
+        trial = play_virtual_trial(
+            simulation,
+            job.task,
+            job.seed,
+            job.skill,
+            settings.step_s,
+            watch,
+            job.trainee,
+            Mode(job.mode),
+            job.trial_id,
+        )
+    except UnfinishedTrialError:
+        # The next trial needs a simulation that is not in the middle of one.
+        _simulation.cache_clear()
+        return PlayedTrial(job, None)
+    assert watch.entries is not None
+    assert watch.record is not None  # The trial was registered.
+    watch.record.measured()
+    entries = _dated(watch.entries.taken(), job.started)
+    registered = next(entry for entry in entries if entry["kind"] == "registered")
+    record = TrialRecord.from_json(registered["record"])
+    if settings.records is not None:
+        _write_journal(settings.records, entries, job.started)
+    scenario = simulation.setup.scenario
+    analysis = analyze_trial(record, scenario)
+    where = Truth(trial.head_to_world, scenario.target_position, {})
+    truth = RevealedTruth(
+        tuple(trial.head_to_world.ravel().tolist()), where.target_error_mm(analysis.rigid.matrix)
+    )
+    return PlayedTrial(job, analysis.scored(scenario, truth, settings.references))
+
+
+class _Watch:
+    """Forms the journal's entries of the trial that is played."""
+
+    def __init__(self, step_s: float) -> None:
+        self._step_s = step_s
+        self.entries: TrialEntries | None = None
+        self.record: UnmeasuredRecord | None = None
+
+    def __call__(
+        self,
+        simulation: Simulation,
+        before: SimulationState,
+        operator_input: OperatorInput,
+        result: StepResult,
+    ) -> None:
+        if self.entries is None:
+            self.entries = TrialEntries.begun(simulation, before, result, self._step_s)
+        self.record = self.entries.add(simulation, operator_input, result) or self.record
+
+
+def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, Any]]:
+    """Date entries from when the trial is said to have begun, in simulated time."""
+    zero = entries[0]["simTime"]
+
+    def utc(sim_time: float) -> str:
+        return iso(started + timedelta(seconds=sim_time - zero))
+
+    for entry in entries:
+        entry["utc"] = utc(entry["simTime"])
+        if entry["kind"] == "registered":
+            record = entry["record"]
+            for point in record["points"]:
+                point["utc"] = utc(point["simTime"])
+            record["startedUtc"] = utc(zero)
+            record["completedUtc"] = record["points"][-1]["utc"]
+    return entries
+
+
+def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetime) -> None:
+    name = f"{file_stamp(iso(started))}_{entries[0]['trialId']}{SUFFIX}"
+    # Whole or not there, also where this process is killed; one of a trial that was not stored
+    # any more is replaced by its like.
+    partial = folder / f".{name}.partial"
+    partial.unlink(missing_ok=True)
+    journal = Journal(partial)
+    journal.write(entries, sync=False)
+    journal.close()
+    partial.replace(folder / name)
+
+
+@functools.lru_cache(maxsize=1)
+def _simulation(scenario: Path | None) -> Simulation:
+    """Return this process's simulation, which is made once."""
+    return Simulation(load_setup(scenario), seed=0)

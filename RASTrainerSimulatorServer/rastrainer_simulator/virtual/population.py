@@ -1,0 +1,180 @@
+"""The trainees of a simulated cohort and their trials, in the order of the study's protocol."""
+
+from __future__ import annotations
+
+import math
+import uuid
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from datetime import datetime, timedelta, timezone
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import SPEED_LIMIT_MM_S, Mode
+from rastrainer.study.protocol.steps import StepKind, steps_for
+from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+
+NAMESPACE = uuid.UUID("2b1f9c1e-52dd-5f0c-9c51-5261546f686f")
+FIRST_DAY = datetime(2000, 1, 1, 9, tzinfo=timezone.utc)
+"""Virtual trials bear dates that nobody takes for real ones."""
+
+
+@dataclass(frozen=True)
+class TrialJob:
+    """One trial to be played.
+
+    Attributes:
+        trainee: Pseudonym, `V0001` and on.
+        step: Name of the protocol's step.
+        mode: `desktop` or `hmd`.
+        task: Name of the task.
+        skill: Of the hands in this trial.
+        seed: Of the head's pose and of the hands.
+        started: When it is said to have begun.
+    """
+
+    trainee: str
+    step: str
+    mode: str
+    task: str
+    skill: Skill
+    seed: int
+    started: datetime
+
+    @property
+    def trial_id(self) -> str:
+        """UUID of the trial, which follows from the job."""
+        return str(uuid.uuid5(NAMESPACE, f"{self.trainee} {self.step} {self.seed}"))
+
+
+def trial_jobs(
+    protocol: StudyProtocol, population: Population, trainees: int, seed: int
+) -> Iterator[TrialJob]:
+    """Yield the trials of a cohort, trainee by trainee; trial runs are not played."""
+    for place in range(trainees):
+        number = 0
+        for step in steps_for(protocol, place):
+            if step.kind is not StepKind.TRIAL:
+                continue
+            number += 1
+            source = np.random.SeedSequence([seed, place, number])
+            yield TrialJob(
+                trainee=pseudonym(place),
+                step=step.name,
+                mode=step.mode,
+                task=step.task,
+                skill=population.skill_of(place, step.mode, number, seed),
+                seed=int(source.generate_state(1, np.uint64)[0] >> 1),
+                started=FIRST_DAY + timedelta(days=place, minutes=10 * number),
+            )
+
+
+def pseudonym(place: int) -> str:
+    """Return the name of the trainee at a place, the first is 0."""
+    return f"V{place + 1:04d}"
+
+
+SLOWEST_MM_S = 15.0
+GAIN_PER_S = (0.5, 9.0)
+STEADIEST_MM = 0.02
+LARGEST_BIAS_MM = 5.0
+
+_MODES = [mode.value for mode in Mode]
+_INTERACTION, _TRIAL = 1, 2
+"""Streams of chance beside that of the trainee, so that what one adds changes no other."""
+
+
+@dataclass(frozen=True)
+class ModeEffect:
+    """What a mode does to everyone's hands.
+
+    Attributes:
+        speed: Factor on the speed.
+        aim: Factor on the scatter of the aim.
+        bias_mm: What the view misleads the aim by: x, y, z in `World`, mm; of it the part along the
+            skin is what counts, since the tip stands on the skin.
+    """
+
+    speed: float = 1.0
+    aim: float = 1.0
+    bias_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Population:
+    """From whom virtual trainees are drawn.
+
+    Attributes:
+        skill: Of the typical trainee at the first trial.
+        speed_spread: Standard deviation, between trainees, of the logarithm of the speed.
+        aim_spread: The same of the scatter of the aim.
+        learning: b; the n-th trial of all takes n^−b of the first one's time. Speed, gain and
+            pauses all improve by n^b, as far as the robot's limit of speed allows.
+        modes: Effect of each mode; none for those left out.
+        accuracy_learning: The same exponent of the scatter of the aim.
+        interaction: Standard deviation, between trainees and modes, of the logarithms of speed and
+            scatter: how differently a mode suits different trainees.
+        tempo_spread: Standard deviation, between trials of a trainee, of the logarithm of the
+            speed: haste and patience.
+        trade_off: k; a trial played x times as fast as usual has a scatter x^k times as large.
+        lapses: Share of trials in which one touch slips by 4 mm, is noticed and taken back; None
+            for what `skill.slip_at` says.
+    """
+
+    skill: Skill = field(default_factory=Skill)
+    speed_spread: float = 0.15
+    aim_spread: float = 0.15
+    learning: float = 0.15
+    modes: Mapping[str, ModeEffect] = field(default_factory=dict)
+    accuracy_learning: float = 0.0
+    interaction: float = 0.0
+    tempo_spread: float = 0.0
+    trade_off: float = 0.0
+    lapses: float | None = None
+
+    def __post_init__(self) -> None:
+        effects = [f for effect in self.modes.values() for f in (effect.speed, effect.aim)]
+        if not all(0.1 <= factor <= 10 for factor in effects):
+            raise InputError("The effects of a mode must be factors from 0.1 to 10.")
+        biases = [part for effect in self.modes.values() for part in effect.bias_mm]
+        if not all(abs(part) <= LARGEST_BIAS_MM for part in biases):
+            raise InputError(f"The bias of a view must be at most {LARGEST_BIAS_MM:g} mm an axis.")
+        spreads = (self.speed_spread, self.aim_spread, self.interaction, self.tempo_spread)
+        exponents = (self.learning, self.accuracy_learning, self.lapses or 0.0)
+        if not all(0 <= value <= 1 for value in (*spreads, *exponents)):
+            raise InputError("Spreads, learning exponents and lapses must be from 0 to 1.")
+        if not 0 <= self.trade_off <= 2:
+            raise InputError("The exponent of speed and accuracy must be from 0 to 2.")
+
+    def skill_of(self, trainee: int, mode: str, trial: int, seed: int) -> Skill:
+        """Return the hands of a trainee in his or her n-th trial of all, the first is 1.
+
+        The same seed gives the same trainees, however many there are.
+        """
+        random = np.random.default_rng([seed, trainee])
+        own_speed, own_aim = np.exp(random.normal(0.0, [self.speed_spread, self.aim_spread]))
+        of_mode = np.random.default_rng([seed, trainee, _INTERACTION, _MODES.index(mode)])
+        suits_speed, suits_aim = np.exp(of_mode.normal(0.0, self.interaction, 2))
+        of_trial = np.random.default_rng([seed, trainee, _TRIAL, trial])
+        tempo = math.exp(of_trial.normal(0.0, self.tempo_spread))
+        effect = self.modes.get(mode, ModeEffect())
+        brisk = own_speed * suits_speed * tempo * trial**self.learning
+        aim = own_aim * suits_aim * effect.aim * tempo**self.trade_off
+        aim *= self.skill.aim_sd_mm * trial**-self.accuracy_learning
+        speed = self.skill.speed_mm_s * brisk * effect.speed
+        slip_at = self.skill.slip_at
+        if self.lapses is not None:
+            # Which fiducial it is, the trial's own seed says.
+            slip_at = 2 if of_trial.random() < self.lapses else None
+        return replace(
+            self.skill,
+            speed_mm_s=float(np.clip(speed, SLOWEST_MM_S, 0.9 * SPEED_LIMIT_MM_S)),
+            gain_per_s=float(np.clip(self.skill.gain_per_s * brisk * effect.speed, *GAIN_PER_S)),
+            aim_sd_mm=float(max(aim, STEADIEST_MM)),
+            aim_bias_mm=effect.bias_mm,
+            reaction_s=self.skill.reaction_s / brisk,
+            dwell_s=self.skill.dwell_s / brisk,
+            slip_at=slip_at,
+        )

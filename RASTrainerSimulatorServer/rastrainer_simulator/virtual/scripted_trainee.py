@@ -1,0 +1,261 @@
+"""A virtual trainee: seeded hands that drive the robot by the protocol's commands alone.
+
+It sees what a person sees (the tool tip, the numbered fiducials) and answers with `Jog`, `Capture`,
+`Undo` and `Register`, at human speed, with tremor, overshoot and one touch taken back. The demo
+lets it play over OpenIGTLink; tests and cohort simulations step it beside a simulation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.protocol import SPEED_LIMIT_MM_S, CommandName, Phase
+from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.scenario.scenario import Scenario
+
+LIFT_MM = 35.0
+"""How far the tip is taken off the skin before it travels to the next fiducial."""
+
+PRESS_MM = 1.5
+"""How far below the skin the last aim is: the tip is to be felt touching it."""
+
+DECISION_PERIOD_S = 0.05
+JOG_DURATION_S = 0.1
+STUCK_AFTER_S = 12.0
+
+Action = tuple[str, dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Skill:
+    """What a trainee's hands are like.
+
+    Attributes:
+        speed_mm_s: fastest travel of the tip.
+        gain_per_s: how briskly the remaining distance is closed.
+        aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
+        tremor_mm_s: standard deviation of the hand's unwanted velocity, along each axis.
+        overshoot: how far the first aim goes past the fiducial, as a share of the way.
+        reaction_s: pause before each new movement.
+        dwell_s: how long the tip is held still before a touch.
+        slip_at: the fiducial (1 is the first) at which the trainee slips by 4 mm, notices and
+            takes the touch back; None for a trainee who never does.
+        aim_bias_mm: by what the view misleads the aim; x, y, z in World. The part along the skin
+            is what counts.
+    """
+
+    speed_mm_s: float = 120.0
+    gain_per_s: float = 3.0
+    aim_sd_mm: float = 0.8
+    tremor_mm_s: float = 4.0
+    overshoot: float = 0.05
+    reaction_s: float = 0.25
+    dwell_s: float = 0.3
+    slip_at: int | None = 4
+    aim_bias_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What the trainee sees.
+
+    Attributes:
+        sim_time_s: simulated time, s.
+        tip_mm: (3,) float, of the tool, World, mm.
+        is_in_contact: whether the tool is shown to touch the head.
+        phase: of the trial.
+        next_point: number of the fiducial to touch, from 1; None where there is none.
+    """
+
+    sim_time_s: float
+    tip_mm: np.ndarray
+    is_in_contact: bool
+    phase: Phase
+    next_point: int | None
+
+
+class ScriptedTrainee:
+    """Plays one trial; `decide` is called with each observation and answers with what to send.
+
+    Args:
+        fiducials_mm: (n, 3) float, the fiducials as seen in the room, World, mm.
+        normals: (n, 3) float, the skin's outward unit normals there, World.
+        head_center_mm: (3,) float, around which the hand travels, World, mm.
+        skill: what the hands are like.
+        seed: of the tremor and the aim.
+    """
+
+    def __init__(
+        self,
+        fiducials_mm: np.ndarray,
+        normals: np.ndarray,
+        head_center_mm: np.ndarray,
+        skill: Skill,
+        seed: int,
+    ) -> None:
+        self._fiducials = np.asarray(fiducials_mm, dtype=float)
+        self._normals = np.asarray(normals, dtype=float)
+        self._center = np.asarray(head_center_mm, dtype=float)
+        self._skill = skill
+        self._random = np.random.default_rng(seed)
+        self._slip_at = self._skill.slip_at
+        self._planned_for: int | None = None
+        self._touched: int | None = None
+        self._takes_back = False
+        self._path: list[np.ndarray] = []
+        self._acts_from_s = 0.0
+        self._gives_up_at_s = np.inf
+        self._tremor = np.zeros(3)
+        self._outward_at_aim = np.zeros(3)
+
+    @classmethod
+    def of(
+        cls, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
+    ) -> ScriptedTrainee:
+        """Return one for a task, who slips, if ever, somewhere; HeadToWorld is (4, 4) float, mm.
+
+        Raises:
+            InputError: there is no such task, or the head's mesh cannot be used.
+        """
+        return cls(
+            transforms.apply(head_to_world, scenario.task(task_name).fiducials),
+            fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T,
+            transforms.apply(head_to_world, scenario.target_position[None])[0],
+            seeded_skill(skill, seed),
+            seed,
+        )
+
+    def decide(self, observation: Observation) -> Action | None:
+        """Return the command to send now, or None to wait; at most one every 50 ms."""
+        if observation.sim_time_s < self._acts_from_s:
+            return None
+        self._acts_from_s = observation.sim_time_s + DECISION_PERIOD_S
+        if observation.phase not in (Phase.RUNNING, Phase.COMPLETE):
+            return None
+        if self._takes_back:
+            return self._take_back(observation)
+        if observation.phase is Phase.COMPLETE:
+            return CommandName.REGISTER, {}
+        if observation.next_point == self._touched:
+            return None
+        if observation.next_point is not None and observation.next_point != self._planned_for:
+            self._plan(observation, observation.next_point)
+            return None
+        return self._approach(observation)
+
+    def touch_refused(self) -> None:
+        """Tell the trainee that the last touch did not count: it approaches the point again."""
+        self._touched = None
+        self._takes_back = False
+
+    def _take_back(self, observation: Observation) -> Action | None:
+        """Undo the slip as soon as it is seen to have been recorded."""
+        if observation.next_point == self._touched:
+            return None
+        self._takes_back = False
+        self._touched = None
+        self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
+        return CommandName.UNDO, {}
+
+    def _plan(self, observation: Observation, point: int) -> None:
+        """Lift off, travel around the head, come down along the skin's outward direction."""
+        fiducial = self._fiducials[point - 1]
+        outward = self._normals[point - 1]
+        aim = fiducial + self._tangential_error(outward, slips=point == self._slip_at)
+        lifted = observation.tip_mm + LIFT_MM * self._outward(observation.tip_mm)
+        above = fiducial + LIFT_MM * outward
+        past = above + self._skill.overshoot * (above - lifted)
+        self._path = [*self._arc(lifted, past), above, aim]
+        self._outward_at_aim = outward
+        self._planned_for = point
+        self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
+        self._gives_up_at_s = observation.sim_time_s + STUCK_AFTER_S
+
+    def _approach(self, observation: Observation) -> Action | None:
+        if not self._path:
+            return self._touch()
+        is_aim = len(self._path) == 1
+        remaining = self._path[0] - observation.tip_mm
+        gave_up = is_aim and observation.sim_time_s > self._gives_up_at_s
+        if is_aim:
+            is_there = observation.is_in_contact and self._is_over_aim(remaining)
+            remaining = remaining - PRESS_MM * self._outward_at_aim
+        else:
+            is_there = bool(np.linalg.norm(remaining) < 8.0)
+        if is_there or gave_up:
+            self._path.pop(0)
+            if not is_aim:
+                return self._approach(observation)
+            self._acts_from_s = observation.sim_time_s + self._skill.dwell_s
+            return None
+        velocity = self._velocity(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
+        # The hand pushes no more once the skin is felt: it only corrects along it.
+        eases_off = is_aim and observation.is_in_contact
+        return _jog(self._along_skin(velocity) if eases_off else velocity)
+
+    def _is_over_aim(self, remaining: np.ndarray) -> bool:
+        """Tell whether the tip is less than 0.4 mm beside the aim, however high above it."""
+        return bool(np.linalg.norm(self._along_skin(remaining)) < 0.4)
+
+    def _along_skin(self, way: np.ndarray) -> np.ndarray:
+        return way - self._outward_at_aim * float(way @ self._outward_at_aim)
+
+    def _velocity(self, remaining: np.ndarray, fastest_mm_s: float) -> np.ndarray:
+        """Return the velocity of the hand, (3,) float, World, mm/s, with its tremor."""
+        velocity = self._skill.gain_per_s * remaining
+        velocity *= min(1.0, fastest_mm_s / max(float(np.linalg.norm(velocity)), 1e-9))
+        noise = self._random.normal(0.0, self._skill.tremor_mm_s, 3)
+        self._tremor = 0.6 * self._tremor + 0.8 * noise
+        return velocity + self._tremor
+
+    def _touch(self) -> Action:
+        self._touched = self._planned_for
+        self._takes_back = self._touched == self._slip_at
+        if self._takes_back:
+            self._slip_at = None
+        self._planned_for = None
+        return CommandName.CAPTURE, {}
+
+    def _outward(self, position: np.ndarray) -> np.ndarray:
+        away = position - self._center
+        return away / max(float(np.linalg.norm(away)), 1e-9)
+
+    def _tangential_error(self, outward: np.ndarray, slips: bool) -> np.ndarray:
+        error = self._random.normal(self._skill.aim_bias_mm, self._skill.aim_sd_mm, 3)
+        if slips:
+            error = error + 4.0 * self._random.choice([-1.0, 1.0], 3) / np.sqrt(3.0)
+        return error - outward * float(error @ outward)
+
+    def _arc(self, start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
+        """Waypoints from start to end around the head's center, every 15 degrees."""
+        first, last = self._outward(start), self._outward(end)
+        angle = float(np.arccos(np.clip(first @ last, -1.0, 1.0)))
+        count = max(1, int(np.ceil(np.degrees(angle) / 15.0)))
+        radii = np.linspace(
+            np.linalg.norm(start - self._center), np.linalg.norm(end - self._center), count + 1
+        )
+        if angle < 1e-3 or angle > np.pi - 1e-3:
+            return [start, end]
+        weights = np.linspace(0.0, 1.0, count + 1)[:, None]
+        directions = np.sin((1 - weights) * angle) * first + np.sin(weights * angle) * last
+        return list(self._center + radii[:, None] * directions / np.sin(angle))
+
+
+def _jog(velocity: np.ndarray) -> Action:
+    limited = np.clip(velocity, -SPEED_LIMIT_MM_S, SPEED_LIMIT_MM_S)
+    return CommandName.JOG, {
+        "velocityMmS": [round(float(component), 3) for component in limited],
+        "durationS": JOG_DURATION_S,
+    }
+
+
+def seeded_skill(skill: Skill, seed: int) -> Skill:
+    """Return the skill of a trainee who slips, if ever, at a fiducial drawn from the seed."""
+    if skill.slip_at is None:
+        return skill
+    point = int(np.random.default_rng([seed, 1]).integers(2, 15))
+    return replace(skill, slip_at=point)

@@ -1,0 +1,208 @@
+"""Worker processes with one job each at a time, so that of one that dies the job is known.
+
+`concurrent.futures` gives up all jobs when one process is killed (by the system when memory runs
+out, by a crash in a library). Here that job alone is given to a new process.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import signal
+import traceback
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+from rastrainer.errors import InputError, RASTrainerError
+
+ATTEMPTS = 3
+"""So many processes may die at one job."""
+AHEAD = 8
+"""Jobs a worker that may be done before their turn: results wait in memory."""
+
+
+class WorkerDiedError(InputError):
+    """Every process that was given a job died at it."""
+
+
+def run_on_workers(
+    function: Callable[[Any], Any],
+    jobs: Iterable[Any],
+    workers: int,
+    name_of: Callable[[Any], str] = str,
+) -> Iterator[Any]:
+    """Yield the result of each job, in their order; the processes end with the iterator.
+
+    Args:
+        function: Can be pickled. What it raises is raised here.
+        jobs: Can be pickled.
+        workers: Most processes at a time.
+        name_of: What a job is called in the sentence of an error.
+
+    Raises:
+        WorkerDiedError: a job was given to `ATTEMPTS` processes, and all died.
+    """
+    pool = _Pool(function, workers, name_of)
+    try:
+        yield from pool.results(jobs)
+    finally:
+        pool.close()
+
+
+@dataclass
+class _Task:
+    """A job, its place in the order, and at how many processes it has been."""
+
+    place: int
+    job: Any
+    attempts: int = 0
+
+
+class _Worker:
+    """One process and the pipe to it; `task` is what it was given."""
+
+    def __init__(self, function: Callable[[Any], Any]) -> None:
+        # Not forked: collision meshes and threads of numpy do not survive that.
+        context = multiprocessing.get_context("spawn")
+        self.connection, theirs = context.Pipe()
+        self.process = context.Process(target=_work, args=(theirs, function), daemon=True)
+        self.task: _Task | None = None
+        with _interrupts_blocked():
+            self.process.start()
+        theirs.close()
+
+    def give(self, task: _Task) -> None:
+        task.attempts += 1
+        self.task = task
+        # Of one that is dead, the pipe's end tells below.
+        with contextlib.suppress(OSError):
+            self.connection.send(task.job)
+
+    def end(self) -> int | None:
+        """End the process if it still runs, and return its exit code."""
+        self.connection.close()
+        self.process.terminate()
+        self.process.join()
+        return self.process.exitcode
+
+
+class _Pool:
+    def __init__(
+        self, function: Callable[[Any], Any], workers: int, name_of: Callable[[Any], str]
+    ) -> None:
+        self._function, self._most, self._name_of = function, workers, name_of
+        self._workers: list[_Worker] = []
+        self._again: deque[_Task] = deque()
+        self._done: dict[int, tuple[Any, Exception | None]] = {}
+
+    def results(self, jobs: Iterable[Any]) -> Iterator[Any]:
+        tasks = (_Task(place, job) for place, job in enumerate(jobs))
+        turn = given = 0
+        while True:
+            while self._has_room() and (self._again or given < turn + AHEAD * self._most):
+                task = self._again.popleft() if self._again else next(tasks, None)
+                if task is None:
+                    break
+                given = max(given, task.place + 1)
+                self._idle_worker().give(task)
+            busy = [(worker, task) for worker in self._workers if (task := worker.task) is not None]
+            if not busy:
+                return
+            ready = wait([worker.connection for worker, _ in busy])
+            for worker, task in busy:
+                if worker.connection in ready:
+                    self._take_from(worker, task)
+            while turn in self._done:
+                # An error waits for its turn, too: what comes before it is not lost.
+                result, error = self._done.pop(turn)
+                if error is not None:
+                    raise error
+                yield result
+                turn += 1
+
+    def close(self) -> None:
+        for worker in self._workers:
+            worker.end()
+        self._workers.clear()
+
+    def _has_room(self) -> bool:
+        return sum(worker.task is not None for worker in self._workers) < self._most
+
+    def _idle_worker(self) -> _Worker:
+        for worker in self._workers:
+            if worker.task is None:
+                return worker
+        self._workers.append(_Worker(self._function))
+        return self._workers[-1]
+
+    def _take_from(self, worker: _Worker, task: _Task) -> None:
+        try:
+            outcome = worker.connection.recv()
+        except (EOFError, OSError):
+            self._replace(worker, task)
+            return
+        self._done[task.place] = outcome
+        worker.task = None
+
+    def _replace(self, worker: _Worker, task: _Task) -> None:
+        """Give the job of a process that died to another one."""
+        self._workers.remove(worker)
+        # It closed its end: it is dead, or about to be.
+        worker.process.join()
+        exit_code = worker.end()
+        if task.attempts < ATTEMPTS:
+            self._again.append(task)
+            return
+        sentence = died_sentence(self._name_of(task.job), _cause(exit_code))
+        self._done[task.place] = None, WorkerDiedError(sentence)
+
+
+def died_sentence(job: str, cause: str = "") -> str:
+    """Return what is said of a job that all its processes died at."""
+    return (
+        f"{job} cannot be played: {ATTEMPTS} worker processes were ended while they played "
+        f"it{cause}. The computer may be short of memory: try fewer workers, or --workers 1 to see "
+        "the error itself. What was played before is stored, and the same command resumes."
+    )
+
+
+def _cause(exit_code: int | None) -> str:
+    if exit_code is not None and exit_code < 0:
+        with contextlib.suppress(ValueError):
+            return f" (the last by {signal.Signals(-exit_code).name})"
+    return f" (the last with exit status {exit_code})"
+
+
+def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
+    """Do jobs until the other end is closed, also by its process's death."""
+    # Ctrl-C reaches all processes of a terminal; the one that gives the jobs ends the others.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            connection.send(_outcome(function, connection.recv()))
+
+
+def _outcome(function: Callable[[Any], Any], job: Any) -> tuple[Any, Exception | None]:
+    try:
+        return function(job), None
+    except RASTrainerError as error:
+        return None, error
+    except Exception:
+        # Not every exception can be pickled; its traceback can.
+        return None, RuntimeError(f"A worker process failed:\n{traceback.format_exc()}")
+
+
+@contextlib.contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Keep Ctrl-C from a process that is being started; it inherits this."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

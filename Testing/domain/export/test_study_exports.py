@@ -1,0 +1,129 @@
+"""Answers and versions leave a study as they were stored: as tables, as xAPI and in the report."""
+
+import csv
+import io
+import json
+import uuid
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.export.tidy_csv import answers_csv, scores_csv, trials_csv
+from rastrainer.export.xapi import HOME_PAGE, statements
+from rastrainer.report.report import report_html
+from rastrainer.study.database.study import Study
+from rastrainer.study.questionnaires.catalog import SSQ
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.main import main
+from Testing.domain.study.played_study import study_with_trials
+from Testing.domain.trial.made_up_scores import first_score
+from Testing.domain.trial.trial_records import make_record
+
+OLD = "0 of a pilot"
+
+
+@pytest.fixture
+def data(tmp_path):
+    study_with_trials(tmp_path / "study.db")
+    return read_study_data(tmp_path / "study.db")
+
+
+def rows_of(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def test_every_answered_item_is_a_row_and_every_score_is_one(data):
+    items, scores = rows_of(answers_csv(data)), rows_of(scores_csv(data))
+    before = [row for row in items if row["step"] == "hmd/before/ssq"]
+    assert [row["item"] for row in before] == [item.name for item in SSQ.items]
+    assert {(row["trainee"], row["mode"], row["answer"]) for row in before} == {("A", "hmd", "1")}
+    assert len(items) == sum(len(answered.answers) for answered in data.answers)
+    told = {row["scale"]: float(row["score"]) for row in scores if row["step"] == "hmd/before/ssq"}
+    assert told == SSQ.score([1] * 16)
+
+
+def test_every_answered_questionnaire_is_a_statement_with_its_scores(data):
+    answered = [s for s in statements(data) if s["verb"]["display"]["en-US"] == "answered"]
+    assert len(answered) == len(data.answers) > 3
+    assert len({uuid.UUID(statement["id"]) for statement in answered}) == len(answered)
+    assert statements(data) == statements(data)
+    step = f"{HOME_PAGE}/xapi/step"
+    (before,) = (s for s in answered if s["context"]["extensions"][step] == "hmd/before/ssq")
+    assert before["object"]["id"].endswith("/questionnaires/ssq")
+    assert before["actor"]["account"]["name"] == "A"
+    assert before["result"]["extensions"] == {
+        f"{HOME_PAGE}/xapi/values/{scale}": score for scale, score in SSQ.score([1] * 16).items()
+    }
+
+
+def test_the_version_told_of_a_score_is_the_one_that_it_was_computed_with(data):
+    first, *others = data.trials
+    unscored = replace(others[0], score_version="")
+    mixed = replace(data, trials=(replace(first, score_version=OLD), unscored, *others[1:]))
+    name = f"{HOME_PAGE}/xapi/score-version"
+    told = [s["context"]["extensions"].get(name) for s in statements(mixed)]
+    assert told[: len(mixed.trials)] == [OLD, None, *(t.score_version for t in others[1:])]
+    assert f"{OLD}, {others[1].score_version}" in report_html(mixed)
+
+
+def test_what_a_score_is_made_of_leaves_a_study_with_it(data):
+    with_score = [trial for trial in data.trials if trial.score_version]
+    rows = [row for row in rows_of(trials_csv(data.trials)) if row["score_version"]]
+    assert len(rows) == len(with_score) > 0
+    for trial, row in zip(with_score, rows, strict=True):
+        assert float(row["score_tre_mm"]) == trial.values["score_tre_mm"]
+        assert {row["score_is_accurate"], row["score_is_safe"]} <= {"0.0", "1.0"}
+        for part in ("time", "accuracy", "safety"):
+            assert 0 <= float(row[f"score_{part}_desirability"]) <= 1
+        assert float(row["score_reference_time_s"]) > 0
+    told = statements(data)[data.trials.index(with_score[0])]["result"]["extensions"]
+    key = f"{HOME_PAGE}/xapi/values/score_tre_mm"
+    assert told[key] == with_score[0].values["score_tre_mm"]
+
+
+def test_a_score_of_the_first_version_leaves_without_measures_that_it_has_not(tmp_path):
+    with Study.open(tmp_path / "old.db") as study:
+        study.add_trial(make_record(trainee="A"), score=first_score(100.0, 0.4))
+        study.set_consent("A", True)
+    (trial,) = read_study_data(tmp_path / "old.db").trials
+    assert trial.score_version == "1"
+    assert {"score", "score_is_accurate", "score_limit_mm"} <= set(trial.values)
+    assert not {"score_tre_mm", "score_is_safe", "score_safety_desirability"} & set(trial.values)
+
+
+def test_a_trials_statement_tells_whether_it_passed_and_when_it_was_completed(data):
+    first, second, third = (
+        replace(
+            data.trials[0],
+            trial_id=str(uuid.UUID(int=number)),
+            values={**data.trials[0].values, "score": score, "completion_time_s": 110.0},
+            acceptable=acceptable,
+            started_utc="2026-01-01T10:00:00Z",
+            completed_utc="2026-01-01T10:01:50Z",
+        )
+        for number, (score, acceptable) in enumerate(((80.0, True), (80.0, False), (79.9, True)))
+    )
+    unscored = replace(third, values={"completion_time_s": 110.0})
+    protocol = replace(data.protocol, pass_mark=80.0)
+    told = statements(
+        replace(data, trials=(first, second, third, unscored), protocol=protocol, answers=())
+    )
+    assert [s["result"].get("success") for s in told] == [True, False, False, None]
+    assert {s["version"] for s in told} == {"1.0.0"}
+    assert {s["timestamp"] for s in told} == {"2026-01-01T10:01:50Z"}
+    assert {s["result"]["duration"] for s in told} == {"PT110.00S"}
+    context = told[0]["context"]["extensions"]
+    assert context[f"{HOME_PAGE}/xapi/started"] == "2026-01-01T10:00:00Z"
+    assert context[f"{HOME_PAGE}/xapi/pass-mark"] == 80.0
+
+
+def test_who_did_not_agree_to_research_is_left_out_of_an_export_and_counted(tmp_path, capsys):
+    study_with_trials(tmp_path / "study.db", consent=False)
+    words = ["export", tmp_path / "study.db", "-o", tmp_path / "out"]
+    assert main([str(word) for word in words]) == 0
+    assert "did not agree to research: 1 trainees" in capsys.readouterr().out
+    for name in ("trials", "touches", "scores", "answers"):
+        rows = rows_of((tmp_path / "out" / "csv" / f"{name}.csv").read_text())
+        assert {row["trainee"] for row in rows} <= {"B"}
+    told = json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text())
+    assert {statement["actor"]["account"]["name"] for statement in told} == {"B"}

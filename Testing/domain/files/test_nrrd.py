@@ -1,0 +1,199 @@
+"""Volumes as NRRD files: what is written is read back, and what is made to do harm is refused."""
+
+import gzip
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.files.nrrd import MOST_FILE_BYTES, read_nrrd, write_nrrd
+
+OBLIQUE = np.array([[0.6, -0.8, 0, -50], [0.8, 0.6, 0, 10], [0, 0, -1.5, 70], [0, 0, 0, 1.0]])
+
+
+def grays(kind=np.uint8, shape=(5, 6, 7)):
+    return np.random.default_rng(5).integers(0, 200, shape).astype(kind)
+
+
+def good_file(values=None):
+    """The parts of a file that can be used: its fields and its voxels."""
+    values = grays() if values is None else values
+    fields = {
+        "type": "uint8",
+        "dimension": "3",
+        "space": "left-posterior-superior",
+        "sizes": " ".join(map(str, values.shape)),
+        "space directions": "(1,0,0) (0,1,0) (0,0,1)",
+        "endian": "little",
+        "encoding": "gzip",
+        "space origin": "(-10,-20,30)",
+    }
+    return fields, gzip.compress(values.tobytes(order="F"))
+
+
+def write(path, fields, voxels, end="\n"):
+    lines = ["NRRD0004", *(f"{name}: {value}" for name, value in fields.items())]
+    path.write_bytes(end.join(lines).encode() + 2 * end.encode() + voxels)
+    return path
+
+
+def changed(path, voxels=None, **changes):
+    """Write a file with some fields otherwise, or left out where they are None."""
+    fields, good = good_file()
+    fields |= {name.replace("_", " "): value for name, value in changes.items()}
+    kept = {name: value for name, value in fields.items() if value is not None}
+    return write(path, kept, good if voxels is None else voxels)
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.int16])
+@pytest.mark.parametrize("matrix", [np.diag([-1.0, -1, 1, 1]), np.eye(4), OBLIQUE])
+def test_what_is_written_is_read_back(tmp_path, kind, matrix):
+    values = grays(kind)
+    values[1, 2, 3] = -100 if kind is np.int16 else 100
+    write_nrrd(tmp_path / "a.nrrd", values, matrix)
+    read, place = read_nrrd(tmp_path / "a.nrrd")
+    assert read.dtype == values.dtype
+    assert np.array_equal(read, values)
+    assert np.array_equal(place, matrix)
+
+
+def test_the_same_image_gives_the_same_bytes_and_no_text_but_what_places_the_voxels(tmp_path):
+    for name in ("a.nrrd", "b.nrrd"):
+        write_nrrd(tmp_path / name, grays(), np.eye(4))
+    content = (tmp_path / "a.nrrd").read_bytes()
+    assert content == (tmp_path / "b.nrrd").read_bytes()
+    header = content.partition(b"\n\n")[0].decode()
+    names = [line.partition(":")[0] for line in header.split("\n")[1:]]
+    assert names == [
+        "type",
+        "dimension",
+        "space",
+        "sizes",
+        "space directions",
+        "kinds",
+        "endian",
+        "encoding",
+        "space origin",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("space", "ras"),
+    [
+        ("left-posterior-superior", (10, 20, 30)),
+        ("RAS", (-10, -20, 30)),
+        ("left-anterior-superior", (10, -20, 30)),
+    ],
+)
+def test_each_space_is_turned_into_ras(tmp_path, space, ras):
+    _, matrix = read_nrrd(changed(tmp_path / "a.nrrd", space=space))
+    assert matrix[:3, 3].tolist() == list(ras)
+
+
+def test_left_handed_axes_and_big_endian_numbers_are_read(tmp_path):
+    values = grays(np.int16)
+    voxels = gzip.compress(values.astype(">i2").tobytes(order="F"))
+    directions = "(1,0,0) (0,1,0) (0,0,-1)"
+    changes = {"type": "short", "endian": "big", "space_directions": directions}
+    read, matrix = read_nrrd(changed(tmp_path / "a.nrrd", voxels, **changes))
+    assert np.array_equal(read, values)
+    assert np.linalg.det(matrix[:3, :3]) < 0
+
+
+def test_texts_of_whoever_wrote_the_file_are_read_over(tmp_path):
+    fields, voxels = good_file()
+    fields |= {"content": "Erika Mustermann", "# by": "scanner 5", "PatientName": "=Mustermann"}
+    path = write(tmp_path / "a.nrrd", fields, voxels, "\r\n")
+    values, matrix = read_nrrd(path)
+    write_nrrd(tmp_path / "b.nrrd", values, matrix)
+    assert b"ustermann" in path.read_bytes()
+    assert b"ustermann" not in (tmp_path / "b.nrrd").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"type": "float"}, "must have the type uint8"),
+        ({"type": None}, "must have the type uint8"),
+        ({"encoding": "raw"}, "compressed by gzip"),
+        ({"encoding": "txt"}, "compressed by gzip"),
+        ({"endian": "middle"}, "little or big endian"),
+        ({"dimension": "4"}, "three axes"),
+        ({"sizes": "5 6"}, "three axes"),
+        ({"sizes": "5 6 -7"}, "three axes"),
+        ({"sizes": "5 6 7.5"}, "three axes"),
+        ({"sizes": "5 6 ٧"}, "three axes"),
+        ({"sizes": "5 6 999999999999"}, "three axes"),
+        ({"sizes": "2000 2000 2000"}, "at most 50 million in all"),
+        ({"sizes": "5 6 1"}, "2 to 2048 voxels along each axis"),
+        ({"sizes": "5 6 8"}, "cut short"),
+        ({"sizes": "5 6 6"}, "no more voxels than its header says"),
+        ({"space": "scanner-xyz"}, "space left-posterior-superior"),
+        ({"space": None}, "space left-posterior-superior"),
+        ({"space_directions": None}, "“space directions” with 9 numbers"),
+        ({"space_directions": "(1,0,0) (0,nan,0) (0,0,1)"}, "9 numbers within ±2000"),
+        ({"space_directions": "(1,0,0) (0,1e999,0) (0,0,1)"}, "9 numbers within ±2000"),
+        ({"space_directions": "(1,0,0) (0,1) (0,0,1)"}, "9 numbers"),
+        ({"space_directions": "(1,0,0) (0,1,0) (1,1,0)"}, "axes that span a space"),
+        ({"space_directions": "(1,0,0) (0,1,0) (0,0,0)"}, "voxels of 0.1 to 10 mm"),
+        ({"space_directions": "(100,0,0) (0,1,0) (0,0,1)"}, "voxels of 0.1 to 10 mm"),
+        ({"space_origin": "(1,2,inf)"}, "“space origin” with 3 numbers"),
+        ({"space_origin": "(1,2,1e6)"}, "“space origin” with 3 numbers"),
+        ({"data_file": "/etc/passwd"}, "hold its voxels itself"),
+        ({"datafile": "other.raw"}, "hold its voxels itself"),
+        ({"byte_skip": "-1"}, "hold its voxels itself"),
+        ({"SIZES": "5 6 7"}, "have the field “sizes” once"),
+    ],
+)
+def test_a_header_that_cannot_be_used_gets_a_sentence(tmp_path, changes, sentence):
+    path = changed(tmp_path / "bad.nrrd", **changes)
+    with pytest.raises(InputError, match=sentence) as caught:
+        read_nrrd(path)
+    assert "bad.nrrd must " in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_header_that_says_gigabytes_is_refused_before_memory_is_taken(tmp_path):
+    bomb = gzip.compress(bytes(200_000_000))
+    many = changed(tmp_path / "many.nrrd", bomb, sizes="2048 2048 2048")
+    few = changed(tmp_path / "few.nrrd", bomb, sizes="10 10 10")
+    tracemalloc.start()
+    try:
+        for path in (many, few):
+            with pytest.raises(InputError):
+                read_nrrd(path)
+        assert tracemalloc.get_traced_memory()[1] < MOST_FILE_BYTES + 1_000_000
+    finally:
+        tracemalloc.stop()
+
+
+def test_voxels_that_are_damaged_or_cut_are_refused_wherever_it_is(tmp_path):
+    fields, voxels = good_file()
+    path = tmp_path / "bad.nrrd"
+    for cut in range(0, len(voxels), 7):
+        write(path, fields, voxels[:cut])
+        with pytest.raises(InputError, match="cut short"):
+            read_nrrd(path)
+    for place in (0, 2, len(voxels) // 2, len(voxels) - 6):
+        damaged = bytearray(voxels)
+        damaged[place] ^= 0x55
+        write(path, fields, bytes(damaged))
+        with pytest.raises(InputError, match=r"bad\.nrrd must hold"):
+            read_nrrd(path)
+
+
+@pytest.mark.parametrize("content", [b"NRRD", b"NRRD0004\ntype: uint8\n", b"\x93NUMPY", bytes(99)])
+def test_what_is_no_nrrd_file_is_refused(tmp_path, content):
+    (tmp_path / "bad.nrrd").write_bytes(content)
+    with pytest.raises(InputError, match=r"bad\.nrrd must (begin as NRRD files do|have a header)"):
+        read_nrrd(tmp_path / "bad.nrrd")
+
+
+def test_a_file_that_is_missing_or_too_large_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"There is no file .*none\.nrrd"):
+        read_nrrd(tmp_path / "none.nrrd")
+    with (tmp_path / "large.nrrd").open("wb") as file:
+        file.truncate(MOST_FILE_BYTES + 1)
+    with pytest.raises(InputError, match=r"large\.nrrd is larger than"):
+        read_nrrd(tmp_path / "large.nrrd")

@@ -1,0 +1,93 @@
+"""What is recorded of people is for its user alone; what is shared on purpose stays so."""
+
+import logging
+import os
+import stat
+import uuid
+
+import pytest
+
+from rastrainer.files.writing import keep_others_out, make_private_folder
+from rastrainer.study.database.study import Study
+from rastrainer_simulator.flow.session.preferences import Preferences, write_preferences
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, write_bindings
+from rastrainer_simulator.ops.log_files import keep_logs
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.records_folder import RecordsFolder
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="on Windows the profile protects")
+ENTRY = {"type": "header", "trainee": "T-001"}
+
+
+@pytest.fixture(autouse=True)
+def generous():
+    """The umask by which all may read and the group may write."""
+    before = os.umask(0o002)
+    yield
+    os.umask(before)
+
+
+def mode(path):
+    return stat.S_IMODE(path.stat().st_mode)
+
+
+def use(home):
+    """Do all that leaves something behind of people, in the user's folders."""
+    Study.open(home / "RASTrainer" / "study.db", make_folder=True).close()
+    records = RecordsFolder(home / "RASTrainer" / "trials")
+    journal = Journal(home / "RASTrainer" / "trials" / f"{uuid.uuid4()}.journal")
+    journal.write([ENTRY], sync=True)
+    journal.close()
+    records.close()
+    write_preferences(home / "rastrainer" / "preferences.json", Preferences())
+    write_bindings(home / "rastrainer" / "bindings.json", DEFAULT_BINDINGS)
+    with keep_logs(home / "rastrainer" / "logs", "simulator"):
+        logging.getLogger("rastrainer").warning("something")
+
+
+def all_below(folder):
+    paths = sorted(folder.rglob("*"))
+    assert len([path for path in paths if path.is_file()]) >= 7
+    return paths
+
+
+def test_what_is_recorded_is_for_its_user_alone(tmp_path):
+    use(tmp_path / "home")
+    for path in all_below(tmp_path / "home"):
+        assert mode(path) == (0o700 if path.is_dir() else 0o600), path
+
+
+def test_what_others_could_read_so_far_is_closed_to_them_once_it_is_opened(tmp_path):
+    use(tmp_path)
+    (tmp_path / "RASTrainer" / "study.db-journal").write_bytes(b"")
+    for path in all_below(tmp_path):
+        path.chmod(0o775 if path.is_dir() else 0o664)
+    use(tmp_path)
+    for path in all_below(tmp_path):
+        assert mode(path) & 0o077 == 0, path
+
+
+def test_a_folder_that_the_user_has_made_and_named_is_left_as_it_is(tmp_path):
+    (tmp_path / "lab").mkdir()
+    make_private_folder(tmp_path / "lab")
+    assert mode(tmp_path / "lab") == 0o775
+    make_private_folder(tmp_path / "lab" / "a" / "b")
+    assert [mode(tmp_path / "lab" / name) for name in ("a", "a/b")] == [0o700, 0o700]
+
+
+def test_what_a_group_shares_on_purpose_stays_shared(tmp_path):
+    (tmp_path / "lab").mkdir()
+    (tmp_path / "lab").chmod(0o2770)
+    study = tmp_path / "lab" / "study.db"
+    Study.open(study, make_folder=True).close()
+    study.chmod(0o660)
+    Study.open(study, make_folder=True).close()
+    assert mode(study) == 0o660
+    assert mode(tmp_path / "lab") == 0o2770
+
+
+def test_a_file_in_the_place_of_the_folder_is_an_error(tmp_path):
+    (tmp_path / "trials").write_text("my notes")
+    with pytest.raises(FileExistsError):
+        make_private_folder(tmp_path / "trials")
+    keep_others_out(tmp_path / "nowhere")

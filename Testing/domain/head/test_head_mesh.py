@@ -1,0 +1,102 @@
+import numpy as np
+import pytest
+import trimesh
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
+from Testing.domain.head.spheres import sphere_mesh
+
+
+@pytest.fixture
+def head_file(tmp_path):
+    path = tmp_path / "head.ply"
+    write_head_mesh(path, sphere_mesh(2))
+    return path
+
+
+def test_a_written_mesh_is_read_back_to_float_precision(head_file):
+    mesh, again = sphere_mesh(2), read_head_mesh(head_file)
+    assert np.abs(again.vertices - mesh.vertices).max() < 1e-5
+    assert np.array_equal(again.triangles, mesh.triangles)
+
+
+def test_other_programs_read_the_file_as_the_same_mesh(head_file):
+    mesh = read_head_mesh(head_file)
+    other = trimesh.load(head_file, process=False)
+    assert np.array_equal(other.vertices, mesh.vertices)
+    assert np.array_equal(other.faces, mesh.triangles)
+
+
+def test_topology_and_center_agree_with_trimesh():
+    torus = trimesh.creation.torus(80, 30).apply_translation([5, -12, 40])
+    mesh = HeadMesh(np.array(torus.vertices), np.array(torus.faces))
+    assert mesh.is_closed
+    assert mesh.euler_characteristic == torus.euler_number == 0
+    assert np.allclose(mesh.centroid, torus.center_mass)
+
+
+def test_every_edge_is_there_once_the_lower_vertex_first():
+    tetrahedron = HeadMesh(np.eye(4, 3), np.array([[2, 1, 0], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    assert tetrahedron.edges.tolist() == [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
+
+
+def test_normals_of_a_sphere_point_away_from_its_center():
+    mesh = sphere_mesh()
+    outward = mesh.vertices / np.linalg.norm(mesh.vertices, axis=1, keepdims=True)
+    assert np.einsum("ij,ij->i", mesh.vertex_normals, outward).min() > 0.9995
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        pytest.param(lambda mesh: mesh.triangles[1:], id="a triangle is missing"),
+        pytest.param(lambda mesh: np.vstack([mesh.triangles, mesh.triangles[:1]]), id="one twice"),
+        pytest.param(
+            lambda mesh: np.vstack([mesh.triangles[:1, ::-1], mesh.triangles[1:]]), id="one flipped"
+        ),
+    ],
+)
+def test_an_open_or_twisted_surface_is_not_closed(broken):
+    mesh = sphere_mesh(2)
+    assert mesh.is_closed
+    assert not HeadMesh(mesh.vertices, broken(mesh)).is_closed
+
+
+def test_a_missing_mesh_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"none\.ply does not exist"):
+        read_head_mesh(tmp_path / "none.ply")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "sentence"),
+    [
+        (lambda _content: b"", "must be a binary little-endian PLY"),
+        (lambda content: bytes(len(content)), "must be a binary little-endian PLY"),
+        (lambda content: content.replace(b"SPACE=RAS", b"SPACE=LPS"), "in RAS"),
+        (lambda content: content.replace(b"float x", b"double x"), "must be a binary"),
+        (lambda content: content[:-5], "cut short"),
+        (lambda content: content + b"\0", "bytes left over"),
+        (lambda content: content[:-4] + b"\xff\xff\xff\x7f", "no triangle of its vertices"),
+        (lambda content: _first_vertex(content, np.nan), "not within"),
+        (lambda content: _first_vertex(content, 1e9), "not within"),
+        (lambda content: content.replace(b"face 320", b"face 999999999"), "must have 4 to"),
+        (lambda content: content.replace(b"vertex 162", b"vertex 999999999"), "cut short"),
+    ],
+)
+def test_a_broken_mesh_is_refused_with_a_sentence(head_file, spoil, sentence):
+    head_file.write_bytes(spoil(head_file.read_bytes()))
+    with pytest.raises(InputError, match=sentence):
+        read_head_mesh(head_file)
+
+
+def test_a_mesh_of_a_gigabyte_is_refused_unread(tmp_path):
+    path = tmp_path / "head.ply"
+    with path.open("wb") as file:
+        file.truncate(1_000_000_000)
+    with pytest.raises(InputError, match="larger than 64 MB"):
+        read_head_mesh(path)
+
+
+def _first_vertex(content, value):
+    header_end = content.index(b"end_header\n") + len(b"end_header\n")
+    return content[:header_end] + np.array([value], "<f4").tobytes() + content[header_end + 4 :]

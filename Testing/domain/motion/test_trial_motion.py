@@ -1,0 +1,196 @@
+"""Motion metrics of a whole trial, on movements whose numbers follow by hand."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.definitions import DEFINITIONS
+from rastrainer.motion.trajectory import Interval, Touch, Trajectory
+from rastrainer.motion.trial_motion import trial_motion
+from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
+
+
+def reaches(corners_mm, duration_s=2.0, rest_s=1.0, rate_hz=50.0):
+    """Minimum-jerk reaches from corner to corner with rests, touched in the middle of each rest."""
+    t = np.arange(0, duration_s, 1 / rate_hz) / duration_s
+    shape = 10 * t**3 - 15 * t**4 + 6 * t**5
+    rest = int(rest_s * rate_hz)
+    path = [np.repeat([corners_mm[0]], rest, axis=0)]
+    for start, end in itertools.pairwise(corners_mm):
+        path += [start + shape[:, None] * (end - start), np.repeat([end], rest, axis=0)]
+    tip = np.concatenate(path)
+    times = np.arange(len(tip)) / rate_hz
+    touch_times = rest_s / 2 + (duration_s + rest_s) * np.arange(len(corners_mm))
+    touches = tuple(
+        Touch(str(i + 1), tuple(corner), float(time))
+        for i, (corner, time) in enumerate(zip(corners_mm, touch_times, strict=True))
+    )
+    return times, tip, touches
+
+
+CORNERS = np.array([[0, 0, 0], [100, 0, 0], [100, 80, 0], [20, 80, 0], [20, 80, 90]], dtype=float)
+
+
+@pytest.fixture
+def trajectory():
+    times, tip, touches = reaches(CORNERS)
+    return Trajectory(times, tip, np.full(len(times), 30.0), touches)
+
+
+def test_path_speed_and_rest_of_minimum_jerk_reaches(trajectory):
+    motion = trial_motion(trajectory)
+    assert motion["path_length_mm"] == pytest.approx(350.0, rel=2e-3)
+    assert motion["path_between_touches_mm"] == pytest.approx(350.0, rel=2e-3)
+    # A minimum-jerk reach has its peak speed, 1.875 times the mean, in the middle.
+    assert motion["peak_speed_mm_s"] == pytest.approx(1.875 * 100 / 2, rel=0.01)
+    assert motion["movement_time_s"] == pytest.approx(3.0)
+    assert motion["completion_time_s"] == pytest.approx(12.5)
+    assert motion["dwell_before_touch_s"] == pytest.approx(0.5 + 0.2, abs=0.15)
+    assert motion["idle_time_s"] == pytest.approx(5.0, abs=0.6)
+    assert motion["sparc"] == pytest.approx(-1.5, abs=0.2)
+
+
+def whole(trajectory, **more):
+    """The trajectory of a trial in which the last fiducial was touched, and its task is known."""
+    known = {str(i + 1): point + 0.1 * i**2 for i, point in enumerate(CORNERS)}
+    return replace(trajectory, fiducials_mm=known, shortest_path_mm=350.0, **more)
+
+
+def test_detours_lower_the_path_efficiency(trajectory):
+    assert trial_motion(whole(trajectory))["path_efficiency"] == pytest.approx(1.0, abs=2e-3)
+    times, tip, touches = reaches(np.insert(CORNERS, 1, [0, 120, 0], axis=0))
+    around = Trajectory(times, tip, np.full(len(times), 30.0), (touches[0], *touches[2:]))
+    assert trial_motion(whole(around))["path_efficiency"] < 0.7
+
+
+def test_a_part_of_a_trial_and_an_unmeasured_task_have_no_path_efficiency(trajectory):
+    part = whole(trajectory, touches=trajectory.touches[:3])
+    unmeasured = replace(whole(trajectory), shortest_path_mm=None)
+    for told in (part, unmeasured):
+        assert "path_efficiency" not in trial_motion(told)
+
+
+def test_tremor_lowers_smoothness(trajectory):
+    rng = np.random.default_rng(0)
+    shaken = trajectory.tip_mm + np.cumsum(rng.normal(0, 0.4, trajectory.tip_mm.shape), axis=0)
+    rough = Trajectory(trajectory.times_s, shaken, trajectory.clearance_mm, trajectory.touches)
+    smooth_motion, rough_motion = trial_motion(trajectory), trial_motion(rough)
+    assert rough_motion["sparc"] < smooth_motion["sparc"]
+    assert rough_motion["ldlj"] < smooth_motion["ldlj"] - 0.5
+
+
+def test_contacts_are_told_apart_by_whether_a_touch_was_meant(trajectory):
+    contacts = (Interval(0.3, 0.9, -0.02), Interval(2.0, 2.2, -0.4))
+    bumped = Trajectory(
+        trajectory.times_s,
+        trajectory.tip_mm,
+        trajectory.clearance_mm,
+        trajectory.touches,
+        near=(Interval(0.0, 2.5),),
+        contacts=contacts,
+    )
+    motion = trial_motion(bumped)
+    assert (motion["contacts"], motion["unintended_contacts"]) == (2, 1)
+    assert motion["contact_time_s"] == pytest.approx(0.8)
+    assert motion["deepest_contact_mm"] == pytest.approx(0.4)
+    assert motion["proximity_time_s"] == pytest.approx(2.5)
+
+
+def test_throughput_and_wrong_touches_are_told_once_the_fiducials_are_known(trajectory):
+    assert "throughput_bit_s" not in trial_motion(trajectory)
+    offsets = np.array([[0, 0, 0], [1, 0, 0], [0, -1, 0], [-2, 0, 0], [0, 0, 1]])
+    known = {str(i + 1): point for i, point in enumerate(CORNERS + offsets)}
+    refused = (
+        Touch("2", (100.0, 79.0, 0.0), 4.0),
+        Touch("2", (50.0, 0.0, 0.0), 4.1),
+        Touch("2", (89.0, 0.0, 0.0), 4.2),
+    )
+    told = Trajectory(
+        trajectory.times_s,
+        trajectory.tip_mm,
+        trajectory.clearance_mm,
+        trajectory.touches,
+        refused=refused,
+        fiducials_mm=known,
+    )
+    motion = trial_motion(told)
+    assert motion["throughput_bit_s"] > 1.0
+    assert (motion["refused_touches"], motion["wrong_order_touches"]) == (3, 1)
+
+
+def test_a_trial_that_has_just_begun_has_counts_only():
+    empty = Trajectory(np.zeros(0), np.zeros((0, 3)), np.zeros(0), ())
+    motion = trial_motion(empty)
+    assert motion["contacts"] == 0
+    assert "path_length_mm" not in motion
+
+
+def test_every_metric_has_a_definition_and_every_definition_a_metric(trajectory):
+    motion = trial_motion(whole(trajectory, depth_mm=np.zeros(len(trajectory.times_s))))
+    assert set(motion) == set(DEFINITIONS)
+    assert all(np.isfinite(value) for value in motion.values())
+
+
+def test_the_shortest_way_leads_over_a_bulge_and_straight_across_a_hollow():
+    mesh = sphere_mesh()
+    angle = np.arccos(on_sphere(0, 20) @ on_sphere(90, 20) / RADIUS_MM**2)
+    ends = np.array([on_sphere(0, 20), on_sphere(90, 20)])
+    assert shortest_path_mm(ends, mesh, SurfaceGraph(mesh)) == pytest.approx(
+        RADIUS_MM * angle, rel=0.04
+    )
+    from_top = np.arccos(mesh.vertices[:, 2] / RADIUS_MM)
+    hollow = HeadMesh(
+        mesh.vertices * (1 - 0.6 * np.exp(-((from_top / 0.5) ** 2)))[:, None], mesh.triangles
+    )
+    wall = np.flatnonzero(np.abs(from_top - np.radians(25)) < 0.03)
+    ends = hollow.vertices[wall[[0, np.argmin(mesh.vertices[wall] @ mesh.vertices[wall[0]])]]]
+    straight = np.linalg.norm(ends[1] - ends[0])
+    assert shortest_path_mm(ends, hollow, SurfaceGraph(hollow)) == pytest.approx(straight)
+
+
+def entry(kind, time, **more):
+    return {"kind": kind, "simTime": time, **more}
+
+
+def test_a_recording_leaves_pauses_out_and_takes_back_what_was_undone():
+    entries = [
+        entry("header", 10.004, tickS=0.004),
+        entry("sample", 10.02, tipMm=[0, 0, 0], clearanceMm=30.0),
+        entry("touch", 10.104, label="1", positionMm=[1, 2, 3], kept=1),
+        entry("phase", 10.204, phase="paused", nextPoint="2"),
+        entry("phase", 15.204, phase="running", nextPoint="2"),
+        entry("proximity", 15.3, **{"from": "free", "to": "proximity"}, clearanceMm=19.0),
+        entry("sample", 15.4, tipMm=[1, 0, 0], clearanceMm=2.0),
+        entry("touch", 15.504, label="2", positionMm=[1, 2, 3], kept=2),
+        entry("undo", 15.604, label="2", kept=1, nextPoint="2"),
+        entry("touch", 15.704, label="2", positionMm=[4, 5, 6], kept=2),
+        entry("camera", 15.8, camera="far"),
+    ]
+    trajectory = Recording.of(entries).trajectory()
+    np.testing.assert_allclose(trajectory.times_s, [0.02, 0.4])
+    np.testing.assert_allclose(trajectory.touch_times_s, [0.1, 0.7])
+    assert trajectory.touches[1].position_mm == (4, 5, 6)
+    assert (trajectory.undone, trajectory.pauses, trajectory.camera_switches) == (1, 1, 1)
+    assert trial_motion(trajectory)["pause_time_s"] == pytest.approx(5.0)
+    assert trajectory.near[0].start_s == pytest.approx(0.3)
+
+
+def test_touches_that_the_disk_refused_do_not_count():
+    entries = [
+        entry("header", 0.004, tickS=0.004),
+        entry("touch", 1.0, label="1", positionMm=[1, 2, 3], kept=1),
+        entry("touch", 2.0, label="2", positionMm=[1, 2, 3], kept=2),
+        entry("phase", 2.1, phase="paused", nextPoint="2"),
+    ]
+    assert [touch.label for touch in Recording.of(entries).trajectory().touches] == ["1"]
+
+
+def test_a_forged_entry_is_one_sentence():
+    with pytest.raises(InputError, match="An entry of the journal is not as it should be"):
+        Recording.of([{"kind": "touch", "label": "1"}])

@@ -1,0 +1,140 @@
+"""Registration: the same fits as VTK's, and the errors that go with them."""
+
+import numpy as np
+import pytest
+import vtk
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.registration.fits import fit
+from rastrainer.registration.registration import KINDS, register
+
+VTK_MODES = {"rigid": "RigidBody", "similarity": "Similarity", "affine": "Affine"}
+
+
+def vtk_matrix(moving, fixed, kind):
+    landmark_transform = vtk.vtkLandmarkTransform()
+    for points, take in (
+        (moving, landmark_transform.SetSourceLandmarks),
+        (fixed, landmark_transform.SetTargetLandmarks),
+    ):
+        landmarks = vtk.vtkPoints()
+        landmarks.SetDataTypeToDouble()
+        for point in points:
+            landmarks.InsertNextPoint(point)
+        take(landmarks)
+    getattr(landmark_transform, f"SetModeTo{VTK_MODES[kind]}")()
+    landmark_transform.Update()
+    matrix = landmark_transform.GetMatrix()
+    return np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_thousand_random_sets_map_as_vtk_landmark_transform_maps_them(kind, touched_head):
+    worst_mm = 0.0
+    for seed in range(1000):
+        moving, fixed, rng = touched_head(seed, count=4 + seed % 27)
+        if seed % 3 == 0:
+            moving = moving * rng.uniform(0.5, 2.0, 3)
+        if seed % 10 == 0:
+            moving = moving * [1, 1, -1]
+        ours = fit(moving, fixed, kind)
+        theirs = vtk_matrix(moving, fixed, kind)
+        around = np.vstack([moving, moving.mean(axis=0) + rng.normal(size=(5, 3)) * 100])
+        difference = transforms.apply(ours, around) - transforms.apply(theirs, around)
+        worst_mm = max(worst_mm, np.abs(difference).max())
+    assert worst_mm < 1e-6
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_exact_points_give_the_exact_transform_and_no_error(kind, touched_head):
+    _, fixed, rng = touched_head(5)
+    true = transforms.inverse(vtk_matrix(*touched_head(6)[:2], "rigid"))
+    if kind != "rigid":
+        true[:3, :3] *= 1.01
+    if kind == "affine":
+        true[:3, :3] @= np.eye(3) + rng.normal(size=(3, 3)) * 0.01
+    moving = transforms.apply(true, fixed)
+    registration = register(moving, fixed, kind)
+    np.testing.assert_allclose(registration.matrix @ true, np.eye(4), atol=1e-9)
+    assert registration.fre_mm < 1e-9
+
+
+def test_the_similaritys_scale_is_the_symmetric_one(touched_head):
+    moving, fixed, _ = touched_head(0)
+    forth = register(moving, fixed, "similarity").matrix
+    back = register(fixed, moving, "similarity").matrix
+    np.testing.assert_allclose(forth @ back, np.eye(4), atol=1e-9)
+
+
+def test_fre_is_the_root_mean_square_of_the_residual_vectors(touched_head):
+    moving, fixed, _ = touched_head(1)
+    registration = register(moving, fixed, "rigid")
+    vectors = transforms.apply(registration.matrix, moving) - fixed
+    np.testing.assert_allclose(registration.residual_vectors_mm, vectors, atol=1e-12)
+    np.testing.assert_allclose(registration.residuals_mm, np.linalg.norm(vectors, axis=1))
+    assert registration.fre_mm == pytest.approx(np.sqrt((vectors**2).sum() / 15))
+
+
+def test_more_freedom_never_fits_worse_than_rigid(touched_head):
+    for seed in range(50):
+        moving, fixed, _ = touched_head(seed)
+        rigid, affine = (register(moving, fixed, kind).fre_mm for kind in ("rigid", "affine"))
+        assert affine <= rigid
+
+
+def test_a_mirrored_set_still_gets_a_rotation(touched_head):
+    moving, fixed, _ = touched_head(2)
+    matrix = register(moving * [-1, 1, 1], fixed, "rigid").matrix
+    assert np.linalg.det(matrix[:3, :3]) == pytest.approx(1.0)
+
+
+def test_points_in_a_plane_are_enough_for_a_rigid_registration(touched_head):
+    moving, fixed, _ = touched_head(3)
+    true = register(moving, fixed).matrix
+    flat = fixed * [1, 1, 0]
+    registration = register(transforms.apply(transforms.inverse(true), flat), flat)
+    np.testing.assert_allclose(registration.matrix, true, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_leaving_points_out_is_the_registration_of_the_others(kind, touched_head):
+    moving, fixed, _ = touched_head(4)
+    labels = [f"F-{i}" for i in range(15)]
+    fewer = register(moving, fixed, kind, labels).without("F-3", "F-7")
+    kept = [i for i in range(15) if i not in (3, 7)]
+    again = register(moving[kept], fixed[kept], kind)
+    np.testing.assert_array_equal(fewer.matrix, again.matrix)
+    assert fewer.labels == tuple(labels[i] for i in kept)
+    assert fewer.fre_mm == again.fre_mm
+
+
+def test_leaving_out_an_unknown_point_says_which_there_are(touched_head):
+    moving, fixed, _ = touched_head(4, count=4)
+    with pytest.raises(InputError, match='No point is labeled "x"; the labels are 1, 2, 3, 4'):
+        register(moving, fixed).without("x")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_leave_one_out_tells_how_far_the_others_put_each_point(kind, touched_head):
+    moving, fixed, _ = touched_head(8)
+    distances = register(moving, fixed, kind).leave_one_out_mm()
+    for i in range(15):
+        others = vtk_matrix(np.delete(moving, i, 0), np.delete(fixed, i, 0), kind)
+        expected = np.linalg.norm(transforms.apply(others, moving[i]) - fixed[i])
+        assert distances[i] == pytest.approx(expected, abs=1e-6)
+
+
+def test_leave_one_out_says_when_the_others_are_too_few(touched_head):
+    moving, fixed, _ = touched_head(8, count=3)
+    with pytest.raises(InputError, match="at least 3 pairs"):
+        register(moving, fixed).leave_one_out_mm()
+
+
+def test_the_inputs_stay_the_callers(touched_head):
+    moving, fixed, _ = touched_head(9)
+    registration = register(moving, fixed)
+    moving[0] = 0.0
+    assert not (registration.moving_mm[0] == 0.0).any()
+    with pytest.raises(ValueError, match="read-only"):
+        registration.matrix[0, 0] = 2.0

@@ -1,0 +1,156 @@
+"""Points that look wrong are registered all the same, with a sentence that names them."""
+
+import numpy as np
+import pytest
+
+from rastrainer.registration.registration import KINDS, register
+
+SEEDS = range(60)
+
+
+def faults(moving, fixed, kind="rigid"):
+    return [(w.code, w.points) for w in register(moving, fixed, kind).warnings]
+
+
+def labels(*rows):
+    return tuple(str(row + 1) for row in sorted(rows))
+
+
+ALL = labels(*range(15))
+
+
+def direction(rng):
+    vector = rng.normal(size=3)
+    return vector / np.linalg.norm(vector)
+
+
+def test_five_hundred_clean_heads_raise_no_alarm(touched_head):
+    for seed in range(500):
+        moving, fixed, _ = touched_head(seed)
+        assert faults(moving, fixed, KINDS[seed % 3]) == []
+
+
+def test_exact_points_raise_no_alarm(touched_head):
+    for seed in SEEDS:
+        _, fixed, _ = touched_head(seed, count=3 + seed % 13)
+        assert faults(fixed, fixed) == []
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 6, 30, 100])
+def test_small_and_large_sets_raise_no_alarm(count, touched_head):
+    for seed in range(20):
+        moving, fixed, _ = touched_head(seed, count=count)
+        found = {code for code, _ in faults(moving, fixed)}
+        assert found <= {"nearly-collinear"}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_mirrored_set_is_told_even_where_the_fit_hides_it(kind, touched_head):
+    for seed in SEEDS:
+        moving, fixed, rng = touched_head(seed)
+        moving[:, rng.integers(3)] *= -1
+        assert faults(moving, fixed, kind) == [("mirrored", ALL)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("scale", [1 / 1000, 1 / 25.4, 0.1, 0.9, 1.05, 10, 1000])
+def test_a_wrong_scale_is_told_even_where_the_fit_hides_it(kind, scale, touched_head):
+    for seed in range(15):
+        moving, fixed, _ = touched_head(seed)
+        assert faults(moving * scale, fixed, kind) == [("scale", ALL)]
+
+
+def test_meters_for_millimeters_are_named_on_the_side_that_has_them(touched_head):
+    moving, fixed, _ = touched_head(0)
+    assert "moving points seem to be in meters" in register(moving / 1e3, fixed).warnings[0].message
+    assert "fixed points seem to be in meters" in register(moving, fixed / 1e3).warnings[0].message
+
+
+def test_two_exchanged_labels_are_named(touched_head):
+    for seed in SEEDS:
+        moving, fixed, rng = touched_head(seed)
+        a, b = rng.choice(15, 2, replace=False)
+        if np.linalg.norm(fixed[a] - fixed[b]) < 12:
+            continue
+        moving[[a, b]] = moving[[b, a]]
+        assert faults(moving, fixed) == [("order", labels(a, b))]
+
+
+def test_a_list_in_reverse_or_begun_elsewhere_is_told(touched_head):
+    moving, fixed, _ = touched_head(1)
+    backwards = register(moving[::-1], fixed).warnings
+    assert [w.code for w in backwards] == ["order"]
+    assert "reverse order" in backwards[0].message
+    shifted = register(np.roll(moving, 2, axis=0), fixed).warnings
+    assert [w.code for w in shifted] == ["order"]
+    assert "the one at 3 belongs to the fixed point 1" in shifted[0].message
+
+
+@pytest.mark.parametrize("size_mm", [12, 30, 1000])
+def test_one_bad_touch_is_named(size_mm, touched_head):
+    for seed in SEEDS:
+        moving, fixed, rng = touched_head(seed)
+        row = rng.integers(15)
+        moving[row] += size_mm * direction(rng)
+        assert faults(moving, fixed) == [("outlier", labels(row))]
+
+
+def test_two_bad_touches_do_not_hide_each_other(touched_head):
+    for seed in SEEDS:
+        moving, fixed, rng = touched_head(seed)
+        a, b = sorted(rng.choice(15, 2, replace=False))
+        moving[a] += 25 * direction(rng)
+        moving[b] += 25 * direction(rng)
+        assert faults(moving, fixed) == [("outlier", labels(a)), ("outlier", labels(b))]
+
+
+def test_the_wrong_fiducial_touched_is_a_bad_touch_at_anothers_place(touched_head):
+    for seed in SEEDS:
+        moving, fixed, rng = touched_head(seed)
+        a, b = rng.choice(15, 2, replace=False)
+        if np.linalg.norm(fixed[a] - fixed[b]) < 15:
+            continue
+        moving[a] = moving[b]
+        assert faults(moving, fixed) == [("duplicate", labels(a, b)), ("outlier", labels(a))]
+
+
+def test_lists_that_do_not_belong_together_are_told(touched_head):
+    for seed in SEEDS:
+        moving, fixed, rng = touched_head(seed)
+        assert ("poor-fit", ALL) in faults(moving[rng.permutation(15)], fixed)
+
+
+def test_each_of_several_faults_is_told(touched_head):
+    moving, fixed, _ = touched_head(3)
+    moving[[2, 9]] = moving[[9, 2]]
+    moving[5] += [0, 0, 30]
+    found = faults(moving * [1e-3, 1e-3, -1e-3], fixed, "affine")
+    assert found == [
+        ("scale", ALL),
+        ("mirrored", ALL),
+        ("order", labels(2, 9)),
+        ("outlier", labels(5)),
+    ]
+
+
+def test_flat_sets_are_told_when_they_leave_the_fit_uncertain(touched_head):
+    _, fixed, _ = touched_head(4)
+    assert [code for code, _ in faults(fixed * [1, 1, 0.01], fixed * [1, 1, 0.01], "affine")] == [
+        "nearly-coplanar"
+    ] * 2
+    assert faults(fixed * [1, 1, 0.01], fixed * [1, 1, 0.01], "rigid") == []
+    thin = fixed * [1, 0.01, 0.01]
+    assert [code for code, _ in faults(thin, thin)] == ["nearly-collinear"] * 2
+
+
+def test_sentences_name_the_points_and_the_gain(touched_head):
+    moving, fixed, _ = touched_head(0)
+    moving[[3, 10]] = moving[[10, 3]]
+    (warning,) = register(moving, fixed).warnings
+    assert warning.message.startswith("Points 4 and 11 seem to be exchanged")
+    assert warning.message.endswith("mm).")
+    assert warning.to_json() == {
+        "code": "order",
+        "points": ["4", "11"],
+        "message": warning.message,
+    }

@@ -1,0 +1,273 @@
+"""Weighted registration: the fit, its expected FRE and TRE, and the command that offers it."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.registration.fits import fit
+from rastrainer.registration.localization_error import (
+    expected_fre,
+    isotropic_error,
+    misfit_probability,
+    stated_error,
+)
+from rastrainer.registration.registration import register
+from rastrainer.registration.target_error import expected_tre, target_error
+from rastrainer_simulator.cli.main import main
+
+TARGET = np.array([20.0, -60.0, 35.0])
+
+
+def fiducials(count=12, seed=0):
+    return np.random.default_rng(seed).uniform(-1, 1, (count, 3)) * [90, 60, 40] + [200, -100, 50]
+
+
+def localization_errors(count=12, seed=1):
+    """From 0.3 to 3 mm, RMS length."""
+    return np.exp(np.random.default_rng(seed).uniform(np.log(0.3), np.log(3.0), count))
+
+
+def posed(fixed, seed=2):
+    """The points in another frame, and the transform back."""
+    true = transforms.rigid(Rotation.random(random_state=seed).as_matrix(), [300, -20, 70])
+    return transforms.apply(transforms.inverse(true), fixed), true
+
+
+def simulated(trials, seed=3, weighted=True):
+    """FRE and TRE vectors of many fits with the same fiducials and localization errors."""
+    rng = np.random.default_rng(seed)
+    fixed, fle = fiducials(), localization_errors()
+    exact, true = posed(fixed)
+    target = transforms.apply(transforms.inverse(true), (TARGET + fixed.mean(axis=0))[None])
+    weights = 1 / fle**2 if weighted else None
+    squares, errors = [], []
+    for _ in range(trials):
+        moving = exact + rng.normal(size=fixed.shape) * fle[:, None] / np.sqrt(3)
+        matrix = fit(moving, fixed, "rigid", weights)
+        squares.append(np.mean(((transforms.apply(matrix, moving) - fixed) ** 2).sum(axis=1)))
+        errors.append(transforms.apply(matrix, target)[0] - TARGET - fixed.mean(axis=0))
+    return np.sqrt(np.mean(squares)), np.array(errors)
+
+
+def weighted_registration(seed=4):
+    rng = np.random.default_rng(seed)
+    fixed, fle = fiducials(), localization_errors()
+    exact, _ = posed(fixed)
+    moving = exact + rng.normal(size=fixed.shape) * fle[:, None] / np.sqrt(3)
+    return register(moving, fixed, weights=1 / fle**2), fle
+
+
+def test_the_fit_is_scipys_alignment_of_points_about_their_weighted_centroids():
+    rng = np.random.default_rng(5)
+    for seed in range(50):
+        fixed = fiducials(4 + seed % 12, seed)
+        moving = posed(fixed, seed)[0] + rng.normal(size=fixed.shape)
+        weights = rng.uniform(0.01, 10, len(fixed))
+        a, b = (np.average(points, axis=0, weights=weights) for points in (moving, fixed))
+        rotation, _ = Rotation.align_vectors(fixed - b, moving - a, weights=weights)
+        matrix = fit(moving, fixed, "rigid", weights)
+        np.testing.assert_allclose(matrix[:3, :3], rotation.as_matrix(), atol=1e-9)
+        np.testing.assert_allclose(matrix[:3, 3], b - rotation.as_matrix() @ a, atol=1e-7)
+
+
+def test_equal_weights_change_nothing():
+    fixed = fiducials()
+    moving = posed(fixed)[0] + np.random.default_rng(6).normal(size=fixed.shape)
+    plain, weighted = register(moving, fixed), register(moving, fixed, weights=np.full(12, 7.0))
+    np.testing.assert_allclose(weighted.matrix, plain.matrix, atol=1e-12)
+    assert weighted.weighted_fre_mm == pytest.approx(plain.fre_mm)
+    assert plain.weighted_fre_mm == pytest.approx(plain.fre_mm)
+    one, other = isotropic_error(weighted), isotropic_error(plain)
+    np.testing.assert_allclose(one.covariances, other.covariances, rtol=1e-9)
+    ends = [target_error(each, TARGET).interval_mm for each in (plain, weighted)]
+    assert ends[0] == pytest.approx(ends[1], rel=1e-6)
+
+
+def test_a_point_of_no_weight_counts_for_nothing():
+    fixed = fiducials()
+    moving = posed(fixed)[0] + np.random.default_rng(7).normal(size=fixed.shape)
+    weights = np.ones(12)
+    weights[4] = 1e-11
+    weighted = register(moving, fixed, weights=weights)
+    without = register(moving, fixed).without("5")
+    np.testing.assert_allclose(weighted.matrix, without.matrix, atol=1e-7)
+    np.testing.assert_allclose(
+        weighted.without("5").matrix, without.matrix, atol=1e-12, err_msg="the weights are kept"
+    )
+
+
+def test_expected_fre_and_tre_of_known_unequal_errors_are_those_of_simulated_fits():
+    registration, fle = weighted_registration()
+    fre, errors = simulated(6000)
+    assert expected_fre(registration, stated_error(fle)) == pytest.approx(fre, rel=0.02)
+    target = (TARGET + registration.fixed_mm.mean(axis=0))[None]
+    expected = expected_tre(registration, target, stated_error(fle), common_bias_sd_mm=0.0)[0]
+    assert expected == pytest.approx(np.sqrt((errors**2).sum(axis=1).mean()), rel=0.02)
+
+
+def test_the_expected_tre_is_that_of_the_inverse_of_the_weighted_normal_equations():
+    registration, fle = weighted_registration()
+    center = registration.fixed_mm.mean(axis=0)
+    normal = np.zeros((6, 6))
+    jacobian = lambda point: np.hstack([np.eye(3), -cross_matrix(point - center)])  # noqa: E731
+    for point, size in zip(registration.fixed_mm, fle, strict=True):
+        normal += jacobian(point).T @ jacobian(point) * 3 / size**2
+    there = jacobian(TARGET + center)
+    variance = np.trace(there @ np.linalg.inv(normal) @ there.T)
+    found = expected_tre(registration, (TARGET + center)[None], stated_error(fle), 0.0)[0]
+    assert found == pytest.approx(np.sqrt(variance), rel=1e-9)
+
+
+def cross_matrix(v):
+    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+def test_equal_errors_expect_the_fre_of_sibsons_formula():
+    fixed = fiducials()
+    registration = register(posed(fixed)[0], fixed)
+    found = expected_fre(registration, stated_error(np.full(12, 1.5)))
+    assert found == pytest.approx(1.5 * np.sqrt(1 - 2 / 12), rel=1e-9)
+
+
+def test_weights_make_unequal_errors_do_less_harm():
+    _, weighted = simulated(1500)
+    _, plain = simulated(1500, weighted=False)
+    assert np.sqrt((weighted**2).sum(axis=1).mean()) < 0.7 * np.sqrt((plain**2).sum(axis=1).mean())
+
+
+@pytest.mark.parametrize("sets", [150, pytest.param(400, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("is_size_known", [True, False], ids=["stated FLE", "weights alone"])
+def test_95_of_100_true_errors_lie_in_the_interval_of_unequal_errors(is_size_known, sets):
+    inside = []
+    for seed in range(sets):
+        registration, fle = weighted_registration(seed)
+        target = TARGET + registration.fixed_mm.mean(axis=0)
+        known = stated_error(fle) if is_size_known else None
+        low, high = target_error(registration, target, known, common_bias_sd_mm=0.0).interval_mm
+        _, true = posed(registration.fixed_mm)
+        exact = transforms.apply(transforms.inverse(true), target[None])
+        tre = np.linalg.norm(transforms.apply(registration.matrix, exact)[0] - target)
+        inside.append(low <= tre <= high)
+    # Give or take three standard errors of so many data sets.
+    assert np.mean(inside) == pytest.approx(0.95, abs=3 * np.sqrt(0.95 * 0.05 / sets))
+
+
+def test_the_size_of_the_errors_is_recovered_from_the_weighted_residuals():
+    found = [isotropic_error(weighted_registration(seed)[0]).fle_mm for seed in range(300)]
+    stated = np.sqrt(np.mean(localization_errors() ** 2))
+    assert np.sqrt(np.mean(np.square(found))) == pytest.approx(stated, rel=0.03)
+
+
+def test_residuals_that_the_stated_errors_do_not_allow_are_seldom_false_alarms():
+    stated = [misfit_probability(*weighted_registration(seed)) for seed in range(400)]
+    assert 0.02 <= np.mean(np.array(stated) < 0.05) <= 0.09
+    registration, fle = weighted_registration()
+    assert misfit_probability(registration, fle / 3) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("weights", "kind", "told"),
+    [
+        (np.ones(3), "rigid", "There must be 12 weights"),
+        ([*[1.0] * 11, 0.0], "rigid", "weight of point 12 must be a number above 0"),
+        ([*[1.0] * 11, np.nan], "rigid", "weight of point 12 must be a number above 0"),
+        ([*[1.0] * 11, 1e13], "rigid", "at most 1e[+]12 times"),
+        ("many", "rigid", "weights must be numbers"),
+        (np.ones(12), "affine", "affine knows none"),
+    ],
+    ids=["few", "zero", "none", "far apart", "words", "affine"],
+)
+def test_weights_that_are_none_are_refused_with_a_sentence(weights, kind, told):
+    with pytest.raises(InputError, match=told):
+        register(fiducials(), fiducials(), kind, weights=weights)
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Moving points with a column of their own for FLE, and fixed points in another order."""
+    rng = np.random.default_rng(8)
+    fixed, fle = fiducials(6), localization_errors(6)
+    moving = posed(fixed)[0] + rng.normal(size=fixed.shape) * fle[:, None] / np.sqrt(3)
+    moving_file, fixed_file = tmp_path / "moving.csv", tmp_path / "fixed.csv"
+    lines = [
+        f"p{i},{x},{y},{z},{e}" for i, ((x, y, z), e) in enumerate(zip(moving, fle, strict=True))
+    ]
+    moving_file.write_text("\n".join(["label,x,y,z,fle", *lines]))
+    lines = [f"p{i},{x},{y},{z}" for i, (x, y, z) in reversed(list(enumerate(fixed)))]
+    fixed_file.write_text("\n".join(["label,x,y,z", *lines]))
+    return moving_file, fixed_file, register(moving, fixed, weights=1 / fle**2), fle
+
+
+def run(capsys, *words):
+    status = main(["register", *map(str, words)])
+    return status, capsys.readouterr()
+
+
+def test_the_command_weights_by_a_column_of_the_points_themselves(files, capsys):
+    moving, fixed, expected, fle = files
+    status, out = run(capsys, moving, fixed, "--fle", moving, "--json")
+    answer = json.loads(out.out)
+    assert status == 0
+    np.testing.assert_allclose(answer["matrix"], expected.matrix, atol=1e-9)
+    np.testing.assert_allclose(answer["weights"], 1 / fle**2, rtol=1e-9)
+    assert answer["weighted_fre_mm"] == pytest.approx(expected.weighted_fre_mm)
+    assert answer["stated"]["expected_fre_mm"] == pytest.approx(
+        expected_fre(expected, stated_error(fle))
+    )
+    assert answer["expected_tre"]["fle_mm"] == pytest.approx(np.sqrt(np.mean(fle**2)))
+
+
+def test_the_command_tells_weights_and_expected_fre_to_people(files, capsys):
+    moving, fixed, _, fle = files
+    status, out = run(capsys, moving, fixed, "--fle", moving)
+    assert status == 0
+    assert "6 pairs of points, weighted" in out.out
+    assert "to be expected from the stated FLE" in out.out
+    assert "FLE (mm)" in out.out
+    small = moving.with_name("small.csv")
+    small.write_text("fle\n" + "\n".join(str(value / 10) for value in fle))
+    assert "larger than the stated FLE allow" in run(capsys, moving, fixed, "--fle", small)[1].out
+
+
+def test_the_command_takes_weights_by_label_in_any_order(files, capsys):
+    moving, fixed, expected, fle = files
+    weights = moving.with_name("weights.csv")
+    rows = [f"p{i},{4 / value**2}" for i, value in enumerate(fle)]
+    weights.write_text("\n".join(["label,weight", *reversed(rows), "p99,1"]))
+    status, out = run(capsys, moving, fixed, "--weights", weights, "--json")
+    answer = json.loads(out.out)
+    assert status == 0
+    np.testing.assert_allclose(answer["matrix"], expected.matrix, atol=1e-9)
+    assert answer["stated"] is None
+    assert "Weight" in run(capsys, moving, fixed, "--weights", weights)[1].out
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("label,fle\np0,1\n", "has no fle for point p1, p2"),
+        ("label,fle\np0,1\np0,2\n", "two rows for point 'p0'"),
+        ("fle\n1\n2\n", "2 rows without labels for 6 pairs"),
+        ("label,fle\np0,0\n", "fle must be a number from 0.001 to 1000"),
+        ("label,error\np0,1\n", "header label,fle"),
+    ],
+    ids=["missing", "doubled", "too few", "zero", "header"],
+)
+def test_a_file_that_does_not_fit_the_points_is_refused_with_a_sentence(files, capsys, text, told):
+    moving, fixed, *_ = files
+    path = moving.with_name("fle.csv")
+    path.write_text(text)
+    status, out = run(capsys, moving, fixed, "--fle", path)
+    assert status != 0
+    assert told in out.err
+
+
+def test_weights_are_refused_for_other_kinds_than_rigid(files, capsys):
+    moving, fixed, *_ = files
+    status, out = run(capsys, moving, fixed, "--fle", moving, "--type", "similarity")
+    assert status != 0
+    assert "similarity knows none" in out.err

@@ -1,0 +1,70 @@
+import numpy as np
+import pytest
+
+from rastrainer.head.surface_path import SurfaceGraph
+from rastrainer.scenario.complexity import Complexity, complexity, turns_deg
+from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
+
+FRONT = np.array([0.0, 700.0, 0.0])
+MESH = sphere_mesh()
+GRAPH = SurfaceGraph(MESH)
+
+
+def of(*places):
+    return complexity(np.array([on_sphere(*place) for place in places]), MESH, GRAPH, FRONT)
+
+
+def test_each_part_counts_in_its_unit():
+    assert Complexity(300, 90, 4, 180).index == pytest.approx(3 + 1 + 4 + 2)
+
+
+def test_straight_over_the_sphere_has_no_turn_and_turns_the_tool_by_its_angle():
+    found = of((90, -40), (90, -10), (90, 20), (90, 50))
+    assert found.path_length_mm == pytest.approx(np.radians(90) * RADIUS_MM, rel=0.08)
+    assert found.turning_deg == pytest.approx(0, abs=1.0)
+    assert found.reorientation_deg == pytest.approx(90, abs=1.5)
+    assert found.hidden_points == 0
+
+
+def test_back_and_forth_turns_by_half_a_circle_each_time():
+    assert of((80, 0), (100, 0), (80, 0), (100, 0)).turning_deg == pytest.approx(360, abs=2)
+
+
+def test_a_corner_is_measured_in_the_plane_of_the_skin():
+    before, at, after = np.array([[[0.0, 0, 0]], [[10, 0, 5]], [[10, 10, -3]]])
+    assert turns_deg(before, at, after, np.array([[0.0, 0, 1]])) == pytest.approx(90)
+
+
+@pytest.mark.parametrize(
+    ("longitude", "hidden"),
+    [
+        pytest.param(90, 0, id="in front"),
+        pytest.param(40, 0, id="half aside"),
+        pytest.param(10, 1, id="grazing: its number cannot be read"),
+        pytest.param(270, 1, id="behind"),
+    ],
+)
+def test_a_point_is_hidden_where_the_default_view_cannot_show_its_number(longitude, hidden):
+    assert of((90, 0), (longitude, 0)).hidden_points == hidden
+
+
+def test_a_point_behind_something_is_hidden_though_it_faces_the_view():
+    mesh = sphere_mesh(3)
+    screen = np.array([[-50.0, 300, -50], [50, 300, -50], [0, 300, 80]])
+    with_screen = type(mesh)(
+        np.vstack([mesh.vertices, screen]),
+        np.vstack([mesh.triangles, len(mesh.vertices) + np.array([[0, 1, 2]])]),
+    )
+    points = np.array([on_sphere(90, 0), on_sphere(60, 30)])
+    assert complexity(points, mesh, SurfaceGraph(mesh), FRONT).hidden_points == 0
+    graph = SurfaceGraph(with_screen)
+    assert complexity(points, with_screen, graph, FRONT).hidden_points == 1
+
+
+def test_complexity_does_not_depend_on_where_the_head_is():
+    places = [(90, 0), (50, 30), (120, 45), (200, 10)]
+    points = np.array([on_sphere(*place) for place in places])
+    shift = np.array([30.0, -20.0, 10.0])
+    moved_mesh = type(MESH)(MESH.vertices + shift, MESH.triangles)
+    moved = complexity(points + shift, moved_mesh, SurfaceGraph(moved_mesh), FRONT + shift)
+    assert moved.index == pytest.approx(of(*places).index, abs=1e-6)

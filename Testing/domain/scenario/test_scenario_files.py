@@ -1,0 +1,186 @@
+"""Writing scenarios, listing them, and their set-ups."""
+
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.pose import Perturbation
+from rastrainer.head.volume import read_head_volume
+from rastrainer.scenario.draft import HeadDraft, read_draft, write_draft
+from rastrainer.scenario.library import list_scenarios
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.setup import SetUp, read_setup, write_setup
+from rastrainer.scenario.writer import new_folder, scenario_name, write_scenario
+from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
+
+
+def written(folder, skull=None, volume=None):
+    with new_folder(folder) as made:
+        write_scenario(made, made_up_scenario(), ball_head(), skull, volume)
+    return load_scenario(folder)
+
+
+def test_what_is_written_is_read_back_with_targets_and_trajectory(tmp_path):
+    scenario = written(tmp_path / "ball", skull=ball_head(80.0))
+    wanted = made_up_scenario()
+    assert (scenario.name, scenario.title, scenario.target_name) == ("ball", "A ball", "Tumor")
+    assert np.allclose(scenario.head_to_world, wanted.head_to_world)
+    assert [task.complexity for task in scenario.tasks] == [10.0, 11.0]
+    assert [task.shortest_path_mm for task in scenario.tasks] == [500.0, None]
+    assert np.array_equal(scenario.tasks[1].fiducials, wanted.tasks[1].fiducials)
+    assert scenario.targets[0].name == "Cyst"
+    assert scenario.targets[0].position.tolist() == [10, 20, 30]
+    assert scenario.trajectory.entry.tolist() == [0, 0, 90]
+    assert scenario.provenance == wanted.provenance
+    assert read_head_mesh(scenario.skull_mesh).vertices.max() == pytest.approx(80, abs=1e-3)
+    assert not scenario.is_skull_approximate
+    assert scenario.preview is None
+
+
+def test_a_scenario_with_a_volume_is_read_back_with_it_and_one_without_has_none(tmp_path):
+    images = ball_volume()
+    read = read_head_volume(written(tmp_path / "with", volume=images).volume)
+    assert np.array_equal(read.values, images.values)
+    assert np.array_equal(read.ijk_to_ras, images.ijk_to_ras)
+    assert (read.window, read.level) == (images.window, images.level)
+    assert written(tmp_path / "without").volume is None
+
+
+def test_a_folder_that_holds_something_is_not_written_into(tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("mine")
+    with pytest.raises(InputError, match="is there already"), new_folder(tmp_path / "mine"):
+        pass
+    assert [path.name for path in tmp_path.rglob("*")] == ["mine", "notes.txt"]
+
+
+def test_a_failure_leaves_no_folder_behind(tmp_path):
+    def fail():
+        with new_folder(tmp_path / "new") as made:
+            (made / "half").write_text("half")
+            raise InputError("no")
+
+    with pytest.raises(InputError, match="no"):
+        fail()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "sentence"),
+    [
+        ("targets", [{"name": "x", "positionRas": [1, 2]}], r"targets\[0\].positionRas must be"),
+        ("targets", {}, "targets must be a list"),
+        ("trajectory", [], "trajectory must be an object"),
+        (
+            "trajectory",
+            {"name": "x", "entryRas": [1, 2, 3], "targetRas": [1, 2, 3]},
+            "entryRas must be at least 1 mm from",
+        ),
+        ("skull", {"file": "../x.ply", "kind": "bone"}, "skull.file must be the path"),
+        ("skull", {"file": "skull.ply", "kind": "gum"}, "skull.kind must be one of bone"),
+        ("volume", "volume.nrrd", "volume must be an object"),
+        (
+            "volume",
+            {"file": "../volume.nrrd", "window": 100, "level": 50},
+            "volume.file must be the path of a file inside the scenario's folder",
+        ),
+        ("volume", {"file": "v.nrrd", "window": 0, "level": 5}, "volume.window must be a number"),
+        ("volume", {"file": "v.nrrd", "window": 9, "level": "x"}, "volume.level must be a number"),
+    ],
+)
+def test_a_plan_or_skull_that_is_wrong_is_named(tmp_path, field, value, sentence):
+    written(tmp_path / "ball")
+    path = tmp_path / "ball" / "scenario.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), field: value}))
+    with pytest.raises(InputError, match=sentence):
+        load_scenario(tmp_path / "ball")
+
+
+def test_scenarios_are_listed_by_title_with_picture_or_problem(tmp_path):
+    written(tmp_path / "ball")
+    (tmp_path / "ball" / "preview.png").write_bytes(png())
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken" / "scenario.json").write_text("{")
+    ball, broken = list_scenarios([tmp_path, tmp_path / "none"])
+    assert (ball.name, ball.title, ball.problem) == ("ball", "A ball", "")
+    assert ball.preview == tmp_path / "ball" / "preview.png"
+    assert "scenario.json" in broken.problem
+    assert broken.preview is None
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"picture", png(5000, 1), png(1, 5000), png() + bytes(4_000_000)]
+)
+def test_a_picture_that_no_view_could_show_is_left_out_of_lists(tmp_path, content):
+    written(tmp_path / "ball")
+    (tmp_path / "ball" / "preview.png").write_bytes(content)
+    (ball,) = list_scenarios([tmp_path])
+    assert (ball.preview, ball.problem) == (None, "")
+
+
+def test_a_draft_is_read_back(tmp_path):
+    write_draft(tmp_path, HeadDraft(ball_head(), "by hand", ball_head(80.0), True))
+    draft = read_draft(tmp_path)
+    assert draft.method == "by hand"
+    assert draft.is_skull_approximate
+    assert len(draft.skull.vertices) == len(draft.head.vertices)
+
+
+def test_the_usual_setup_is_the_default_scenarios(tmp_path):
+    (tmp_path / "setup.json").write_text("{}")
+    assert read_setup(tmp_path / "setup.json") == SetUp()
+    pose = SetUp().head_to_world(np.array([1.0, 2.0, 3.0]))
+    assert np.allclose(transforms.apply(pose, np.array([1.0, 2.0, 3.0])), [480, 0, 220])
+    assert np.allclose(pose[:3, :3], np.diag([-1, -1, 1]))
+
+
+def test_a_setup_is_written_and_read_back(tmp_path):
+    limits = Perturbation(1.0, 2.0, 3.0)
+    setup = SetUp((1.0, 2, 3), 4.5, limits, (5.0, 6), (700.0, 800, 9), 90.0, (10.0, -11))
+    write_setup(tmp_path / "setup.json", setup)
+    assert read_setup(tmp_path / "setup.json") == setup
+
+
+def test_a_title_becomes_a_name_or_is_refused():
+    assert scenario_name("  Ms. X, 2nd MRI ") == "ms-x-2nd-mri"
+    assert len(scenario_name("a" * 100)) == 40
+    with pytest.raises(InputError, match="needs a Latin letter"):
+        scenario_name("頭")
+
+
+def test_a_moved_robot_base_moves_everything_else_the_other_way():
+    usual, moved = SetUp(), SetUp(robot_base=(100.0, -50.0))
+    shift = [-100, 50, 0]
+    middle = np.zeros(3)
+    assert np.allclose(
+        moved.head_to_world(middle)[:3, 3] - usual.head_to_world(middle)[:3, 3], shift
+    )
+    for name, camera in moved.cameras().items():
+        assert np.allclose(camera.position - usual.cameras()[name].position, shift)
+    away = moved.furniture().table_center - usual.furniture().table_center
+    assert np.allclose(away, shift[:2])
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ({"chair": {}}, "a set-up has no 'chair'"),
+        ({"head": {"centerMm": [1, 2]}}, "head.centerMm must be a list of 3"),
+        ({"head": {"yawDeg": 999}}, "head.yawDeg must be a number"),
+        ({"perturbation": {"tiltDeg": 90}}, "perturbation.tiltDeg must be a number"),
+        ({"robotBaseMm": [0, 0, 0]}, "robotBaseMm must be a list of 2"),
+    ],
+)
+def test_a_wrong_setup_is_refused_with_a_sentence(tmp_path, content, sentence):
+    (tmp_path / "setup.json").write_text(json.dumps(content))
+    with pytest.raises(InputError, match=sentence):
+        read_setup(tmp_path / "setup.json")
+
+
+def test_a_head_below_the_table_is_refused():
+    with pytest.raises(InputError, match="0 mm above the table"):
+        SetUp().check_height(-220.0, np.zeros(3))

@@ -1,0 +1,214 @@
+"""Scenarios as zip files, and zip files that are up to no good."""
+
+import io
+import json
+import stat
+import zipfile
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.files.nrrd import write_nrrd
+from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.scenario import package as scenario_package
+from rastrainer.scenario.package import pack, unpack
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.writer import write_scenario
+from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario
+
+
+@pytest.fixture
+def folder(tmp_path):
+    folder = tmp_path / "source"
+    folder.mkdir()
+    write_scenario(folder, made_up_scenario(), ball_head(), ball_head(80.0), ball_volume())
+    (folder / "preview.png").write_bytes(b"picture")
+    (folder / "patient-name.txt").write_text("not to be given away")
+    return folder
+
+
+@pytest.fixture
+def library(tmp_path):
+    return tmp_path / "library"
+
+
+def members(folder):
+    """The files of the scenario's package, by name."""
+    package = pack(folder, folder.parent / "good.zip")
+    with zipfile.ZipFile(package) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def zip_of(path, files):
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return path
+
+
+def refused(package, library, sentence):
+    with pytest.raises(InputError, match=sentence) as caught:
+        unpack(package, library)
+    assert "\n" not in str(caught.value)
+    assert not library.exists() or not list(library.iterdir())
+    outside = {path.name for path in library.parent.iterdir()}
+    assert outside <= {"source", "good.zip", "bad.zip", "library"}
+
+
+def test_a_scenario_travels_as_one_file(folder, library):
+    package = pack(folder, folder.parent / "good.zip")
+    goal = unpack(package, library)
+    assert goal == library / "ball"
+    scenario, original = load_scenario(goal), load_scenario(folder)
+    assert np.array_equal(scenario.tasks[0].fiducials, original.tasks[0].fiducials)
+    assert scenario.head_mesh.read_bytes() == original.head_mesh.read_bytes()
+    assert scenario.volume.path.read_bytes() == original.volume.path.read_bytes()
+    assert scenario.preview.read_bytes() == b"picture"
+    assert not (goal / "patient-name.txt").exists()
+    again = pack(goal, folder.parent / "again.zip")
+    assert again.read_bytes() == package.read_bytes()
+
+
+def test_nothing_is_overwritten(folder, library):
+    package = pack(folder, folder.parent / "good.zip")
+    with pytest.raises(InputError, match="is there already"):
+        pack(folder, package)
+    goal = unpack(package, library)
+    before = (goal / "scenario.json").stat().st_mtime_ns
+    with pytest.raises(InputError, match=r"ball is in .* already"):
+        unpack(package, library)
+    assert (goal / "scenario.json").stat().st_mtime_ns == before
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../evil.txt",
+        "tasks/../../evil.txt",
+        "/etc/evil.txt",
+        "C:\\evil.txt",
+        "C:evil.txt",
+        "..\\evil.txt",
+        "tasks//x",
+        "CON.txt",
+        "a/b/c/d/e/f.txt",
+        "x" * 200,
+        "name\n.txt",
+    ],
+)
+def test_a_path_that_leads_elsewhere_is_refused(folder, library, name):
+    bad = zip_of(folder.parent / "bad.zip", {**members(folder), name: b"x"})
+    refused(bad, library, "holds a file with the path")
+
+
+def test_a_link_is_refused(folder, library):
+    files = members(folder)
+    bad = folder.parent / "bad.zip"
+    with zipfile.ZipFile(bad, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+        link = zipfile.ZipInfo("link.txt")
+        link.external_attr = (stat.S_IFLNK | 0o777) << 16
+        archive.writestr(link, "/etc/passwd")
+    refused(bad, library, "holds a link or a device")
+
+
+def test_a_bomb_is_stopped_by_what_it_unpacks_to_not_by_what_it_says(folder, library, monkeypatch):
+    monkeypatch.setattr(scenario_package, "MOST_BYTES", 3_000_000)
+    bomb = zip_of(folder.parent / "bad.zip", {**members(folder), "bomb.bin": bytes(20_000_000)})
+    refused(bomb, library, "holds more than 3 MB")
+
+
+def test_too_many_files_and_files_twice_are_refused(folder, library):
+    files = members(folder)
+    many = {**files, **{f"f{index}": b"" for index in range(100)}}
+    refused(zip_of(folder.parent / "bad.zip", many), library, "holds .* files")
+    twice = {**files, "HEAD.PLY": b"x"}
+    refused(zip_of(folder.parent / "bad.zip", twice), library, "holds a file twice")
+
+
+def test_a_mesh_that_is_huge_or_open_is_refused(folder, library, monkeypatch):
+    files = members(folder)
+    head = ball_head()
+    write_head_mesh(folder / "open.ply", HeadMesh(head.vertices, head.triangles[:-1]))
+    opened = {**files, "head.ply": (folder / "open.ply").read_bytes()}
+    refused(zip_of(folder.parent / "bad.zip", opened), library, "head.ply is not closed")
+    monkeypatch.setattr(scenario_package, "MOST_TRIANGLES", 100)
+    refused(zip_of(folder.parent / "bad.zip", files), library, "triangles; a scenario's may have")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("scenario.json", b"{", "scenario.json"),
+        ("scenario.json", b"[" * 100_000, "scenario.json"),
+        ("scenario.json", b'{"formatVersion": 1}', "must be"),
+        ("tasks/task-1.mrk.json", b"{}", "task-1.mrk.json"),
+        ("head.ply", b"ply", "head.ply"),
+        (
+            "volume.nrrd",
+            b"NRRD0004\ntype: float\n\n",
+            r"volume volume\.nrrd must have the type",
+        ),
+    ],
+)
+def test_a_file_that_cannot_be_used_is_named(folder, library, name, content, sentence):
+    bad = zip_of(folder.parent / "bad.zip", {**members(folder), name: content})
+    refused(bad, library, sentence)
+
+
+def test_a_file_that_the_scenario_names_and_lacks_is_missed(folder, library):
+    files = members(folder)
+    del files["head.ply"]
+    refused(zip_of(folder.parent / "bad.zip", files), library, "head.ply does not exist")
+
+
+def test_a_volume_that_lies_elsewhere_than_the_head_is_refused(folder, library):
+    files = members(folder)
+    images = ball_volume()
+    elsewhere = transforms.rigid(np.eye(3), [150.0, 0.0, 0.0]) @ images.ijk_to_ras
+    write_nrrd(folder / "elsewhere.nrrd", images.values, elsewhere)
+    files["volume.nrrd"] = (folder / "elsewhere.nrrd").read_bytes()
+    bad = zip_of(folder.parent / "bad.zip", files)
+    refused(bad, library, r"volume\.nrrd must lie where the head is")
+
+
+def test_what_a_volume_says_beside_its_voxels_stays_out(folder):
+    path = folder / "volume.nrrd"
+    magic, rest = path.read_bytes().split(b"\n", 1)
+    path.write_bytes(magic + b"\ncontent: Mustermann\nPatientName:=Mustermann\n" + rest)
+    assert b"Mustermann" not in members(folder)["volume.nrrd"]
+
+
+def test_a_name_that_leads_elsewhere_is_refused(folder, library):
+    files = members(folder)
+    content = {**json.loads(files["scenario.json"]), "name": "../../evil"}
+    files["scenario.json"] = json.dumps(content).encode()
+    refused(zip_of(folder.parent / "bad.zip", files), library, "name must be")
+
+
+@pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04" + bytes(100)])
+def test_what_is_no_zip_file_is_refused(folder, library, content):
+    bad = folder.parent / "bad.zip"
+    bad.write_bytes(content)
+    refused(bad, library, "is no zip file, or a damaged one")
+
+
+def test_a_damaged_package_is_refused_wherever_it_is_damaged(folder, library):
+    whole = pack(folder, folder.parent / "good.zip").read_bytes()
+    bad = folder.parent / "bad.zip"
+    for cut in range(100, len(whole), len(whole) // 12):
+        bad.write_bytes(whole[:cut])
+        refused(bad, library, "bad.zip")
+    names = io.BytesIO(whole)
+    with zipfile.ZipFile(names) as archive:
+        start = archive.getinfo("head.ply").header_offset
+    bad.write_bytes(whole[: start + 2000] + bytes(400) + whole[start + 2400 :])
+    refused(bad, library, "bad.zip")
+
+
+def test_a_package_that_is_missing_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"There is no file .*none\.zip"):
+        unpack(tmp_path / "none.zip", tmp_path / "library")

@@ -1,0 +1,62 @@
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.scenario.tasks import LABELS, is_task_name, read_task
+
+POINTS = np.random.default_rng(2).uniform(-90, 90, (15, 3)).round(4)
+
+
+def read(path):
+    return read_task(path, "task-1", "Task 1", 12.5)
+
+
+@pytest.fixture
+def task_file(tmp_path):
+    path = tmp_path / "task-1.mrk.json"
+    write_markups(path, PointList(LABELS, POINTS))
+    return path
+
+
+def test_a_task_has_its_fiducials_in_the_order_to_touch(task_file):
+    task = read(task_file)
+    assert (task.name, task.title, task.complexity) == ("task-1", "Task 1", 12.5)
+    assert task.labels == tuple(str(number) for number in range(1, 16))
+    assert np.array_equal(task.fiducials, POINTS)
+
+
+def test_the_fiducials_of_a_task_cannot_be_changed(task_file):
+    with pytest.raises(ValueError, match="read-only"):
+        read(task_file).fiducials[0, 0] = 0.0
+
+
+@pytest.mark.parametrize(
+    ("labels", "points", "sentence"),
+    [
+        pytest.param(LABELS[:14], POINTS[:14], "15 points labeled", id="one missing"),
+        pytest.param(LABELS[::-1], POINTS, "in the order to touch", id="wrong order"),
+        pytest.param((), POINTS, "15 points labeled", id="no labels"),
+        pytest.param(LABELS, np.vstack([POINTS[:14], POINTS[:1]]), "same place", id="one twice"),
+        pytest.param(LABELS, POINTS * 1e4, "not within ±2000 mm", id="in metres? far away"),
+    ],
+)
+def test_a_file_that_is_no_task_is_refused_with_a_sentence(tmp_path, labels, points, sentence):
+    path = tmp_path / "broken.mrk.json"
+    write_markups(path, PointList(labels, points))
+    with pytest.raises(InputError, match=sentence) as caught:
+        read(path)
+    assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["trial-run", "task-1", "a", "task-12-b"])
+def test_names_of_tasks(name):
+    assert is_task_name(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["", "Task 1", "task_1", "../task", "-task", "task-", "t" * 41, "é"]
+)
+def test_names_that_could_not_stand_in_commands_and_file_names(name):
+    assert not is_task_name(name)

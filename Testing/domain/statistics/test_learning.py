@@ -1,0 +1,161 @@
+"""Learning curves, control charts and pass marks, against published values and simulation."""
+
+import itertools
+
+import numpy as np
+import pytest
+import scipy.optimize
+import scipy.stats
+
+from rastrainer.errors import InputError
+from rastrainer.statistics.contrasting_groups import pass_mark
+from rastrainer.statistics.lc_cusum import (
+    FALSE_DISCOVERY,
+    chance_of_successes,
+    fewest_trials,
+    lc_cusum,
+    lc_cusum_limit,
+    signal_probability,
+)
+from rastrainer.statistics.learning_curve import fit_learning_curve
+from rastrainer.statistics.trend import TrendVerdict, cohort_trend_p, falling_trend
+
+
+@pytest.mark.parametrize("rates", [(0.4, 0.2), (0.0, 0.2), (0.2, 1.0), (float("nan"), 0.5)])
+def test_rates_that_are_none_are_refused(rates):
+    with pytest.raises(InputError, match="acceptable failure rate above 0"):
+        lc_cusum([True], *rates, 1.0)
+
+
+def test_the_probability_of_a_signal_is_that_of_simulated_trainees():
+    rng = np.random.default_rng(0)
+    failures = rng.random((4000, 25)) < 0.4
+    signaled = [lc_cusum(row, 0.1, 0.4, 1.25).competent_at is not None for row in failures[:800]]
+    exact = signal_probability(0.4, 25, 0.1, 0.4, 1.25)
+    assert np.mean(signaled) == pytest.approx(exact, abs=0.05)
+
+
+def test_the_limit_keeps_the_risk_and_competent_trainees_pass():
+    limit = lc_cusum_limit(0.05, 0.4, 20)
+    assert signal_probability(0.4, 20, 0.05, 0.4, limit) <= 0.05
+    assert signal_probability(0.4, 20, 0.05, 0.4, limit - 1e-3) > 0.05
+    assert signal_probability(0.05, 20, 0.05, 0.4, limit) > 0.9
+    assert lc_cusum([True, True, *[False] * 12], 0.05, 0.4, limit).competent_at is not None
+    with pytest.raises(InputError, match="3 trials cannot show competence"):
+        lc_cusum_limit(0.05, 0.4, 3)
+
+
+def test_a_learning_curve_recovers_its_parameters():
+    n = np.arange(1, 31)
+    curve = fit_learning_curve(120 * n**-0.6 + 40)
+    assert (curve.gain, curve.rate, curve.plateau) == (
+        pytest.approx(120, rel=0.02),
+        pytest.approx(0.6, rel=0.02),
+        pytest.approx(40, rel=0.03),
+    )
+    assert curve.at(10) == pytest.approx(120 * 10**-0.6 + 40, rel=1e-3)
+
+
+def test_a_learning_curve_is_scipys_least_squares():
+    rng = np.random.default_rng(5)
+    n = np.arange(1, 21)
+    y = 80 * n**-0.8 + 60 + rng.normal(0, 4, 20)
+    expected, _ = scipy.optimize.curve_fit(lambda x, a, b, c: a * x**-b + c, n, y, [50, 0.5, 50])
+    curve = fit_learning_curve(y)
+    np.testing.assert_allclose(curve.at(n), expected[0] * n ** -expected[1] + expected[2], atol=0.2)
+
+
+def test_too_few_trials_and_values_that_are_no_times_have_no_curve():
+    with pytest.raises(InputError, match="at least 5 trials"):
+        fit_learning_curve([1.0, 2.0])
+    with pytest.raises(InputError, match="not below 0"):
+        fit_learning_curve([1.0, 2.0, -1.0, 2.0, 3.0])
+
+
+def test_five_noiseless_trials_that_fall_from_140_to_107_s_are_learning():
+    times = 140 * np.arange(1, 6) ** (np.log(107 / 140) / np.log(5))
+    trend = falling_trend(times)
+    assert (trend.verdict, trend.p) == (TrendVerdict.FALLS, pytest.approx(1 / 120))
+    assert trend.change == pytest.approx(107 - 140, abs=1.0)
+
+
+def test_the_trend_is_tested_by_all_orders_of_the_values():
+    values = np.array([131.0, 119.0, 125.0, 118.0, 112.0, 115.0])
+    x = np.log(np.arange(1, 7))
+    slopes = np.array([x @ np.array(order) for order in itertools.permutations(values)])
+    trend = falling_trend(values)
+    assert trend.p == pytest.approx(np.mean(slopes <= x @ values + 1e-9), rel=1e-9)
+    line = scipy.stats.linregress(x, values)
+    assert trend.change == pytest.approx(line.slope * x[-1], rel=1e-9)
+    reach = scipy.stats.t.ppf(0.95, 4) * line.stderr * x[-1]
+    np.testing.assert_allclose(trend.interval, (trend.change - reach, trend.change + reach))
+
+
+def test_what_five_trials_allow_both_ways_is_undecided_and_what_stays_alike_is_steady():
+    assert falling_trend([120.0, 119.0, 121.0, 120.5, 119.5]).verdict is TrendVerdict.STEADY
+    assert falling_trend([120.0] * 5).verdict is TrendVerdict.STEADY
+    assert falling_trend([140.0, 100.0, 150.0, 95.0, 125.0]).verdict is TrendVerdict.UNDECIDED
+    assert falling_trend([100.0, 110.0, 120.0, 130.0, 140.0]).verdict is TrendVerdict.UNDECIDED
+    with pytest.raises(InputError, match="from 4 finite values on"):
+        falling_trend([3.0, 2.0, 1.0])
+
+
+def test_the_trend_of_all_trainees_is_pages():
+    """Page 1963: L of his ordered hypothesis; here against scipy on the reversed columns."""
+    rows = np.random.default_rng(4).normal(0, 1, (6, 5)) - 0.4 * np.arange(5)
+    expected = scipy.stats.page_trend_test(rows[:, ::-1]).pvalue
+    assert cohort_trend_p(rows) == pytest.approx(expected, rel=1e-9)
+    with pytest.raises(InputError, match="at least two trainees"):
+        cohort_trend_p(rows[:1])
+
+
+def test_competence_takes_eleven_passed_trials_at_least():
+    limit = lc_cusum_limit(0.05, 0.4, 30)
+    assert fewest_trials(0.05, 0.4, limit) == 11
+    assert lc_cusum([False] * 10, 0.05, 0.4, limit).competent_at is None
+    assert lc_cusum([False] * 11, 0.05, 0.4, limit).competent_at == 11
+
+
+def test_fewer_than_eleven_trials_cannot_show_competence_at_the_accepted_risk():
+    limit = lc_cusum_limit(0.05, 0.4, 30)
+    fewest = fewest_trials(0.05, 0.4, limit)
+    assert fewest == 11
+    assert lc_cusum([False] * (fewest - 1), 0.05, 0.4, limit).competent_at is None
+    assert lc_cusum([False] * fewest, 0.05, 0.4, limit).competent_at == fewest
+    chances = [chance_of_successes(count, 30, 0.05, 0.4) for count in (fewest - 1, fewest)]
+    assert chances[0] > FALSE_DISCOVERY > chances[1]
+
+
+def test_the_pass_mark_of_equal_spreads_is_in_the_middle():
+    rng = np.random.default_rng(0)
+    spread = rng.normal(0, 1, 40)
+    spread = (spread - spread.mean()) / spread.std(ddof=1)
+    mark = pass_mark(40 + 6 * spread, 70 + 6 * spread)
+    assert mark.score == pytest.approx(55.0, abs=1e-6)
+    assert mark.passing_novices == pytest.approx(0.0062, abs=1e-4)
+    assert mark.failing_experts == pytest.approx(mark.passing_novices)
+
+
+def test_the_pass_mark_leans_toward_the_narrower_group():
+    spread = np.linspace(-1, 1, 21)
+    mark = pass_mark(40 + 3 * spread, 70 + 15 * spread)
+    assert 40 < mark.score < 50
+    below, above = np.std(40 + 3 * spread, ddof=1), np.std(70 + 15 * spread, ddof=1)
+    densities = [
+        np.exp(-(((mark.score - mean) / sd) ** 2) / 2) / sd
+        for mean, sd in [(40, below), (70, above)]
+    ]
+    assert densities[0] == pytest.approx(densities[1], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("novices", "experts", "words"),
+    [
+        ([1, 2, 3], [5, 6, 7, 8, 9], "at least 5 novices"),
+        ([1] * 5, [5, 6, 7, 8, 9], "differ within each group"),
+        ([5, 6, 7, 8, 9], [1, 2, 3, 4, 5], "experts who score higher"),
+    ],
+)
+def test_a_pass_mark_without_two_contrasting_groups_is_refused(novices, experts, words):
+    with pytest.raises(InputError, match=words):
+        pass_mark(novices, experts)

@@ -1,0 +1,52 @@
+"""A small study that was led by a protocol, with trials, answers and steps that were left out."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.steps import StepKind
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.questionnaires.catalog import find_questionnaire
+from Testing.domain.trial.made_up_scores import gentle_score
+from Testing.domain.trial.trial_records import make_record
+
+STUDIES = Path(__file__).parents[3] / "assets" / "studies"
+
+
+def study_with_trials(path, consent=True):
+    """A has done all, B the first trial only; A has also played the last task once more."""
+    with Study.open(path) as study:
+        progress = StudyProgress(study)
+        published = read_study_protocol(STUDIES / "published-protocol.json")
+        progress.begin(replace(published, tasks=("task-1",)))
+        for name in ("A", "B"):
+            study.create_trainee(name, consent=consent if name == "A" else True)
+            progress.enroll(name)
+        progress.skip("B", "desktop/trial-run", "knows the tasks from a pilot")
+        for step in progress.progress("A").steps:
+            if step.kind is StepKind.TRIAL:
+                play(study, "A", step.mode)
+                progress.count_played("A")
+            elif step.kind is StepKind.QUESTIONNAIRE:
+                count = len(find_questionnaire(step.questionnaire).items)
+                progress.finish("A", step.name, {"answers": [1] * count})
+            else:
+                progress.finish("A", step.name, {"minutes": step.minutes})
+        play(study, "A", "desktop")
+        play(study, "B", "desktop")
+        progress.count_played("B")
+
+
+def play(study, trainee, mode):
+    number = sum(len(study.history(name)) for name in ("A", "B"))
+    utc = f"2999-01-01T10:0{number}:00Z"
+    record = make_record(
+        trialId=f"00000000-0000-0000-0000-00000000000{number}",
+        mode=mode,
+        trainee=trainee,
+        startedUtc=utc,
+        completedUtc=utc,
+        motion={"sparc": -2.5},
+    )
+    study.add_trial(record, score=gentle_score(110.0, 0.5))

@@ -1,0 +1,338 @@
+"""A study's protocol: read with clear sentences, balanced, resumed, never skipped silently."""
+
+import itertools
+import json
+from collections import Counter
+from datetime import datetime, timezone
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import ALL_DONE, CommandName, check_arguments
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.steps import (
+    StepKind,
+    mode_order,
+    steps_for,
+    task_order,
+    williams_design,
+)
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import (
+    pass_mark_of,
+    protocol_text,
+    read_study_protocol,
+    study_protocol_from_json,
+)
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.trial.scoring import PASS_MARK
+from Testing.domain.trial.trial_records import make_record
+
+SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol.json"
+NOW = datetime(2999, 1, 1, tzinfo=timezone.utc)
+
+
+def protocol(**changes):
+    return study_protocol_from_json({**json.loads(SHIPPED.read_text()), **changes})
+
+
+def trial_of(step, number, trainee="T001"):
+    return make_record(
+        trialId=f"00000000-0000-0000-0000-{number:012d}",
+        trainee=trainee,
+        task=step.task,
+        mode=step.mode,
+    )
+
+
+@pytest.fixture
+def study(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        study.create_trainee()
+        study.create_trainee()
+        yield study
+
+
+@pytest.mark.parametrize("count", range(2, 9))
+def test_a_williams_design_is_balanced_for_position_and_predecessor(count):
+    design = williams_design(count)
+    assert len(design) == (count if count % 2 == 0 else 2 * count)
+    assert all(sorted(row) == list(range(count)) for row in design)
+    for position in range(count):
+        assert len(set(Counter(row[position] for row in design).values())) == 1
+    pairs = Counter(pair for row in design for pair in itertools.pairwise(row))
+    assert len(pairs) == count * (count - 1)
+    assert len(set(pairs.values())) == 1
+
+
+def test_the_design_of_four_is_williams_own():
+    """Williams 1949: the first row runs 1, 2, n, 3, … (here from 0)."""
+    assert williams_design(4) == ((0, 1, 3, 2), (1, 2, 0, 3), (2, 3, 1, 0), (3, 0, 2, 1))
+
+
+def test_the_shipped_protocol_is_that_of_the_paper():
+    shipped = read_study_protocol(SHIPPED)
+    steps = steps_for(shipped, 0)
+    assert [step.name for step in steps][:4] == [
+        "hmd/before/ssq",
+        "hmd/trial-run",
+        "hmd/1/task-1",
+        "hmd/1/task-2",
+    ]
+    trials = [step for step in steps if step.kind is StepKind.TRIAL]
+    assert len(trials) == 10
+    assert [step.kind for step in steps].count(StepKind.BREAK) == 1
+    assert len({step.name for step in steps}) == len(steps)
+    assert steps[1].sentence == "Get to know the trial run with the headset for 5 minutes."
+    assert trials[0].sentence == "Play Task 1 with the headset."
+    assert study_protocol_from_json(json.loads(protocol_text(shipped))) == shipped
+
+
+def test_balanced_orders_are_balanced_over_trainees():
+    balanced = protocol(taskOrder="balanced", repetitions=2)
+    assert mode_order(balanced, 0) == ("hmd", "desktop")
+    assert mode_order(balanced, 1) == ("desktop", "hmd")
+    orders = Counter(task_order(balanced, place, 0, 0) for place in range(20))
+    assert set(orders.values()) == {2}
+    assert len(orders) == 10
+    assert {mode_order(balanced, place) for place in range(0, 20, 2)} == {("hmd", "desktop")}
+
+
+def test_a_trainee_is_led_step_by_step_and_resumes_after_an_interruption(tmp_path):
+    path = tmp_path / "study.db"
+    with Study.open(path) as study:
+        study.create_trainee()
+        progress = StudyProgress(study)
+        progress.begin(read_study_protocol(SHIPPED))
+        assert progress.enroll("T001") == progress.enroll("T001") == 0
+        assert progress.progress("T001").sentence == ("Step 1 of 19: Answer the questionnaire SSQ.")
+        progress.finish("T001", "hmd/before/ssq", {"answers": [0] * 16})
+        progress.practice("T001", "hmd/trial-run", 200.0)
+    with Study.open(path) as study:
+        progress = StudyProgress(study)
+        progress.practice("T001", "hmd/trial-run", 100.5)
+        assert progress.progress("T001").practiced_s == 300.5
+        progress.finish("T001", "hmd/trial-run", {"minutes": 300.5 / 60})
+    with Study.open(path) as study:
+        progress = StudyProgress(study)
+        progress.begin(read_study_protocol(SHIPPED))
+        state = progress.progress("T001")
+        assert state.next_step.name == "hmd/1/task-1"
+        assert state.check_start("hmd", "task-1") is state.next_step
+        with pytest.raises(InputError, match=r"Not yet: .* Step 3 of 19: Play Task 1"):
+            state.check_start("desktop", "task-1")
+        study.add_trial(trial_of(state.next_step, 1))
+        done = {"trialId": "00000000-0000-0000-0000-000000000001"}
+        assert progress.finish("T001", "hmd/1/task-1", done).next_step.name == "hmd/1/task-2"
+
+
+def test_the_whole_way_ends_with_thanks_and_all_answers_scored(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol(tasks=["task-1"]))
+    progress.enroll("T001")
+    number = 0
+    while (step := progress.progress("T001").next_step) is not None:
+        details = {}
+        if step.kind is StepKind.TRIAL:
+            number += 1
+            study.add_trial(trial_of(step, number))
+            details = {"trialId": f"00000000-0000-0000-0000-{number:012d}"}
+        elif step.kind is StepKind.QUESTIONNAIRE:
+            count = {"ssq": 16, "nasa-tlx": 6, "sus": 10}[step.questionnaire]
+            details = {"answers": [3] * count}
+        else:
+            details = {"minutes": step.minutes}
+        progress.finish("T001", step.name, details)
+    assert "Thank you" in progress.progress("T001").sentence
+    answers = progress.answers()
+    assert [a.step.questionnaire for a in answers].count("sus") == 2
+    assert answers[0].scores["ssq_total"] == pytest.approx(235.62)
+    with pytest.raises(InputError, match="nothing comes after"):
+        progress.skip("T001", "x", "a good long reason")
+
+
+def test_every_step_can_be_told_to_the_simulator_and_comes_back_the_same(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol())
+    progress.enroll("T001")
+    kinds = set()
+    while True:
+        step = StudyStep.of("T001", progress.progress("T001"), NOW)
+        checked = check_arguments(CommandName.STUDY_STEP, json.loads(json.dumps(step.arguments())))
+        assert StudyStep.from_arguments(checked) == step
+        kinds.add(step.kind)
+        if step.kind == ALL_DONE:
+            break
+        progress.skip("T001", progress.progress("T001").next_step.name, "only told of in this test")
+    assert kinds == {*(kind.value for kind in StepKind), ALL_DONE}
+    free = StudyStep("T001")
+    assert (
+        StudyStep.from_arguments(check_arguments(CommandName.STUDY_STEP, free.arguments())) == free
+    )
+
+
+def test_a_protocol_may_say_its_pass_mark():
+    shipped = json.loads(SHIPPED.read_text())
+    assert "passMark" not in shipped["scoring"]
+    silent = protocol()
+    assert (silent.pass_mark, pass_mark_of(silent)) == (None, PASS_MARK)
+    assert study_protocol_from_json(json.loads(protocol_text(silent))) == silent
+    own = protocol(scoring=shipped["scoring"] | {"passMark": 62})
+    assert own.pass_mark == pass_mark_of(own) == 62.0
+    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    with pytest.raises(InputError, match="passMark must be a number from 1 to 100"):
+        protocol(scoring=shipped["scoring"] | {"passMark": 0})
+
+
+def test_nothing_is_skipped_silently(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol())
+    progress.enroll("T001")
+    for reason in ("", "   ", "short", None, "x" * 501):
+        with pytest.raises(InputError, match="only with a reason"):
+            progress.skip("T001", "hmd/before/ssq", reason)
+    with pytest.raises(InputError, match="The next step is hmd/before/ssq, not hmd/trial-run"):
+        progress.finish("T001", "hmd/trial-run")
+    with pytest.raises(InputError, match="The next step is"):
+        progress.skip("T001", "hmd/trial-run", "does not want to practice")
+    after = progress.skip("T001", "hmd/before/ssq", "questionnaire sheets were missing")
+    assert after.next_step.name == "hmd/trial-run"
+    assert after.skipped[0].details == {"reason": "questionnaire sheets were missing"}
+
+
+def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
+    progress.enroll("T001")
+    step = progress.progress("T001").next_step
+    study.add_trial(trial_of(step, 1, trainee="T002"))
+    study.add_trial(make_record(trainee="T001", task="task-3", mode="hmd"))
+    for trial_id, words in [
+        ("00000000-0000-0000-0000-000000000001", "not the one that the step"),
+        (make_record()["trialId"], "it was task-3 in the mode hmd"),
+        ("00000000-0000-0000-0000-000000000009", "has no trial"),
+        (None, "only with the trial that was stored"),
+    ]:
+        with pytest.raises(InputError, match=words):
+            progress.finish("T001", step.name, {"trialId": trial_id})
+    study.add_trial(trial_of(step, 2))
+    done = {"trialId": "00000000-0000-0000-0000-000000000002"}
+    progress.finish("T001", step.name, done)
+    while (again := progress.progress("T001").next_step).task != "task-1":
+        progress.skip("T001", again.name, "only the repeated task matters here")
+    with pytest.raises(InputError, match="already counts"):
+        progress.finish("T001", again.name, done)
+
+
+def test_a_questionnaire_is_not_done_without_all_its_answers(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol())
+    progress.enroll("T001")
+    for details, words in [({}, "only with its answers"), ({"answers": [1] * 15}, "16 answers")]:
+        with pytest.raises(InputError, match=words):
+            progress.finish("T001", "hmd/before/ssq", details)
+
+
+def test_a_trial_run_or_a_break_ends_too_early_only_with_a_reason(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol(questionnaires=[]))
+    progress.enroll("T001")
+    for minutes in (None, 4.9, float("nan"), float("inf"), True, "5"):
+        with pytest.raises(InputError, match="The trial run takes 5 minutes, of which"):
+            progress.finish("T001", "hmd/trial-run", {"minutes": minutes})
+    assert progress.skip("T001", "hmd/trial-run", "has practiced in a pilot").skipped
+    with pytest.raises(InputError, match="not a trial run that comes next"):
+        progress.practice("T001", "hmd/trial-run", 1.0)
+
+
+def test_trials_count_by_themselves_in_the_order_of_the_protocol_and_none_from_before(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
+    first = steps_for(progress.protocol(), 0)[0]
+    study.add_trial(trial_of(first, 1))
+    progress.enroll("T001")
+    assert progress.count_played("T001").entries == ()
+
+    def play(number, task, minute):
+        utc = f"2999-01-01T10:{minute:02d}:00Z"
+        trial = trial_of(first, number) | {"task": task, "startedUtc": utc, "completedUtc": utc}
+        study.add_trial(trial)
+
+    # Delivered in another order than played; one task twice, which is not its second round.
+    play(3, "task-2", 20)
+    play(4, "task-1", 15)
+    play(2, "task-1", 10)
+    counted = progress.count_played("T001")
+    assert [trial[-1] for trial in counted.counted_trials] == ["2", "3"]
+    assert counted.next_step.name == "hmd/1/task-3"
+    assert progress.count_played("T001") == counted
+    for name in ("hmd/1/task-3", "hmd/1/task-4", "hmd/1/task-5"):
+        progress.skip("T001", name, "the power had failed for the day")
+    assert progress.count_played("T001").next_step.name == "hmd/2/task-1"
+
+
+def test_a_study_keeps_its_protocol(study):
+    progress = StudyProgress(study)
+    assert progress.protocol() is None
+    with pytest.raises(InputError, match="no protocol yet"):
+        progress.enroll("T001")
+    progress.begin(protocol())
+    with pytest.raises(InputError, match="started with another protocol"):
+        progress.begin(protocol(repetitions=2))
+    with pytest.raises(InputError, match="not enrolled"):
+        progress.progress("T002")
+
+
+def test_the_place_of_a_deleted_trainee_is_given_again(study):
+    progress = StudyProgress(study)
+    progress.begin(protocol())
+    assert (progress.enroll("T001"), progress.enroll("T002")) == (0, 1)
+    progress.skip("T001", "hmd/before/ssq", "left before it began")
+    study.delete_trainee("T001")
+    study.create_trainee("T009")
+    assert progress.enroll("T009") == 0
+    assert progress.progress("T009").entries == ()
+    assert progress.enrolled() == {"T009": 0, "T002": 1}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"formatVersion": 2}, "formatVersion must be 1"),
+        ({"modes": []}, "modes must be a list of 1 to 2"),
+        ({"modes": ["desktop", "hologram"]}, "modes must be a list of some of desktop, hmd"),
+        ({"modes": ["hmd", "hmd"]}, "without duplicates"),
+        ({"modeOrder": "random"}, "modeOrder must be one of fixed, balanced"),
+        ({"tasks": ["trial-run"]}, "the trial run is not one"),
+        ({"tasks": ["Task 1"]}, "tasks must be names"),
+        ({"repetitions": 2.5}, "repetitions must be a whole number from 1 to 50"),
+        ({"repetitions": True}, "repetitions must be a whole number"),
+        ({"trialRun": {"minutes": "five"}}, "trialRun.minutes must be a number"),
+        ({"breaks": {}}, "breaks.betweenModesMinutes must be"),
+        (
+            {"questionnaires": [{"name": "mmpi", "when": "after-all", "modes": []}]},
+            r"questionnaires\[0\].name must be a questionnaire .*known are sus",
+        ),
+        (
+            {"questionnaires": [{"name": "sus", "when": "often", "modes": []}]},
+            "when must be one of before-all",
+        ),
+        (
+            {"questionnaires": [{"name": "sus", "when": "after-all", "modes": ["hmd"]}]},
+            "belongs to no mode",
+        ),
+        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 2"),
+        (
+            {"scoring": {"version": "2", "references": {"task-9": {}}}},
+            "references.task-9 must be one of the study's tasks",
+        ),
+        ({"taskorder": "fixed"}, "taskorder must be left out"),
+    ],
+)
+def test_a_wrong_protocol_is_told_in_one_sentence_that_names_the_field(change, words, tmp_path):
+    path = tmp_path / "protocol.json"
+    path.write_text(json.dumps({**json.loads(SHIPPED.read_text()), **change}))
+    with pytest.raises(InputError, match=words) as caught:
+        read_study_protocol(path)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,122 @@
+"""Questionnaires are scored as their authors say."""
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.study.questionnaires.catalog import (
+    NASA_TLX,
+    QUESTIONNAIRES,
+    SSQ,
+    SUS,
+    find_questionnaire,
+)
+
+
+def test_sus_scores_brookes_own_example_with_55():
+    """Brooke 1996, the filled-in form: 22 points times 2.5."""
+    assert SUS.score([5, 4, 2, 1, 2, 3, 2, 4, 5, 2]) == {"sus": 55.0}
+
+
+def test_sus_goes_from_0_to_100_and_the_middle_is_50():
+    assert SUS.score([5, 1] * 5) == {"sus": 100.0}
+    assert SUS.score([1, 5] * 5) == {"sus": 0.0}
+    assert SUS.score([3] * 10) == {"sus": 50.0}
+
+
+def test_raw_tlx_is_the_mean_of_the_six_scales():
+    """Hart 2006: the ratings are simply averaged."""
+    scores = NASA_TLX.score([30, 15, 60, 40, 30, 40])
+    assert scores["tlx_raw"] == pytest.approx(215 / 6)
+    assert scores["tlx_temporal"] == 60
+    assert NASA_TLX.score([100] * 6)["tlx_raw"] == 100
+
+
+def test_performance_runs_from_perfect_to_failure_so_that_failure_is_workload():
+    """Hart and Staveland 1988: the ends of this scale are good and poor, not low and high."""
+    (item,) = (item for item in NASA_TLX.items if item.anchors)
+    assert (item.name, item.anchors) == ("tlx_performance", ("perfect", "failure"))
+    place = NASA_TLX.items.index(item)
+    perfect, failed = ([50] * place + [end] + [50] * (5 - place) for end in (0, 100))
+    assert NASA_TLX.score(failed)["tlx_performance"] == 100
+    raised = NASA_TLX.score(failed)["tlx_raw"] - NASA_TLX.score(perfect)["tlx_raw"]
+    assert raised == pytest.approx(100 / 6)
+    (scale,) = (scale for scale in NASA_TLX.scales if scale.name == "tlx_performance")
+    assert (scale.better, scale.title) == (-1, "TLX performance (0 is perfect, 100 is failure)")
+
+
+def test_raw_tlx_is_scored_as_by_another_program():
+    """Tests of colleyRstats (CRAN): marks 1, 11 and 21 of the sheet are 0, 50 and 100."""
+
+    def raw(*marks):
+        return NASA_TLX.score([5 * (mark - 1) for mark in marks])["tlx_raw"]
+
+    assert [raw(*[mark] * 6) for mark in (1, 11, 21)] == [0.0, 50.0, 100.0]
+    assert raw(21, 1, 21, 1, 21, 1) == 50.0
+
+
+def test_ssq_items_are_on_the_published_scales():
+    """Kennedy et al. 1993, by the items' numbers on the form."""
+    nausea, oculomotor = {1, 6, 7, 8, 9, 15, 16}, {1, 2, 3, 4, 5, 9, 11}
+    disorientation = {5, 8, 10, 11, 12, 13, 14}
+    for number in range(1, 17):
+        scores = SSQ.score([int(item == number) for item in range(1, 17)])
+        on = [scores[f"ssq_{n}"] > 0 for n in ("nausea", "oculomotor", "disorientation")]
+        assert on == [number in scale for scale in (nausea, oculomotor, disorientation)]
+
+
+def test_ssq_has_the_published_maxima():
+    """Kennedy et al. 1993: 200.34, 159.18, 292.32 and 235.62 when all symptoms are severe."""
+    assert SSQ.score([3] * 16) == {
+        "ssq_total": pytest.approx(235.62),
+        "ssq_nausea": pytest.approx(200.34),
+        "ssq_oculomotor": pytest.approx(159.18),
+        "ssq_disorientation": pytest.approx(292.32),
+    }
+
+
+@pytest.mark.parametrize(
+    ("item", "expected"),
+    [
+        ("ssq_discomfort", (7.48, 9.54, 7.58, 0)),
+        ("ssq_fatigue", (3.74, 0, 7.58, 0)),
+        ("ssq_focusing", (7.48, 0, 7.58, 13.92)),
+        ("ssq_nausea", (7.48, 9.54, 0, 13.92)),
+        ("ssq_vertigo", (3.74, 0, 0, 13.92)),
+        ("ssq_burping", (3.74, 9.54, 0, 0)),
+    ],
+)
+def test_each_symptom_counts_on_its_own_scales(item, expected):
+    answers = {i.name: int(i.name == item) for i in SSQ.items}
+    assert tuple(SSQ.score(answers).values()) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("questionnaire", QUESTIONNAIRES.values(), ids=lambda q: q.name)
+def test_scores_stay_in_their_range_and_answers_may_come_by_name(questionnaire):
+    for answer in (questionnaire.lowest, questionnaire.highest):
+        answers = {item.name: answer for item in questionnaire.items}
+        scores = questionnaire.score(answers)
+        assert scores == questionnaire.score([answer] * len(questionnaire.items))
+        for scale in questionnaire.scales:
+            assert scale.lowest <= scores[scale.name] <= scale.highest
+
+
+@pytest.mark.parametrize(
+    ("answers", "words"),
+    [
+        ([3] * 9, "needs 10 answers"),
+        ("3333333333", "needs 10 answers"),
+        ([3] * 9 + [6], "sus_10 must be a whole number from 1 to 5"),
+        ([3] * 9 + [2.5], "whole number"),
+        ([3] * 9 + [True], "whole number"),
+        ([3] * 9 + [None], "leave none out"),
+        ({"sus_1": 3}, "needs the answers sus_1"),
+    ],
+)
+def test_missing_or_wrong_answers_are_refused_never_filled_in(answers, words):
+    with pytest.raises(InputError, match=words):
+        SUS.score(answers)
+
+
+def test_an_unknown_questionnaire_is_told_the_known_ones():
+    with pytest.raises(InputError, match="known are sus, nasa-tlx, ssq"):
+        find_questionnaire("mmpi")

@@ -1,0 +1,178 @@
+"""Who reads a study changes nothing of it: not its rows, not its bytes, not its time."""
+
+import argparse
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.study.database.reading import read_only_uri
+from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer_simulator.cli import export as export_command
+from rastrainer_simulator.cli import pass_mark as pass_mark_command
+from rastrainer_simulator.cli import report as report_command
+from Testing.domain.study.played_study import play, study_with_trials
+from Testing.domain.trial.made_up_scores import gentle_score
+from Testing.domain.trial.trial_records import make_record
+
+
+def run(*words):
+    parser = argparse.ArgumentParser()
+    subparsers = parser.add_subparsers(required=True)
+    for command in (export_command, pass_mark_command, report_command):
+        command.add_parser(subparsers)
+    arguments = parser.parse_args([str(word) for word in words])
+    return arguments.run(arguments)
+
+
+@pytest.fixture
+def path(tmp_path):
+    """A study in mid-protocol: B has played a trial that nobody has counted yet."""
+    path = tmp_path / "study" / "study.db"
+    path.parent.mkdir()
+    study_with_trials(path)
+    with Study.open(path) as study:
+        play(study, "B", "desktop")
+        for number in range(10):
+            name = f"{'NE'[number // 5]}{number % 5}"
+            for each in range(3):
+                record = make_record(
+                    trialId=f"00000000-0000-0000-0001-0000000000{number}{each}", trainee=name
+                )
+                error_mm = (0.9 if name[0] == "N" else 0.3) + 0.02 * number
+                score = gentle_score(110.0, error_mm)
+                study.add_trial(record, score=score)
+    os.utime(path, (1_000_000_000, 1_000_000_000))
+    return path
+
+
+def seen(path):
+    """Everything that could tell of a write: the files there, their bytes and times."""
+    return {
+        each.name: (each.read_bytes(), each.stat().st_mtime_ns) for each in path.parent.iterdir()
+    }
+
+
+GROUPS = ("--novices", *(f"N{i}" for i in range(5)), "--experts", *(f"E{i}" for i in range(5)))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        pytest.param(("report", "STUDY", "-o", "OUT"), id="report"),
+        pytest.param(("export", "STUDY", "-o", "OUT"), id="export"),
+        pytest.param(("pass-mark", "STUDY", *GROUPS), id="pass-mark"),
+    ],
+)
+def test_a_study_in_mid_protocol_keeps_every_byte_and_its_time(path, tmp_path, words, capsys):
+    before = seen(path)
+    known = {"STUDY": path, "OUT": tmp_path / "out"}
+    assert run(*(known.get(word, word) for word in words)) == 0
+    assert seen(path) == before
+    assert capsys.readouterr().out
+
+
+def test_a_reader_sees_what_counting_would_count_and_counts_nothing(path):
+    with Study.open_for_reading(path) as study:
+        progress = StudyProgress(study)
+        stored, played = progress.progress("B"), progress.played("B")
+        assert progress.progress("B") == stored
+    with Study.open(path) as study:
+        counted = StudyProgress(study).count_played("B")
+    assert [entry.details for entry in played.entries] == [e.details for e in counted.entries]
+    assert played.next_step == counted.next_step
+
+
+def test_who_opened_for_reading_can_write_nothing(path):
+    before = seen(path)
+    with Study.open_for_reading(path) as study:
+        with pytest.raises(InputError, match="read-only"):
+            study.create_trainee("C")
+        with pytest.raises(InputError, match="read-only"):
+            study.add_trial(make_record(trialId="00000000-0000-0000-0000-000000000999"))
+    assert seen(path) == before
+
+
+def test_a_study_of_an_earlier_format_is_read_and_not_brought_up_to_date(tmp_path):
+    path = tmp_path / "study.db"
+    connection = sqlite3.connect(path)
+    for statement in MIGRATIONS[0]:
+        connection.execute(statement)
+    connection.execute("INSERT INTO trainees VALUES (1, 'A', 1, 0, '2024-05-17T09:30:00Z')")
+    connection.execute("PRAGMA user_version = 1")
+    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+    connection.commit()
+    connection.close()
+    before = seen(path)
+    with Study.open_for_reading(path) as study:
+        assert [trainee.pseudonym for trainee in study.trainees()] == ["A"]
+        assert StudyProgress(study).protocol() is None
+        with pytest.raises(InputError, match="read-only"):
+            study.create_trainee("C")
+    assert seen(path) == before
+
+
+def test_a_file_without_write_permission_in_such_a_folder_can_be_read(path):
+    path.chmod(0o400)
+    path.parent.chmod(0o500)
+    try:
+        with Study.open_for_reading(path) as study:
+            assert study.trainees()
+    finally:
+        path.parent.chmod(0o700)
+
+
+def test_nothing_is_begun_where_there_is_no_study(tmp_path):
+    with pytest.raises(InputError, match="There is no file"):
+        Study.open_for_reading(tmp_path / "study.db")
+    assert not list(tmp_path.iterdir())
+
+
+KILLED = """
+import os, signal, sqlite3, sys
+connection = sqlite3.connect(sys.argv[1], isolation_level=None)
+connection.execute("PRAGMA cache_size = 1")
+connection.execute("BEGIN IMMEDIATE")
+connection.execute("UPDATE trainees SET pseudonym = pseudonym || 'x'")
+connection.execute("CREATE TABLE further AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL "
+                   "SELECT i + 1 FROM n WHERE i < 20000) SELECT i, hex(randomblob(64)) FROM n")
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kills by a signal")
+def test_what_a_killed_writer_left_half_written_is_read_as_it_was_before(path):
+    with Study.open(path) as study:
+        names = [trainee.pseudonym for trainee in study.trainees()]
+    killed = subprocess.run([sys.executable, "-c", KILLED, path], check=False)
+    assert killed.returncode == -signal.SIGKILL
+    assert path.with_name("study.db-journal").stat().st_size > 0
+    with Study.open_for_reading(path) as study:
+        assert [trainee.pseudonym for trainee in study.trainees()] == names
+
+
+@pytest.mark.parametrize(
+    ("name", "uri"),
+    [
+        pytest.param("/a b/s?#%.db", "file:///a%20b/s%3F%23%25.db?mode=ro", id="signs"),
+        pytest.param("//server/share/s.db", "file:////server/share/s.db?mode=ro", id="share"),
+    ],
+)
+@pytest.mark.skipif(sys.platform == "win32", reason="names as on Unix")
+def test_no_name_of_a_file_is_taken_for_more_than_a_name(name, uri):
+    assert read_only_uri(Path(name)) == uri
+
+
+def test_a_study_whose_name_holds_signs_of_a_uri_is_read(path):
+    odd = path.with_name("s?mode=rwc#%41.db")
+    shutil.copy(path, odd)
+    with Study.open_for_reading(odd) as study:
+        assert study.trainees()

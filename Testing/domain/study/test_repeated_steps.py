@@ -1,0 +1,140 @@
+"""A step of a study that was aborted is played again only with a reason, as none is skipped."""
+
+from dataclasses import replace
+from datetime import datetime, timezone
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import REPEAT
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.steps import StepKind
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_step import StudyStep
+from Testing.domain.study.played_study import STUDIES
+from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.trial_records import make_record
+
+SHIPPED = STUDIES / "published-protocol.json"
+REASON = "a phone rang in the middle of it"
+
+
+@pytest.fixture
+def study(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        study.create_trainee("A")
+        progress = StudyProgress(study)
+        progress.begin(
+            replace(
+                read_study_protocol(SHIPPED),
+                tasks=("task-1",),
+                modes=("desktop",),
+                repetitions=2,
+                trial_run_min=0.0,
+                asked=(),
+                break_between_tasks_min=0.0,
+            )
+        )
+        progress.enroll("A")
+        yield study
+
+
+def abort(study, number, minute, **changes):
+    started = f"2999-01-01T10:{minute:02d}:00Z"
+    record = make_aborted(number, trainee="A", startedUtc=started, **changes)
+    AbortedTrials(study).add(record)
+
+
+def play(study, number, minute):
+    started = f"2999-01-01T10:{minute:02d}:00Z"
+    trial_id = f"00000000-0000-0000-0000-{number:012d}"
+    study.add_trial(make_record(trialId=trial_id, trainee="A", startedUtc=started))
+
+
+def test_no_trial_is_begun_again_until_it_is_said_why(study):
+    progress = StudyProgress(study)
+    assert progress.progress("A").check_start("desktop", "task-1").kind is StepKind.TRIAL
+    abort(study, 900, 1, touches=15)
+    standing = progress.progress("A")
+    with pytest.raises(InputError, match="aborted with 15 of 15 points touched"):
+        standing.check_start("desktop", "task-1")
+    assert StudyStep.of("A", standing, datetime.now(timezone.utc)).kind == REPEAT
+    progress.explain_repeat("A", f"  {REASON} ")
+    standing = progress.progress("A")
+    assert standing.check_start("desktop", "task-1")
+    assert StudyStep.of("A", standing, datetime.now(timezone.utc)).kind == StepKind.TRIAL.value
+    (stored,) = AbortedTrials(study).of("A")
+    assert (stored.step, stored.repeat_reason) == ("desktop/1/task-1", REASON)
+
+
+def test_a_repeat_that_was_begun_all_the_same_counts_only_with_the_reason(study):
+    progress = StudyProgress(study)
+    abort(study, 900, 1)
+    play(study, 1, 2)
+    assert progress.count_played("A").entries == ()
+    assert progress.played("A").entries == ()
+    progress.explain_repeat("A", REASON)
+    assert progress.played("A").next_step.name == "desktop/2/task-1"
+    assert progress.count_played("A").next_step.name == "desktop/2/task-1"
+
+
+def test_each_further_abort_needs_its_own_reason(study):
+    progress = StudyProgress(study)
+    abort(study, 900, 1)
+    progress.explain_repeat("A", REASON)
+    abort(study, 901, 2)
+    with pytest.raises(InputError, match="only with a reason"):
+        progress.progress("A").check_start("desktop", "task-1")
+    progress.explain_repeat("A", "the headset had lost its tracking")
+    assert [stored.repeat_reason[:9] for stored in AbortedTrials(study).of("A")] == [
+        "a phone r",
+        "the heads",
+    ]
+
+
+@pytest.mark.parametrize(
+    "reason",
+    [
+        pytest.param("", id="none"),
+        pytest.param("   short   ", id="short"),
+        pytest.param("two\nlines of it", id="lines"),
+        pytest.param("x" * 501, id="long"),
+        pytest.param(None, id="nothing"),
+    ],
+)
+def test_a_repeat_without_a_real_reason_is_refused(study, reason):
+    abort(study, 900, 1)
+    with pytest.raises(InputError, match="played again only with a reason of 10 to 500"):
+        StudyProgress(study).explain_repeat("A", reason)
+    assert StudyProgress(study).progress("A").unexplained
+
+
+def test_nothing_is_asked_where_nothing_of_this_step_was_aborted(study):
+    progress = StudyProgress(study)
+    abort(study, 900, 1, mode="hmd")
+    abort(study, 901, 1, task="trial-run")
+    assert not progress.progress("A").unexplained
+    with pytest.raises(InputError, match="was not aborted"):
+        progress.explain_repeat("A", REASON)
+
+
+def test_an_aborted_trial_belongs_to_one_step_only(study):
+    progress = StudyProgress(study)
+    play(study, 1, 1)
+    assert progress.count_played("A").next_step.name == "desktop/2/task-1"
+    abort(study, 900, 0)
+    assert not progress.progress("A").unexplained
+    abort(study, 901, 2)
+    assert [record.elapsed_s for record in progress.progress("A").unexplained] == [60.0]
+
+
+def test_a_step_that_is_skipped_takes_its_aborted_trials_along(study):
+    started = datetime.now(timezone.utc).isoformat()
+    AbortedTrials(study).add(make_aborted(trainee="A", startedUtc=started))
+    progress = StudyProgress(study)
+    assert progress.progress("A").unexplained
+    skipped = progress.skip("A", "desktop/1/task-1", "felt sick and went home")
+    assert skipped.next_step.name == "desktop/2/task-1"
+    assert not skipped.unexplained

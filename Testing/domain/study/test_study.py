@@ -1,0 +1,352 @@
+"""The study keeps what it is given: once, whole, and only as long as the trainee wants."""
+
+import csv
+import json
+import sqlite3
+import uuid
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.export.tidy_csv import write_history
+from rastrainer.export.trainee_data import export_trainee
+from rastrainer.registration.registration import KINDS, register
+from rastrainer.registration.target_error import target_error
+from rastrainer.study.database.study import DeletedTrialError, StoredRegistration, Study
+from rastrainer.study.database.study_trials import find
+from rastrainer.trial.record import TrialRecord
+from Testing.domain.trial.made_up_scores import gentle_score
+from Testing.domain.trial.trial_records import make_record
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "study.db"
+
+
+@pytest.fixture
+def study(path):
+    with Study.open(path) as study:
+        yield study
+
+
+@pytest.fixture
+def results(touched_head):
+    moving, fixed, _ = touched_head(0)
+    registrations = [register(moving, fixed, kind) for kind in KINDS]
+    errors = {r.kind: target_error(r, [0.0, 10.0, 20.0]) for r in registrations}
+    score = gentle_score(110.0, errors["rigid"].expected_mm)
+    return registrations, errors, score
+
+
+def record(number=7, **changes):
+    return make_record(trialId=str(uuid.UUID(int=number)), **changes)
+
+
+def test_a_trainee_is_a_pseudonym_with_a_consent(study):
+    created = study.create_trainee("Blue Heron")
+    assert (created.pseudonym, created.consent, created.archived) == ("Blue Heron", False, False)
+    assert study.set_consent("Blue Heron", True).consent
+    assert study.trainee("Blue Heron").consent
+
+
+def test_pseudonyms_are_proposed_and_never_given_twice(study):
+    assert [study.create_trainee().pseudonym for _ in range(3)] == ["T001", "T002", "T003"]
+    study.delete_trainee("T003")
+    study.create_trainee("T005")
+    assert study.create_trainee().pseudonym == "T006"
+
+
+def test_a_pseudonym_is_unique_and_printable(study):
+    study.create_trainee("a")
+    with pytest.raises(InputError, match='"a" is taken'):
+        study.create_trainee("a")
+    with pytest.raises(InputError, match="pseudonym must be printable text"):
+        study.create_trainee("a\n")
+
+
+@pytest.mark.parametrize("name", ["", " ", " T-001", "T-001 ", "T\n1", "T\u202e1", "x" * 65])
+def test_a_trial_brings_no_pseudonym_that_could_not_be_typed_in(study, name):
+    with pytest.raises(InputError):
+        study.create_trainee(name)
+    with pytest.raises(InputError):
+        study.add_trial(record(trainee=name))
+    assert study.trainees() == ()
+
+
+def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
+    trial = TrialRecord.from_json(record())
+    assert study.check_trial(trial)
+    assert study.trainees() == ()
+    study.add_trial(trial)
+    assert not study.check_trial(trial)
+    with pytest.raises(InputError, match="Another trial is stored under the UUID"):
+        study.check_trial(replace(trial, task="task-2"))
+    with pytest.raises(InputError, match="A pseudonym must be"):
+        study.check_trial(TrialRecord.from_json(record(8, trainee="T-001 ")))
+    study.delete_trainee("T-001")
+    with pytest.raises(DeletedTrialError):
+        study.check_trial(trial)
+
+
+def test_the_history_reads_again_only_what_has_changed_whoever_changed_it(study, path, monkeypatch):
+    read = []
+
+    def watched(connection, trial_id):
+        read.append(trial_id)
+        return find(connection, trial_id)
+
+    monkeypatch.setattr("rastrainer.study.database.study_trials.find", watched)
+    trials = [str(uuid.UUID(int=number)) for number in (1, 2)]
+    for number in (1, 2):
+        study.add_trial(record(number))
+    study.history("T-001")
+    assert sorted(read) == trials
+    read.clear()
+    study.history("T-001")
+    assert read == []
+    with Study.open(path) as other:
+        other.set_truth(trials[1], 1.5, [float(n) for n in range(16)])
+        other.set_motion(trials[0], {"sparc": -1.9})
+    stored = {trial.record.trial_id: trial for trial in study.history("T-001")}
+    assert sorted(read) == trials
+    assert stored[trials[1]].true_tre_mm == 1.5
+    assert stored[trials[0]].motion == {"sparc": -1.9}
+    study.delete_trainee("T-001")
+    study.create_trainee("T-001")
+    assert study.history("T-001") == ()
+
+
+def test_an_archived_trainee_leaves_the_list_and_comes_back(study):
+    study.create_trainee("a")
+    study.create_trainee("b")
+    study.set_archived("a", True)
+    assert [t.pseudonym for t in study.trainees()] == ["b"]
+    assert [t.pseudonym for t in study.trainees(archived=True)] == ["a"]
+    study.set_archived("a", False)
+    assert [t.pseudonym for t in study.trainees()] == ["a", "b"]
+
+
+def test_an_unknown_trainee_or_trial_is_told(study):
+    for ask in (study.trainee, study.history, study.delete_trainee):
+        with pytest.raises(InputError, match='no trainee "x"'):
+            ask("x")
+    with pytest.raises(InputError, match='no trainee "x"'):
+        study.set_consent("x", True)
+    with pytest.raises(InputError, match='no trial "y"'):
+        study.trial("y")
+    with pytest.raises(InputError, match='no trial "y"'):
+        study.add_results("y")
+
+
+def test_a_trial_is_stored_with_all_its_results(study, results):
+    registrations, errors, score = results
+    delivered = record(weather="fine")
+    assert study.add_trial(delivered, registrations, errors, score)
+    stored = study.trial(delivered["trialId"])
+    assert stored.record == TrialRecord.from_json(delivered)
+    assert stored.registrations == {
+        r.kind: StoredRegistration.of(r, errors[r.kind]) for r in registrations
+    }
+    assert stored.registrations["rigid"].fre_mm == registrations[0].fre_mm
+    assert stored.score == score
+    assert stored.true_tre_mm is None
+
+
+def test_twice_is_once(study, results):
+    assert study.add_trial(record(), *results)
+    assert not study.add_trial(record(seed=None))
+    assert not study.add_trial(TrialRecord.from_json(record()))
+    assert len(study.history("T-001")) == 1
+    assert study.trial(record()["trialId"]).score == results[2]
+
+
+def test_another_trial_under_the_same_uuid_is_refused_and_the_first_kept(study):
+    study.add_trial(record())
+    with pytest.raises(InputError, match="Another trial is stored"):
+        study.add_trial(record(completionTimeS=1.0))
+    assert study.trial(record()["trialId"]).record.completion_time_s == 110.0
+
+
+def test_an_unknown_trainee_is_added_without_consent_so_that_no_trial_is_lost(study):
+    study.add_trial(record(trainee="new"))
+    assert not study.trainee("new").consent
+    assert len(study.history("new")) == 1
+
+
+@pytest.mark.parametrize(
+    ("bad", "words"),
+    [
+        ({}, "needs the key"),
+        (record(extra=float("nan")), "must be JSON with finite numbers"),
+        (record(extra={1, 2}), "must be JSON with finite numbers"),
+        (record(extra="x" * 2**20), "larger than 1 MiB"),
+    ],
+)
+def test_a_bad_record_is_refused_and_nothing_is_stored(bad, words, study):
+    with pytest.raises(InputError, match=words):
+        study.add_trial(bad)
+    assert study.trainees() == ()
+
+
+def test_later_results_count_and_earlier_ones_stay(study, results, path):
+    registrations, errors, score = results
+    study.add_trial(record(), registrations, errors, score)
+    fewer = registrations[0].without("3")
+    better = gentle_score(50.0, 0.2)
+    study.add_results(record()["trialId"], [fewer], score=better)
+    stored = study.trial(record()["trialId"])
+    assert "3" not in stored.registrations["rigid"].labels
+    assert stored.registrations["rigid"].expected_tre_mm is None
+    assert stored.registrations["affine"].fre_mm == registrations[2].fre_mm
+    assert stored.score == better
+    connection = sqlite3.connect(path)
+    assert connection.execute("SELECT count(*) FROM registrations").fetchone() == (4,)
+    assert connection.execute("SELECT count(*) FROM scores").fetchone() == (2,)
+    connection.close()
+
+
+def test_the_truth_is_stored_once(study):
+    first, second = record(1), record(2)
+    study.add_trial(first)
+    study.add_trial(second)
+    matrix = tuple(map(float, np.eye(4).ravel()))
+    study.set_truth(first["trialId"], 0.75, matrix)
+    study.set_truth(first["trialId"], 9.0, matrix)
+    stored = study.trial(first["trialId"])
+    assert (stored.true_tre_mm, stored.head_to_world) == (0.75, matrix)
+    assert [r.trial_id for r in study.unrevealed()] == [second["trialId"]]
+    with pytest.raises(InputError, match="reveals must be a number"):
+        study.set_truth(second["trialId"], float("nan"), matrix)
+    with pytest.raises(InputError, match="reveals must be a list of 16"):
+        study.set_truth(second["trialId"], 1.0, matrix[:3])
+
+
+def test_the_history_is_in_the_order_of_starting(study):
+    for number, day in ((1, 19), (2, 17), (3, 18)):
+        study.add_trial(record(number, startedUtc=f"2024-05-{day}T09:30:00Z"))
+    study.add_trial(record(4, trainee="other"))
+    assert [t.record.started_utc[8:10] for t in study.history("T-001")] == ["17", "18", "19"]
+
+
+def test_the_cohort_is_every_registered_trial_but_the_trial_runs(study, results):
+    registrations, errors, score = results
+    study.add_trial(record(1), registrations, errors, score)
+    study.add_trial(record(2, task="trial-run"), registrations)
+    study.add_trial(record(3))
+    study.add_trial(record(4, mode="hmd", trainee="b"), registrations)
+    study.add_results(record(1)["trialId"], [registrations[0].without("1")])
+    (desktop,) = study.cohort("desktop")
+    assert (desktop.subject, desktop.task, desktop.completion_time_s) == ("T-001", "task-1", 110.0)
+    assert desktop.rmse_mm == registrations[0].without("1").fre_mm
+    assert {trial.mode for trial in study.cohort()} == {"desktop", "hmd"}
+
+
+def test_deleting_a_trainee_leaves_no_trace_in_the_file(study, path, results):
+    study.add_trial(record(1, trainee="Vanishing Heron"), *results)
+    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    study.add_trial(record(2, trainee="staying"), *results)
+    assert b"Vanishing Heron" in path.read_bytes()
+    assert study.delete_trainee("Vanishing Heron") == 1
+    content = path.read_bytes()
+    assert b"Vanishing Heron" not in content
+    assert record(1)["trialId"].encode() not in content
+    assert [trial.subject for trial in study.cohort()] == ["staying"]
+    assert study.trial(record(2)["trialId"]).score == results[2]
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_everything_is_there_after_opening_again(path, results):
+    with Study.open(path) as study:
+        study.create_trainee("a", consent=True)
+        study.add_trial(record(trainee="a"), *results)
+    with Study.open(path) as study:
+        assert study.trainee("a").consent
+        assert study.history("a")[0].score == results[2]
+        assert study.has_trial(record()["trialId"])
+
+
+def test_a_deleted_trainee_does_not_come_back_with_a_trial_that_is_offered_again(study, path):
+    study.add_trial(record(1, trainee="gone"))
+    study.delete_trainee("gone")
+    with pytest.raises(DeletedTrialError, match="deleted from the study"):
+        study.add_trial(record(1, trainee="gone"))
+    assert study.trainees() == ()
+    with Study.open(path) as again, pytest.raises(DeletedTrialError):
+        again.add_trial(record(1, trainee="gone"))
+    assert study.add_trial(record(2, trainee="gone"))
+
+
+def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, results):
+    study.add_trial(record(1), *results)
+    study.add_trial(record(2, trainee="b", completionTimeS=90.0))
+    study.add_trial(record(3, mode="hmd"))
+    study.add_trial(record(4, task="task-2"))
+    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    better = gentle_score(50.0, 0.2)
+    study.add_results(record(1)["trialId"], score=better)
+    first, second = study.outcomes("task-1", "desktop")
+    assert (first.trainee, first.score, first.true_tre_mm) == ("T-001", better.score, 0.5)
+    assert (second.trainee, second.completion_time_s) == ("b", 90.0)
+    assert (second.score, second.true_tre_mm) == (None, None)
+    assert (first.score_version, second.score_version) == (better.version, None)
+
+
+def test_past_trials_are_the_scored_ones_of_a_trainee_as_they_were_started(study, results):
+    score = results[2]
+    for number, day in ((1, 19), (2, 17), (3, 18)):
+        record = make_record(
+            trialId=f"00000000-0000-0000-0000-{number:012d}",
+            trainee="T-001",
+            startedUtc=f"2026-05-{day}T09:30:00Z",
+        )
+        study.add_trial(record, *(results if number != 3 else ()))
+    first, second = study.past_trials("T-001")
+    assert (first.trial_id[-1], second.trial_id[-1]) == ("2", "1")
+    assert (first.score, first.acceptable) == (score.score, score.acceptable)
+    assert first.score_version == score.version
+    stored = study.trial(first.trial_id).record
+    assert (first.task, first.mode) == (stored.task, stored.mode)
+    assert first.completion_time_s == stored.completion_time_s
+    with pytest.raises(InputError):
+        study.past_trials("nobody")
+
+
+def test_motion_metrics_are_stored_once_and_finite(study):
+    study.add_trial(record())
+    study.set_motion(record()["trialId"], {"path_mm": 2500.5, "sparc": -1.9})
+    study.set_motion(record()["trialId"], {"path_mm": 1.0})
+    assert study.trial(record()["trialId"]).motion == {"path_mm": 2500.5, "sparc": -1.9}
+    study.add_trial(record(1))
+    assert study.trial(record(1)["trialId"]).motion == {}
+    with pytest.raises(InputError, match="motion metric must be a number"):
+        study.set_motion(record(1)["trialId"], {"path_mm": float("inf")})
+
+
+def test_everything_about_one_trainee_is_exported_and_nothing_about_others(
+    study, results, tmp_path
+):
+    study.add_trial(record(1, trainee="a"), *results)
+    study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
+    study.set_motion(record(1)["trialId"], {"path_mm": 2500.5})
+    study.add_trial(record(2, trainee="b"))
+    assert export_trainee(study, "a", tmp_path / "a.json") == 1
+    text = (tmp_path / "a.json").read_text()
+    (trial,) = json.loads(text)["trials"]
+    assert TrialRecord.from_json(trial["record"]) == TrialRecord.from_json(record(1, trainee="a"))
+    assert (trial["true_tre_mm"], trial["motion"]) == (0.5, {"path_mm": 2500.5})
+    assert record(2)["trialId"] not in text
+
+
+def test_the_history_is_a_table_with_empty_cells_for_what_is_unknown(study, results, tmp_path):
+    study.add_trial(record(1, trainee="=SUM(A1)"), *results)
+    study.set_motion(record(1)["trialId"], {"path_mm": 2500.5})
+    study.add_trial(record(2, trainee="b"))
+    assert write_history(study, ["=SUM(A1)", "b"], tmp_path / "history.csv") == 2
+    with (tmp_path / "history.csv").open(newline="") as file:
+        first, second = csv.DictReader(file)
+    assert first["trainee"] == "'=SUM(A1)"
+    assert float(first["rmse_mm"]) == results[0][0].fre_mm
+    assert (first["path_mm"], second["path_mm"], second["score"]) == ("2500.5", "", "")

@@ -1,0 +1,332 @@
+"""The study's file under several processes, kills, damage and other programs."""
+
+import json
+import multiprocessing
+import os
+import random
+import resource
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.study.database.database import Patience
+from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
+from rastrainer.study.database.study import Study, StudyBusyError
+from Testing.domain.trial.trial_records import make_record
+from Testing.forked_child import in_child
+
+WRITER = """
+import json, sys
+from rastrainer.study.database.study import Study
+path, record, first, last = sys.argv[1], json.loads(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4])
+with Study.open(path) as study:
+    for number in range(first, last):
+        record["trialId"] = f"00000000-0000-0000-0000-{number:012d}"
+        study.add_trial(record)
+        print(number, flush=True)
+"""
+
+
+def writer(path, first, last):
+    words = [sys.executable, "-c", WRITER, str(path), json.dumps(make_record()), str(first)]
+    return subprocess.Popen([*words, str(last)], stdout=subprocess.PIPE, text=True)
+
+
+def stored_numbers(path):
+    with Study.open(path) as study:
+        return sorted(int(t.record.trial_id[-12:]) for t in study.history("T-001"))
+
+
+def check(path):
+    connection = sqlite3.connect(path)
+    try:
+        return connection.execute("PRAGMA integrity_check").fetchone()[0]
+    finally:
+        connection.close()
+
+
+def test_two_processes_that_write_at_once_lose_and_double_nothing(tmp_path):
+    path = tmp_path / "study.db"
+    writers = [writer(path, 0, 60), writer(path, 30, 90)]
+    for process in writers:
+        process.communicate(timeout=60)
+        assert process.returncode == 0
+    assert stored_numbers(path) == list(range(90))
+    assert check(path) == "ok"
+
+
+def write_until_killed(path, first, acknowledged):
+    """Store trials of rising number and tell each once it is stored."""
+    record = make_record()
+    with Study.open(path) as study:
+        for number in range(first, 100_000):
+            record["trialId"] = f"00000000-0000-0000-0000-{number:012d}"
+            study.add_trial(record)
+            os.write(acknowledged, b"%d\n" % number)
+
+
+class KilledWriter:
+    """A process that stores trials as fast as it can, until it is killed in the middle."""
+
+    def __init__(self, path, first):
+        context = multiprocessing.get_context("fork")
+        self._told, telling = os.pipe()
+        self._process = context.Process(target=write_until_killed, args=(path, first, telling))
+        self._process.start()
+        os.close(telling)
+
+    def kill(self):
+        """Kill it and return the numbers of the trials that it was told are stored."""
+        self._process.kill()
+        self._process.join()
+        with os.fdopen(self._told) as lines:
+            return {int(line) for line in lines}
+
+
+@pytest.mark.parametrize("wanted", [40, pytest.param(400, marks=pytest.mark.soak)])
+def test_kills_of_two_writers_lose_and_double_nothing(tmp_path, wanted):
+    path = tmp_path / "study.db"
+    rng = random.Random(5)
+    acknowledged, kills = set(), 0
+    writers = [KilledWriter(path, 0), KilledWriter(path, 0)]
+    while kills < wanted:
+        time.sleep(rng.uniform(0.0, 0.08))
+        victim = rng.randrange(2)
+        acknowledged |= writers[victim].kill()
+        kills += 1
+        # Both start near the same number, so that they race for the same trials.
+        first = max(0, max(acknowledged, default=0) - rng.randrange(4))
+        writers[victim] = KilledWriter(path, first)
+    for process in writers:
+        acknowledged |= process.kill()
+    stored = stored_numbers(path)
+    assert len(acknowledged) > wanted
+    assert acknowledged <= set(stored)
+    assert len(stored) == len(set(stored))
+    assert check(path) == "ok"
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"This is a letter to a friend, not a database at all." * 40, "is not a study database"),
+        (b"SQLite format 3\0" + b"\xff" * 4096, "is not a study database|is damaged"),
+        (b"\0" * 5000, "is not a study database"),
+    ],
+)
+def test_a_file_that_is_no_database_is_told_and_left_alone(content, words, tmp_path):
+    path = tmp_path / "file"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=words):
+        Study.open(path)
+    assert path.read_bytes() == content
+
+
+def test_an_empty_file_becomes_a_study(tmp_path):
+    path = tmp_path / "study.db"
+    path.touch()
+    with Study.open(path) as study:
+        assert study.trainees() == ()
+
+
+def test_another_programs_database_is_told_and_left_alone(tmp_path):
+    path = tmp_path / "other.db"
+    connection = sqlite3.connect(path)
+    connection.execute("CREATE TABLE recipes (name TEXT)")
+    connection.commit()
+    connection.close()
+    content = path.read_bytes()
+    with pytest.raises(InputError, match="the database of another program"):
+        Study.open(path)
+    assert path.read_bytes() == content
+
+
+def test_a_newer_study_is_told_and_left_alone(tmp_path):
+    path = tmp_path / "study.db"
+    Study.open(path).close()
+    connection = sqlite3.connect(path)
+    connection.execute("PRAGMA user_version = 99")
+    connection.close()
+    with pytest.raises(
+        InputError, match=f"newer RASTrainer .* 99, this one knows {len(MIGRATIONS)}"
+    ):
+        Study.open(path)
+
+
+def test_a_damaged_study_is_told(tmp_path):
+    path = tmp_path / "study.db"
+    with Study.open(path) as study:
+        for number in range(40):
+            study.add_trial(make_record(trialId=str(uuid.UUID(int=number))))
+    content = bytearray(path.read_bytes())
+    for start in range(4096, len(content), 4096):
+        content[start : start + 300] = b"\xaa" * 300
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="is damaged; restore it from a backup"):
+        Study.open(path)
+
+
+@pytest.mark.parametrize(
+    "change",
+    ["'[1]'", """replace(record_json, '{', '{"a": NaN, ')""", "replace(record_json, '{', '[')"],
+)
+def test_a_value_that_we_did_not_write_is_told(tmp_path, change):
+    path = tmp_path / "study.db"
+    with Study.open(path) as study:
+        study.add_trial(make_record())
+    connection = sqlite3.connect(path)
+    connection.execute(f"UPDATE trials SET record_json = {change}")
+    connection.commit()
+    connection.close()
+    with Study.open(path) as study, pytest.raises(InputError, match="did not write"):
+        study.trial(make_record()["trialId"])
+
+
+@pytest.mark.parametrize("version", range(len(MIGRATIONS) + 1))
+def test_every_schema_so_far_migrates_to_the_present_one(version, tmp_path):
+    path, fresh = tmp_path / "old.db", tmp_path / "fresh.db"
+    connection = sqlite3.connect(path)
+    for step in MIGRATIONS[:version]:
+        for statement in step:
+            connection.execute(statement)
+    connection.execute(f"PRAGMA user_version = {version}")
+    connection.execute(f"PRAGMA application_id = {APPLICATION_ID if version else 0}")
+    connection.commit()
+    connection.close()
+    for file in (path, fresh):
+        Study.open(file).close()
+    schemas = []
+    for file in (path, fresh):
+        connection = sqlite3.connect(file)
+        schemas.append(connection.execute("SELECT sql FROM sqlite_master ORDER BY name").fetchall())
+        connection.close()
+    assert schemas[0] == schemas[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("", "is a folder"), ("missing/study.db", "no folder"), ("a\0b", "null character")],
+)
+def test_a_place_that_cannot_hold_a_study_is_told(name, words, tmp_path):
+    with pytest.raises(InputError, match=words):
+        Study.open(f"{tmp_path}/{name}")
+
+
+def use_without_rights(path):
+    if os.getuid() == 0:
+        os.setuid(65534)
+    try:
+        with Study.open(path) as study:
+            trials = len(study.history("T-001"))
+            study.create_trainee("b")
+    except InputError as error:
+        return trials, str(error)
+    return trials, "written"
+
+
+def test_a_read_only_study_can_be_read_and_says_why_it_cannot_be_written():
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "study.db")
+        with Study.open(path) as study:
+            study.add_trial(make_record())
+        path.chmod(0o444)
+        Path(folder).chmod(0o555)
+        trials, sentence = in_child(use_without_rights, path)
+        Path(folder).chmod(0o755)
+    assert trials == 1
+    assert sentence == f"The study {path} is read-only; allow writing to it and its folder."
+
+
+def fill_disk(path):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size + 4096,) * 2)
+    stored = 0
+    try:
+        with Study.open(path) as study:
+            for number in range(100):
+                study.add_trial(make_record(trialId=str(uuid.UUID(int=number))))
+                stored += 1
+    except InputError as error:
+        return stored, str(error)
+    return stored, "written"
+
+
+def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path):
+    path = tmp_path / "study.db"
+    Study.open(path).close()
+    stored, sentence = in_child(fill_disk, path)
+    assert "cannot be written: the disk is full" in sentence or "the disk fails" in sentence
+    with Study.open(path) as study:
+        trainees = study.trainees()
+        assert sum(len(study.history(t.pseudonym)) for t in trainees) == stored
+
+
+@pytest.fixture
+def locked(tmp_path):
+    """The path of a study that another program has locked."""
+    path = tmp_path / "study.db"
+    Study.open(path).close()
+    other = sqlite3.connect(path, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    yield path
+    other.close()
+
+
+def test_a_study_locked_by_another_program_is_told(locked):
+    with pytest.raises(StudyBusyError, match=r"Another program has the study .* locked; try again"):
+        Study.open(locked, Patience(0.01))
+
+
+class CountedPatience(Patience):
+    """Notes how long SQLite is allowed to wait each time."""
+
+    def __init__(self):
+        super().__init__(0.05, rest_s=1.0, clock=lambda: self.now)
+        self.now = 0.0
+        self.allowed = []
+
+    @property
+    def timeout_s(self):
+        self.allowed.append(super().timeout_s)
+        return self.allowed[-1]
+
+
+def test_a_window_waits_once_for_a_lock_and_not_for_every_question_again(locked):
+    patience = CountedPatience()
+    for _ in range(5):
+        with pytest.raises(StudyBusyError):
+            Study.open(locked, patience)
+    assert sum(patience.allowed) == 0.05
+    patience.now = 1.5
+    with pytest.raises(StudyBusyError):
+        Study.open(locked, patience)
+    assert sum(patience.allowed) == 0.1
+
+
+def test_a_study_that_was_open_when_it_was_locked_is_told_and_usable_afterwards(tmp_path):
+    path, patience = tmp_path / "study.db", CountedPatience()
+    with Study.open(path, patience) as study:
+        other = sqlite3.connect(path, isolation_level=None)
+        other.execute("BEGIN EXCLUSIVE")
+        patience.allowed.clear()
+        for _ in range(5):
+            with pytest.raises(StudyBusyError):
+                study.trainees()
+        assert sum(patience.allowed) == 0.05
+        other.execute("ROLLBACK")
+        other.close()
+        assert study.create_trainee("a").pseudonym == "a"
+
+
+def test_an_exception_in_the_middle_stores_nothing(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        with pytest.raises(AttributeError):
+            study.add_trial(make_record(), registrations=[None])
+        assert study.trainees() == ()
+        assert study.add_trial(make_record())

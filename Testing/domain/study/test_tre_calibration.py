@@ -1,0 +1,79 @@
+"""True against expected target error: what counts, what is said, and the report's section."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.report.sections.calibration import calibration
+from rastrainer.statistics.intervals import proportion
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.tre_calibration import CalibrationPoint, TreCalibration
+
+KNOWN = {"expected_tre_mm": 0.5, "tre_low_mm": 0.1, "tre_high_mm": 1.0}
+
+
+def point(true_mm, mode="desktop", expected_mm=0.5, **more):
+    return CalibrationPoint("T-001", mode, "task-1", expected_mm, (0.1, 1.0), true_mm, **more)
+
+
+def row(number, mode="desktop", **values):
+    return TrialRow("T-001", mode, "task-1", number, {"completion_time_s": 90.0, **values})
+
+
+def report(*rows):
+    return calibration(StudyData("Study", rows))
+
+
+def test_trials_stand_in_the_order_of_their_expected_errors_and_are_judged_by_their_intervals():
+    found = TreCalibration.of([point(2.0, expected_mm=0.9), point(0.3), point(0.05)])
+    assert [one.expected_mm for one in found.points] == [0.5, 0.5, 0.9]
+    assert [one.is_inside for one in found.points] == [False, True, False]
+    assert found.above == 1
+    assert found.true_rms_mm == pytest.approx(np.sqrt((4 + 0.09 + 0.0025) / 3))
+
+
+@pytest.mark.parametrize(("count", "total"), [(0, 3), (3, 3), (57, 60), (1, 1)], ids=str)
+def test_the_interval_of_a_share_is_wilsons(count, total):
+    z, share = stats.norm.ppf(0.975), count / total
+    middle = (share + z**2 / (2 * total)) / (1 + z**2 / total)
+    half = z / (1 + z**2 / total) * np.sqrt(share * (1 - share) / total + z**2 / (4 * total**2))
+    assert proportion(count, total).interval == pytest.approx((middle - half, middle + half))
+
+
+def test_few_trials_are_drawn_and_said_to_be_few():
+    told = TreCalibration.of([point(0.3), point(0.4)], without_truth=3).sentences()
+    assert "2 of 2 true errors" in told[0]
+    assert told[1:] == [
+        "2 trials can say nothing about a share.",
+        "3 trials have no true target error and cannot be shown.",
+    ]
+    page = report(row(1, **KNOWN, true_tre_mm=0.4))
+    assert page.count("<circle") >= 2
+    assert "1 trial can say nothing" in page
+
+
+def test_intervals_from_before_there_was_an_allowance_for_a_common_offset_are_counted():
+    told = TreCalibration.of([point(0.3), point(0.4, allows_for_offset=False)]).sentences()
+    assert any("1 of the intervals" in sentence for sentence in told)
+
+
+def test_the_report_counts_what_is_missing_and_tells_modes_apart():
+    page = report(
+        *(row(n, **KNOWN, true_tre_mm=0.4, tre_common_bias_sd_mm=0.25) for n in range(1, 8)),
+        row(1, "hmd", **KNOWN, true_tre_mm=3.0, tre_common_bias_sd_mm=0.25),
+        row(2, "hmd", **KNOWN),
+        row(3, "hmd"),
+    )
+    assert "7 of 8 true errors (88 % [53, 98])" in page
+    assert "larger: 1, smaller: 0" in page
+    assert page.count("cannot be shown") == 2
+    assert "of the intervals were computed before" not in page
+    assert ">all</th><td>8</td>" in page
+    assert "T-001, task-1: true 3.00 mm, expected 0.50 mm" in page
+    assert INTERVAL_NOTE in page
+
+
+def test_a_study_that_knows_no_target_errors_has_no_such_section():
+    assert report(row(1), row(2)) == ""
+    assert "No trial has both" in report(row(1, **KNOWN))

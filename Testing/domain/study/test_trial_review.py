@@ -1,0 +1,94 @@
+"""A trial is reviewed as its study's protocol says, with its place among the trainee's own."""
+
+import json
+import uuid
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer.protocol import TRIAL_RUN
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.trial_review import review, store_delivered, with_progress
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SAFETY_METRICS
+from Testing.domain.study.played_study import STUDIES
+from Testing.domain.trial.trial_records import make_record
+
+SCENARIO = load_scenario(Path(__file__).parents[3] / "assets" / "scenarios" / "colin27")
+
+
+@pytest.fixture
+def study(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        study.create_trainee("T-001")
+        yield study
+
+
+TRUTH = RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.0)
+
+
+def exact_touches(number, task="task-1"):
+    """The record of a trial in which every fiducial was touched exactly, as JSON."""
+    record = make_record(
+        trialId=str(uuid.UUID(int=number)),
+        task=task,
+        startedUtc=f"2024-05-17T09:{number:02d}:00Z",
+        completedUtc=f"2024-05-17T09:{number + 2:02d}:00Z",
+    )
+    points = zip(record["points"], SCENARIO.task(task).fiducials.tolist(), strict=True)
+    record["points"] = [{**point, "positionMm": place} for point, place in points]
+    record["motion"] = dict.fromkeys(SAFETY_METRICS, 0.0)
+    return record
+
+
+def reviewed(study, number, task="task-1"):
+    """Such a trial, stored with its results."""
+    record = exact_touches(number, task)
+    registered = analyze_trial(TrialRecord.from_json(record), SCENARIO)
+    analysis = review(registered, TRUTH, SCENARIO, study)
+    study.add_trial(record, [analysis.rigid], score=analysis.score)
+    return with_progress(analysis, study)
+
+
+def test_a_trial_is_told_how_it_stands_and_a_trial_run_is_not(study):
+    assert reviewed(study, 1, TRIAL_RUN).feedback.progress is None
+    assert len(reviewed(study, 2).feedback.progress.scores) == 1
+    assert reviewed(study, 3, TRIAL_RUN).feedback.progress is None
+    assert len(reviewed(study, 4).feedback.progress.scores) == 2
+
+
+def test_the_pass_mark_is_that_of_the_studys_protocol(study):
+    assert reviewed(study, 1).feedback.progress.passes
+    published = read_study_protocol(STUDIES / "published-protocol.json")
+    StudyProgress(study).begin(replace(published, pass_mark=100.0))
+    assert reviewed(study, 2).feedback.progress.pass_mark == 100.0
+    assert not reviewed(study, 3).feedback.progress.passes
+
+
+def test_a_delivered_trial_is_checked_once_and_kept_with_what_is_unknown(study, monkeypatch):
+    checks = []
+    read = TrialRecord.from_json
+    monkeypatch.setattr(TrialRecord, "from_json", lambda value: checks.append(value) or read(value))
+    delivered = exact_touches(1) | {"ofALaterVersion": 1}
+    taken = store_delivered(delivered, study, lambda record: analyze_trial(record, SCENARIO))
+    assert checks == [delivered]
+    with study.database.reading() as connection:
+        ((text,),) = connection.execute("SELECT record_json FROM trials").fetchall()
+    assert json.loads(text) == delivered
+    assert study.trial(taken.record.trial_id).record == taken.record
+
+
+def test_scoring_a_registered_trial_neither_registers_nor_estimates_again(study, monkeypatch):
+    registered = analyze_trial(TrialRecord.from_json(exact_touches(1)), SCENARIO)
+    monkeypatch.setattr("rastrainer.trial.analysis.register_all_kinds", None)
+    monkeypatch.setattr("rastrainer.trial.analysis.target_error", None)
+    scored = review(registered, TRUTH, SCENARIO, study)
+    assert scored.fits is registered.fits
+    assert scored.target_errors is registered.target_errors
+    assert (scored.truth, scored.feedback.score) == (TRUTH, scored.score)

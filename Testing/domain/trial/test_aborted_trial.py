@@ -1,0 +1,193 @@
+"""An aborted trial is kept as it was delivered, counts as tried, and goes with its trainee."""
+
+import json
+import sqlite3
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.export.trainee_data import erase_trainee, export_trainee
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
+from rastrainer.study.database.study import DeletedTrialError, Study
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.scoring import passes
+from rastrainer.trial.trainee_progress import competence_of, progress_of
+from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.made_up_scores import gentle_score
+from Testing.domain.trial.trial_records import make_record
+
+
+@pytest.fixture
+def study(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        yield study
+
+
+def test_a_record_survives_json_whole():
+    for touches in (0, 3, 15):
+        record = AbortedTrial.from_json(make_aborted(touches=touches))
+        assert AbortedTrial.from_json(json.loads(json.dumps(record.to_json()))) == record
+        assert record.is_after_all_touches == (touches == 15)
+
+
+def test_what_a_later_simulator_adds_is_ignored_and_its_reasons_are_taken():
+    record = AbortedTrial.from_json(make_aborted(reason="head was dropped", weather="rain"))
+    assert record.reason == "head was dropped"
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        pytest.param({"trialId": "../../x"}, "trialId must be the UUID", id="id"),
+        pytest.param({"trainee": ""}, "trainee must be printable", id="trainee"),
+        pytest.param({"trainee": "a\nb"}, "trainee must be printable", id="newline"),
+        pytest.param({"task": "t" * 65}, "task must be printable", id="task"),
+        pytest.param({"mode": "hologram"}, "mode must be one of", id="mode"),
+        pytest.param({"phase": "scored"}, "phase must be one of running", id="phase"),
+        pytest.param({"phase": []}, "phase must be one of running", id="phase-list"),
+        pytest.param({"reason": "x" * 65}, "reason must be printable", id="reason"),
+        pytest.param({"elapsedS": -1.0}, "elapsedS must be a number", id="elapsed"),
+        pytest.param({"elapsedS": float("nan")}, "elapsedS must be a number", id="nan"),
+        pytest.param({"elapsedS": True}, "elapsedS must be a number", id="bool"),
+        pytest.param({"abortedUtc": "yesterday"}, "abortedUtc must be an ISO", id="when"),
+        pytest.param({"points": "all"}, "points must be a list of at most 15", id="points"),
+        pytest.param(
+            {"points": make_record()["points"] * 2}, "points must be a list of at most", id="many"
+        ),
+        pytest.param({"points": make_record()["points"][:1] * 2}, "holds the label", id="twice"),
+        pytest.param({"points": make_record()["points"][1::-1]}, "in the order", id="order"),
+        pytest.param({"rejectedTouches": 1.5}, "rejectedTouches must be", id="rejected"),
+        pytest.param({"undoneTouches": -1}, "undoneTouches must be", id="undone"),
+        pytest.param({"versions": {"a": 1}}, "versions must be", id="versions"),
+        pytest.param({"touchRule": "near"}, "touchRule must be one of", id="rule"),
+    ],
+)
+def test_a_hostile_record_is_refused_in_a_sentence_and_stores_nothing(study, change, words):
+    with pytest.raises(InputError, match=words):
+        AbortedTrials(study).add(make_aborted(**change))
+    assert study.trainees() == ()
+
+
+def test_a_record_without_a_key_or_larger_than_a_mebibyte_is_refused(study):
+    lacking = make_aborted()
+    del lacking["phase"]
+    with pytest.raises(InputError, match='needs the key "phase"'):
+        AbortedTrials(study).add(lacking)
+    with pytest.raises(InputError, match="must be a JSON object"):
+        AbortedTrials(study).add(["no", "object"])
+    with pytest.raises(InputError, match="larger than 1 MiB"):
+        AbortedTrials(study).add(make_aborted(more="x" * 2**20))
+    with pytest.raises(InputError, match="pseudonym"):
+        AbortedTrials(study).add(make_aborted(trainee=" T"))
+    assert study.trainees() == ()
+
+
+def test_it_is_stored_once_however_often_it_is_offered(study):
+    aborted = AbortedTrials(study)
+    assert aborted.add(make_aborted())
+    assert not aborted.add(make_aborted())
+    assert len(aborted.of("T-001")) == 1
+    assert not study.trainee("T-001").consent
+    with pytest.raises(InputError, match="Another trial is stored"):
+        aborted.add(make_aborted(elapsedS=3.0))
+
+
+def test_a_finished_trial_and_an_aborted_one_are_never_the_same(study):
+    study.add_trial(make_record())
+    with pytest.raises(InputError, match="Another trial is stored"):
+        AbortedTrials(study).add(make_aborted(number=7))
+
+
+def test_it_is_not_among_the_finished_trials(study):
+    AbortedTrials(study).add(make_aborted())
+    assert study.history("T-001") == study.past_trials("T-001") == ()
+    assert study.cohort() == []
+
+
+def test_deleting_a_trainee_deletes_it_and_it_never_comes_back(study, tmp_path):
+    AbortedTrials(study).add(make_aborted())
+    records = tmp_path / "records"
+    records.mkdir()
+    erased = erase_trainee(study, "T-001", records)
+    assert erased.trials == 0
+    assert erased.missing == (make_aborted()["trialId"],)
+    with pytest.raises(DeletedTrialError):
+        AbortedTrials(study).add(make_aborted())
+    left = (tmp_path / "study.db").read_bytes()
+    assert b"T-001" not in left
+    assert make_aborted()["trialId"].encode() not in left
+
+
+def test_everything_about_a_trainee_tells_of_it(study, tmp_path):
+    AbortedTrials(study).add(make_aborted())
+    assert export_trainee(study, "T-001", tmp_path / "all.json") == 0
+    told = json.loads((tmp_path / "all.json").read_text())["aborted_trials"]
+    assert [(each["record"]["reason"], len(each["record"]["points"])) for each in told] == [
+        ("trainee", 3)
+    ]
+
+
+def test_a_study_of_the_format_before_takes_aborted_trials(tmp_path):
+    path = tmp_path / "study.db"
+    connection = sqlite3.connect(path)
+    for version in MIGRATIONS[:5]:
+        for statement in version:
+            connection.execute(statement)
+    connection.execute("PRAGMA user_version = 5")
+    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+    connection.commit()
+    connection.close()
+    with Study.open(path) as study:
+        assert AbortedTrials(study).add(make_aborted())
+
+
+@pytest.mark.parametrize(
+    ("changes", "counts"),
+    [
+        pytest.param({}, True, id="touched"),
+        pytest.param({"touches": 15}, True, id="all-touched"),
+        pytest.param({"touches": 0, "undoneTouches": 2}, True, id="undone"),
+        pytest.param({"touches": 0}, False, id="only-refused"),
+        pytest.param({"task": "trial-run"}, False, id="trial-run"),
+    ],
+)
+def test_an_aborted_trial_of_a_scored_task_with_a_touch_counts_as_not_passed(
+    study, changes, counts
+):
+    AbortedTrials(study).add(make_aborted(**changes))
+    attempts = AbortedTrials(study).attempts("T-001")
+    assert [attempt.is_aborted for attempt in attempts] == [True] * counts
+    assert not any(passes(each.score, each.acceptable, 0.0) for each in attempts)
+
+
+def test_attempts_stand_in_the_order_they_were_begun(study):
+    score = gentle_score(110.0, 0.5)
+    for number, minute in ((1, 10), (2, 30)):
+        utc = f"2024-05-17T09:{minute}:00Z"
+        record = make_record(trialId=f"00000000-0000-0000-0000-00000000000{number}", startedUtc=utc)
+        study.add_trial(record, score=score)
+    AbortedTrials(study).add(make_aborted(startedUtc="2024-05-17T09:20:00+00:00"))
+    attempts = AbortedTrials(study).attempts("T-001")
+    assert [attempt.is_aborted for attempt in attempts] == [False, True, False]
+    standing = progress_of(attempts, attempts[-1].trial_id, 10.0)
+    assert len(standing.scores) == 2
+    assert standing.competence.scores == competence_of([False, True, False]).scores
+    with pytest.raises(InputError):
+        progress_of(attempts, attempts[1].trial_id, 10.0)
+
+
+def test_who_aborts_every_bad_trial_gains_nothing_on_the_way_to_competence(study):
+    score = gentle_score(110.0, 0.4)
+    for number in range(24):
+        utc = f"2024-05-17T{10 + number // 2}:{30 * (number % 2):02d}:00Z"
+        trial_id = f"00000000-0000-0000-0000-0000000000{number:02d}"
+        if number % 2:
+            AbortedTrials(study).add(make_aborted(number=number + 500, touches=15, startedUtc=utc))
+        else:
+            study.add_trial(make_record(trialId=trial_id, startedUtc=utc), score=score)
+    attempts = AbortedTrials(study).attempts("T-001")
+    finished = [attempt for attempt in attempts if not attempt.is_aborted]
+    last = finished[-1].trial_id
+    assert progress_of(finished, last, 10.0).competence.competent_at is not None
+    assert progress_of(attempts, last, 10.0).competence.competent_at is None

@@ -1,0 +1,125 @@
+"""CTPS: the paper's own numbers, and how it behaves."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.trial.ctps import (
+    CohortReference,
+    Trial,
+    equation_3_ctps,
+    published_ctps,
+    read_trials,
+    score_cohort,
+    trials_by_mode,
+)
+
+STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
+PRINTED_MEAN_CT = {"hmd": None, "desktop": 129.42}
+
+TABLE_1 = {
+    "tasks": {"1": "79.70", "2": "75.43", "3": "75.27", "4": "37.10", "5": "56.59"},
+    "subjects": {"1": "63.76", "2": "66.31", "3": "65.12", "4": "64.09"},
+}
+TABLE_2 = {
+    "tasks": {"1": "77.61", "2": "86.42", "3": "68.72", "4": "37.52", "5": "66.18"},
+    "subjects": {"1": "81.72", "2": "58.83", "3": "68.37", "4": "60.22"},
+}
+
+
+@pytest.fixture(scope="module")
+def modes():
+    return trials_by_mode(read_trials(STUDY))
+
+
+@pytest.fixture(scope="module")
+def published(modes):
+    return {mode: score_cohort(trials, PRINTED_MEAN_CT[mode]) for mode, trials in modes.items()}
+
+
+def printed(means):
+    return {name: f"{value:.2f}" for name, value in means.items()}
+
+
+@pytest.mark.parametrize(("mode", "table"), [("hmd", TABLE_1), ("desktop", TABLE_2)])
+def test_every_task_and_user_mean_is_as_printed(mode, table, published):
+    assert printed(published[mode].tasks) == table["tasks"]
+    assert printed(published[mode].subjects) == table["subjects"]
+
+
+def test_the_overall_scores_and_their_deviations_are_as_printed(published):
+    assert f"{published['hmd'].overall:.3f}" == "64.818"
+    assert f"{published['hmd'].sd_population:.2f}" == "25.47"
+    assert f"{published['desktop'].overall:.2f}" == "67.29"
+    assert f"{published['desktop'].sd_sample:.2f}" == "25.96"
+
+
+def test_the_printed_r_squared_are_correlations(published):
+    assert f"{published['hmd'].pearson_r:.3f}" == "0.963"
+    assert f"{published['desktop'].pearson_r:.3f}" == "0.919"
+    assert f"{published['hmd'].r_squared:.3f}" == "0.928"
+    assert f"{published['desktop'].r_squared:.3f}" == "0.845"
+
+
+def test_equation_3_gives_half_of_the_tables(published):
+    assert f"{published['hmd'].equation_3_overall:.1f}" == "32.4"
+    assert f"{published['desktop'].equation_3_overall:.1f}" == "33.6"
+    reference = CohortReference(120.0, 1.0)
+    assert equation_3_ctps(90.0, 1.3, reference) * 2 == published_ctps(90.0, 1.3, reference)
+
+
+def test_means_of_the_published_trials_are_as_printed(modes):
+    assert f"{np.mean([t.completion_time_s for t in modes['hmd']]):.2f}" == "126.18"
+    assert f"{np.mean([t.completion_time_s for t in modes['desktop']]):.3f}" == "129.435"
+    assert f"{np.mean([t.rmse_mm for t in modes['hmd']]):.2f}" == "1.49"
+    assert f"{np.mean([t.rmse_mm for t in modes['desktop']]):.2f}" == "1.34"
+
+
+def test_slower_is_better_in_ctps_and_time_cancels_from_the_mean(modes):
+    slower = [replace(t, completion_time_s=t.completion_time_s * 3) for t in modes["desktop"]]
+    errors = [t.rmse_mm for t in slower]
+    expected = 200 - 100 * np.mean(errors) / min(errors)
+    assert score_cohort(slower).overall == pytest.approx(expected)
+    reference = CohortReference.of(modes["desktop"])
+    gain = published_ctps(130, 1.3, reference) - published_ctps(120, 1.3, reference)
+    assert gain == pytest.approx(7.7, abs=0.1)
+
+
+def test_one_trial_is_scored_against_a_cohort_given():
+    assert published_ctps(126.0, 1.5, CohortReference(120.0, 1.2)) == pytest.approx(105 - 25)
+
+
+def test_what_one_trial_cannot_define_is_none():
+    scores = score_cohort([Trial("desktop", "a", "task-1", 100.0, 1.0)])
+    assert scores.overall == 100.0
+    assert (scores.sd_sample, scores.pearson_r, scores.r_squared) == (None, None, None)
+
+
+def test_tasks_are_numbered_by_the_digits_of_their_names():
+    trials = [
+        Trial("desktop", "a", name, time, 1.0)
+        for name, time in [
+            ("task-2", 20.0),
+            ("trial-run", 500.0),
+            ("task-10", 100.0),
+            ("task-4", 40.0),
+        ]
+    ]
+    assert score_cohort(trials).pearson_r == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("trials", "mean", "words"),
+    [
+        ([], None, "at least one trial"),
+        ([Trial("m", "s", "1", 10.0, 0.0)], None, "best RMSE, which must be above 0"),
+        ([Trial("m", "s", "1", 10.0, 1.0)], -5.0, "mean completion time must be"),
+        ([Trial("m", "s", "1", 10.0, 1.0)], float("nan"), "mean completion time must be"),
+    ],
+)
+def test_a_cohort_without_a_reference_is_refused(trials, mean, words):
+    with pytest.raises(InputError, match=words):
+        score_cohort(trials, mean)

@@ -1,0 +1,222 @@
+"""After a trial the trainee learns what it was worth, what hurt and why, and what to improve."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rastrainer.errors import InputError
+from rastrainer.motion.trajectory import Touch, Trajectory
+from rastrainer.registration.registration import register
+from rastrainer.trial.advice import advise
+from rastrainer.trial.touch_findings import Reason, touch_findings
+from rastrainer.trial.trainee_progress import PastTrial, progress_of
+from rastrainer.trial.trial_feedback import MOST_SHORT, trial_feedback
+from Testing.domain.trial.made_up_scores import gentle_score
+from Testing.touched_head import head_points
+
+LABELS = tuple(str(i + 1) for i in range(15))
+FIXED = head_points(np.random.default_rng(2))
+NORMALS = FIXED / np.linalg.norm(FIXED, axis=1, keepdims=True)
+TANGENTS = np.cross(NORMALS, [0.3, 0.2, 0.9])
+TANGENTS /= np.linalg.norm(TANGENTS, axis=1, keepdims=True)
+
+
+def registered(errors, seed=0):
+    """A registration of touches that are off by (15, 3) errors and a little noise."""
+    noise = np.random.default_rng(seed).normal(0, 0.15, (15, 3))
+    return register(FIXED + errors + noise, FIXED, labels=LABELS)
+
+
+EVEN = touch_findings(registered(np.zeros((15, 3))))
+
+
+def recording(hurried=(), shaking=()):
+    """Two seconds a point, the tip resting at the point for the second half."""
+    rng = np.random.default_rng(1)
+    times = np.arange(0, 30, 0.02)
+    tip = np.zeros((len(times), 3))
+    touches, positions = [], 100.0 * rng.normal(size=(15, 3))
+    for i in range(15):
+        part = slice(i * 100, (i + 1) * 100)
+        tip[part] = positions[i]
+        came = 97 if i in hurried else 50
+        tip[part.start : part.start + came] += [60.0, 0, 0]
+        if i in shaking:
+            tip[part.start + came : part.stop] += rng.normal(0, 0.7, (100 - came, 3))
+        touches.append(Touch(LABELS[i], tuple(positions[i]), (part.stop - 1) * 0.02))
+    return Trajectory(times, tip, np.full(len(times), 5.0), tuple(touches))
+
+
+def test_an_error_in_depth_is_told_from_one_along_the_skin():
+    errors = np.zeros((15, 3))
+    errors[3] = 4.0 * NORMALS[3]
+    errors[9] = 4.0 * TANGENTS[9]
+    findings = {f.label: f for f in touch_findings(registered(errors), NORMALS)}
+    assert {label for label, f in findings.items() if f.hurts} == {"4", "10"}
+    assert findings["4"].reasons == (Reason.DEPTH,)
+    assert findings["10"].reasons == (Reason.ASIDE,)
+    assert "mm above the skin" in findings["4"].sentence
+    assert "mostly along the skin" in findings["10"].sentence
+    assert sum(f.share for f in findings.values()) == pytest.approx(1.0)
+    assert findings["4"].aside_mm ** 2 + findings["4"].depth_mm ** 2 == pytest.approx(
+        findings["4"].residual_mm ** 2
+    )
+
+
+def test_hurry_and_tremor_are_seen_in_the_recording():
+    errors = np.zeros((15, 3))
+    errors[[4, 11]] = 4.0 * TANGENTS[[4, 11]]
+    findings = touch_findings(registered(errors), NORMALS, recording(hurried=[4], shaking=[11]))
+    assert Reason.HURRY in findings[4].reasons
+    assert Reason.TREMOR in findings[11].reasons
+    assert Reason.HURRY not in findings[11].reasons
+    assert findings[7].reasons == ()
+    assert findings[11].replay_s == pytest.approx((21.98, 23.98))
+    assert findings[4].dwell_s < 0.15 < findings[7].dwell_s
+
+
+def test_without_recording_and_skin_only_the_residuals_are_told():
+    findings = touch_findings(registered(np.zeros((15, 3))))
+    assert all(f.depth_mm is None and f.replay_s is None for f in findings)
+    feedback = trial_feedback(gentle_score(100.0, 0.4), registered(np.zeros((15, 3))))
+    assert feedback.score_sentences[0] == "Score 52 of 100."
+
+
+def test_the_most_rewarding_advice_comes_first_and_safety_before_all():
+    errors = np.zeros((15, 3))
+    errors[3] = 6.0 * TANGENTS[3]
+    findings = touch_findings(registered(errors), NORMALS)
+    motion = {
+        "idle_time_s": 4.0,
+        "path_efficiency": 0.3,
+        "refused_touches": 1,
+        "unintended_contacts": 2,
+    }
+    advice = advise(gentle_score(110.0, 1.2), findings, motion)
+    assert len(advice) == 3
+    assert advice[0].topic == "contacts"
+    assert "2 times" in advice[0].sentence
+    assert advice[1].topic == "worst touches"
+    assert advice[1].gain > advice[2].gain > 0
+
+
+def test_a_slow_and_exact_trial_is_told_to_be_faster():
+    findings = touch_findings(registered(np.zeros((15, 3))))
+    motion = {"idle_time_s": 150.0, "path_efficiency": 0.2}
+    topics = [a.topic for a in advise(gentle_score(400.0, 0.1), findings, motion)]
+    assert set(topics) == {"idle time", "detours", "pace"}
+
+
+def test_depth_is_advised_where_most_of_the_error_is_in_depth():
+    errors = NORMALS * np.random.default_rng(4).normal(0, 3.0, (15, 1))
+    findings = touch_findings(registered(errors), NORMALS)
+    topics = [a.topic for a in advise(gentle_score(100.0, 1.0), findings, {})]
+    assert "depth" in topics
+
+
+@given(
+    st.floats(20, 1000),
+    st.floats(0.05, 5),
+    st.floats(0, 0.9),
+    st.floats(0.05, 1.2),
+    st.integers(0, 20),
+)
+def test_advice_never_promises_more_than_the_whole_score(time, error, idle, efficiency, refused):
+    score = gentle_score(time, error)
+    motion = {"idle_time_s": idle * time, "path_efficiency": efficiency, "refused_touches": refused}
+    advice = advise(score, EVEN, motion)
+    assert len(advice) <= 3
+    for one in advice:
+        assert 0 <= one.gain <= 100 - score.score
+
+
+def past(number, score, mode="desktop", acceptable=True):
+    return PastTrial(str(number), "task-1", mode, 110.0, score, acceptable)
+
+
+def test_progress_tells_best_mark_and_competence():
+    history = [past(i, 40.0 + i) for i in range(12)]
+    progress = progress_of(history, history[-1].trial_id, pass_mark=45.0)
+    assert progress.is_best
+    assert progress.passes
+    assert progress.curve is not None
+    assert progress.sentences[0].endswith("It is your best so far.")
+    assert progress.sentences[1] == "Passed: the mark is 45."
+    early = progress_of(history, history[2].trial_id, pass_mark=45.0)
+    assert not early.passes
+    assert early.scores == (40.0, 41.0, 42.0)
+    assert early.sentences[1] == "Not passed yet: 3 points to the mark of 45."
+    assert early.sentences[2].startswith(
+        "0 % of the way to demonstrated competence (LC-CUSUM; trials so far: 3)"
+    )
+
+
+def test_a_trial_is_not_compared_with_scores_of_another_version():
+    first = [replace(past(i, 99.0), score_version="1") for i in range(20)]
+    history = [*first, *(replace(past(20 + i, 50.0 + i), score_version="2") for i in range(2))]
+    once = progress_of(history, history[-2].trial_id, pass_mark=60.0)
+    assert once.scores == (50.0,)
+    assert once.sentences[0].startswith("Your earlier trials of this task have scores of an")
+    assert once.competence.competent_at is None
+    assert "trials so far: 1" in once.sentences[2]
+    assert once.curve is not None
+    twice = progress_of(history, history[-1].trial_id, pass_mark=60.0)
+    assert twice.is_best
+    assert twice.sentences[0].startswith("1 points more than in your last trial")
+
+
+def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
+    history = [past(i, 80.0) for i in range(20)]
+    progress = progress_of(history, history[-1].trial_id, pass_mark=60.0)
+    assert progress.competence.competent_at is not None
+    assert progress.competence.false_discovery <= 0.05
+    assert "show competence since number" in progress.sentences[2]
+    long = [past(i, 80.0) for i in range(100)]
+    told = progress_of(long, long[-1].trial_id, pass_mark=60.0)
+    assert told.competence.false_discovery > 0.05
+    risk = f"{100 * told.competence.false_discovery:.0f} % come so far by chance within 100 trials"
+    assert risk in told.sentences[2]
+    other = [past(i, 80.0, mode="hmd") for i in range(19)] + [past(19, 80.0)]
+    assert progress_of(other, other[-1].trial_id, 60.0).competence.competent_at is None
+
+
+def test_a_trial_with_an_unacceptable_error_never_passes():
+    bad = past(1, 99.0, acceptable=False)
+    progress = progress_of([bad], bad.trial_id, pass_mark=10.0)
+    assert not progress.passes
+    assert progress.sentences[1].startswith("Not passed: the true error in the brain")
+    with pytest.raises(InputError, match="scored trial of the trainee's own"):
+        progress_of([], bad.trial_id, 10.0)
+
+
+def test_the_feedback_reads_in_order():
+    errors = np.zeros((15, 3))
+    errors[3] = 5.0 * NORMALS[3]
+    history = [past(1, 50.0), past(2, 60.0)]
+    feedback = trial_feedback(
+        gentle_score(150.0, 2.5),
+        registered(errors),
+        NORMALS,
+        {"idle_time_s": 40.0},
+        recording(),
+        progress_of(history, history[1].trial_id, 55.0),
+    )
+    assert feedback.worst.label == "4"
+    assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
+    sentences = feedback.sentences
+    assert sentences[0].endswith(" of 100: not acceptable.")
+    assert "more than 1.5 mm is not acceptable" in sentences[2]
+    assert sentences[3].startswith("Safety: pressed 0.0 mm deep")
+    assert sentences[4].startswith("Point 4 was")
+    assert sentences[5].startswith("1. ")
+    short = feedback.short_sentences
+    assert short[0] == sentences[4]
+    assert len(short) <= MOST_SHORT
+    assert tuple(short[-2:]) == feedback.progress.sentences[-2:]
+    busy = replace(feedback, advice=feedback.advice[:1] * 3).short_sentences
+    assert (len(busy), tuple(busy[-2:])) == (MOST_SHORT, feedback.progress.sentences[-2:])
+    assert any("to the mark of 55" in s or "mark is 55" in s for s in short)
+    assert "10 points more than in your last trial of this task" in sentences[-3]

@@ -1,0 +1,166 @@
+"""Our score keeps each word it promises."""
+
+import inspect
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rastrainer.errors import InputError
+from rastrainer.trial import scoring
+from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.scoring import (
+    CONTACT_LIMIT_S,
+    CONTACT_PATH_LIMIT_MM,
+    DEPTH_LIMIT_MM,
+    ScoreMeasures,
+    ScoreReference,
+    TrialScore,
+    passes,
+    score_trial,
+)
+from Testing.domain.trial.made_up_scores import gentle_score
+
+REFERENCES = (ScoreReference(105.0, 0.6), ScoreReference(150.0, 0.43), ScoreReference(30.0, 0.9))
+references = st.sampled_from(REFERENCES)
+# Differences of a millisecond and of a nanometer count, from a second to a day, up to a meter.
+trials = st.builds(
+    ScoreMeasures,
+    completion_time_s=st.floats(1.0, 86_400.0),
+    tre_mm=st.floats(0.0, 1000.0),
+    contact_time_s=st.floats(0.0, 1000.0),
+    contact_path_mm=st.floats(0.0, 10_000.0),
+    pressing_depth_mm=st.floats(0.0, 10.0),
+)
+acceptable = st.builds(
+    ScoreMeasures,
+    completion_time_s=st.floats(1.0, 86_400.0),
+    tre_mm=st.floats(0.0, scoring.LIMIT_MM),
+    contact_time_s=st.floats(0.0, CONTACT_LIMIT_S),
+    contact_path_mm=st.floats(0.0, CONTACT_PATH_LIMIT_MM),
+    pressing_depth_mm=st.floats(0.0, DEPTH_LIMIT_MM),
+)
+LIMITS = {
+    "tre_mm": scoring.LIMIT_MM,
+    "contact_time_s": CONTACT_LIMIT_S,
+    "contact_path_mm": CONTACT_PATH_LIMIT_MM,
+    "pressing_depth_mm": DEPTH_LIMIT_MM,
+}
+MEASURES = ("completion_time_s", *LIMITS)
+
+
+def score(measures, reference):
+    return score_trial(measures, reference).score
+
+
+@given(trials, references)
+def test_bounded_from_0_to_100(trial, reference):
+    assert 0.0 < score(trial, reference) <= 100.0
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@given(trial=trials, step=st.floats(1e-3, 1e4), reference=references)
+def test_faster_nearer_and_gentler_are_each_strictly_better(measure, trial, step, reference):
+    worse = replace(trial, **{measure: getattr(trial, measure) + step})
+    assert score(trial, reference) > score(worse, reference)
+
+
+@pytest.mark.parametrize("measure", LIMITS)
+@given(trial=trials, other=acceptable, excess=st.floats(0.0, 1000.0), reference=references)
+def test_what_is_beyond_a_limit_is_never_bought_back(measure, trial, other, excess, reference):
+    beyond = math.nextafter(LIMITS[measure], math.inf) + excess
+    worse = score_trial(replace(trial, **{measure: beyond}), reference)
+    assert not worse.acceptable
+    assert not passes(worse.score, worse.acceptable, 0.0)
+    assert worse.score < score(other, reference)
+
+
+@given(trials, trials)
+def test_what_is_better_in_all_is_better_whatever_the_references(one, other):
+    """Mode, cohort and task only choose a reference; the order of trials is the same with all."""
+    pairs = [(getattr(one, name), getattr(other, name)) for name in MEASURES]
+    better, worse = ScoreMeasures(*map(min, pairs)), ScoreMeasures(*map(max, pairs))
+    for reference in REFERENCES:
+        assert score(better, reference) >= score(worse, reference)
+
+
+def test_one_trial_is_enough_and_the_mode_plays_no_part():
+    assert list(inspect.signature(score_trial).parameters) == ["measures", "reference"]
+    assert list(inspect.signature(score_reference).parameters) == [
+        "scenario",
+        "task_name",
+        "of_protocol",
+    ]
+
+
+@given(trials, references)
+def test_a_score_survives_json_with_its_version_and_references(trial, reference):
+    first = score_trial(trial, reference)
+    again = TrialScore.from_json(json.loads(json.dumps(first.to_json())))
+    assert again == first
+    assert again.version == scoring.SCORE_VERSION
+    assert score(again.measures, again.reference) == first.score
+
+
+def test_a_gentle_trial_has_the_geometric_mean_of_time_and_accuracy():
+    trial = gentle_score(80.0, 0.7)
+    assert trial.safety_desirability == 1.0
+    assert trial.score == pytest.approx(
+        100 * math.sqrt(trial.time_desirability * trial.accuracy_desirability)
+    )
+
+
+def test_version_2_keeps_its_values():
+    assert scoring.SCORE_VERSION == "2"
+    reference = ScoreReference(100.0, 0.4)
+    assert gentle_score(100.0, 0.4, reference).score == pytest.approx(100 * math.sqrt(0.52 * 0.5))
+    assert gentle_score(50.0, 0.2, reference).score == pytest.approx(100 * math.sqrt(0.808 * 0.8))
+    touched = score_trial(ScoreMeasures(100.0, 0.4, 4.0, 80.0, 1.5), reference)
+    assert touched.score == pytest.approx(100 * math.sqrt(0.52 * 0.5 / 8))
+    worst = 0.04 / (1 + 3.75**2) / 5 / 5 / 2
+    assert gentle_score(100.0, 3.0, reference).score == pytest.approx(
+        100 * math.sqrt(worst * 0.52 / (1 + 7.5**2))
+    )
+
+
+def test_a_score_of_the_first_version_is_read_as_it_was_made():
+    stored = {
+        "score": 51.0,
+        "time_desirability": 0.52,
+        "accuracy_desirability": 0.5,
+        "acceptable": True,
+        "completion_time_s": 105.0,
+        "expected_tre_mm": 0.4,
+        "reference_time_s": 105.0,
+        "reference_tre_mm": 0.4,
+        "limit_mm": 2.0,
+        "version": "1",
+    }
+    first = TrialScore.from_json(stored)
+    assert (first.score, first.version, first.acceptable) == (51.0, "1", True)
+    assert (first.measures.tre_mm, first.measures.contact_time_s) == (0.4, None)
+    assert TrialScore.from_json(json.loads(json.dumps(first.to_json()))) == first
+
+
+@pytest.mark.parametrize("time", [0.0, -1.0, math.nan, math.inf])
+def test_a_time_that_is_none_is_refused(time):
+    with pytest.raises(InputError, match="completion time"):
+        gentle_score(time, 1.0)
+
+
+@pytest.mark.parametrize("value", [-0.1, math.nan, math.inf])
+@pytest.mark.parametrize("measure", LIMITS)
+def test_a_measure_that_is_none_is_refused(measure, value):
+    measures = ScoreMeasures(100.0, 0.4, 0.0, 0.0, 0.0)
+    with pytest.raises(InputError, match="0 or above"):
+        score_trial(replace(measures, **{measure: value}), REFERENCES[0])
+
+
+def test_a_trial_whose_contacts_were_not_measured_has_no_score():
+    with pytest.raises(InputError, match="pressing_depth_mm is missing"):
+        ScoreMeasures.of(
+            100.0, 0.4, {"unintended_contact_time_s": 0.0, "unintended_contact_path_mm": 0.0}
+        )

@@ -1,0 +1,79 @@
+"""The trial record: what the simulator may deliver and the study may keep."""
+
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.trial.record import TrialRecord
+from Testing.domain.trial.trial_records import make_record
+
+
+def changed_point(index, **changes):
+    record = make_record()
+    record["points"][index].update(changes)
+    return record
+
+
+def test_a_record_survives_the_way_through_json_unchanged():
+    record = TrialRecord.from_json(make_record())
+    assert TrialRecord.from_json(json.loads(json.dumps(record.to_json()))) == record
+
+
+def test_touches_are_offered_as_arrays_in_their_order():
+    record = TrialRecord.from_json(make_record())
+    assert record.labels == tuple(str(i) for i in range(1, 16))
+    np.testing.assert_allclose(record.positions_mm[2], [502.0, -40.0, 300.25])
+    np.testing.assert_allclose(record.touch_times_s[[0, 14]], [5.0, 110.0])
+
+
+def test_a_record_older_than_the_rule_for_touches_has_that_of_the_paper():
+    record = make_record()
+    assert "touchRule" not in record
+    assert TrialRecord.from_json(record).touch_rule == "within radius"
+
+
+def test_the_seed_may_be_kept_secret():
+    record = make_record()
+    del record["seed"]
+    assert TrialRecord.from_json(record).seed is None
+
+
+def test_keys_of_a_newer_simulator_are_ignored():
+    assert TrialRecord.from_json(make_record(weather="fine")) == TrialRecord.from_json(
+        make_record()
+    )
+
+
+@pytest.mark.parametrize(
+    ("record", "words"),
+    [
+        ([], "must be a JSON object"),
+        (None, "must be a JSON object"),
+        ({}, 'needs the key "trialId"'),
+        (make_record(trialId="seven"), "trialId must be the UUID"),
+        (make_record(trainee=""), "trainee must be printable text"),
+        (make_record(trainee="a\nb"), "trainee must be printable text"),
+        (make_record(mode="cinema"), "mode must be one of desktop, hmd"),
+        (make_record(startedUtc="yesterday"), "startedUtc must be an ISO 8601"),
+        (make_record(startedUtc="2024-05-17T09:30:00"), "startedUtc must be an ISO 8601"),
+        (make_record(startedUtc="2024-05-17T09:30:00+02:00"), "startedUtc must be an ISO 8601"),
+        (make_record(completionTimeS=float("nan")), "completionTimeS must be a number"),
+        (make_record(completionTimeS=-1), "completionTimeS must be a number"),
+        (make_record(completionTimeS=True), "completionTimeS must be a number"),
+        (make_record(points=[]), "points must be a list of 15 points"),
+        (make_record(points=[1] * 15), "Each point of the trial record must be a JSON object"),
+        (make_record(rejectedTouches=1.5), "rejectedTouches must be a whole number"),
+        (make_record(versions={"a": 1}), "versions must be an object"),
+        (changed_point(3, positionMm=[1, 2]), "positionMm must be a list of 3 numbers"),
+        (changed_point(3, positionMm=[1, 2, float("inf")]), "positionMm must be a list"),
+        (changed_point(3, positionMm=[1, 2, 10**400]), "positionMm must be a list"),
+        (changed_point(3, label="3"), 'holds the label "3" twice'),
+        (changed_point(3, simTime=0.5), "4 was touched before 3"),
+    ],
+)
+def test_anything_else_is_refused_with_one_sentence(record, words):
+    with pytest.raises(InputError, match=words) as caught:
+        TrialRecord.from_json(record)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,173 @@
+"""What the default scenario promises: a sound head, and tasks on it that the robot can do."""
+
+import json
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
+from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.registration.registration import register
+from rastrainer.registration.target_error import tre_covariances
+from rastrainer.scenario.complexity import complexity
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.planning_setup import touchable
+from rastrainer_simulator.authoring.task_proposal import target_spread
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.touch_planner import TouchPlanner
+from rastrainer_simulator.robot.model import load_robot
+
+FOLDER = asset_path("scenarios", "colin27")
+SCENARIO = load_scenario(FOLDER)
+MESH = read_head_mesh(SCENARIO.head_mesh)
+GRAPH = SurfaceGraph(MESH)
+TASK_NAMES = ["trial-run", "task-1", "task-2", "task-3", "task-4", "task-5"]
+
+
+@pytest.fixture(scope="module")
+def computed():
+    """The complexity of each task, computed anew."""
+    eye = transforms.apply(
+        transforms.inverse(SCENARIO.head_to_world), SCENARIO.cameras["close-up"].position
+    )
+    return [complexity(task.fiducials, MESH, GRAPH, eye) for task in SCENARIO.tasks]
+
+
+def test_the_head_is_one_closed_body_without_tunnels():
+    assert MESH.is_closed
+    assert MESH.euler_characteristic == 2
+    assert 40_000 <= len(MESH.triangles) <= 60_000
+    assert _body_count() == 1
+
+
+def test_the_head_stands_on_a_flat_base():
+    heights = MESH.vertices[:, 2]
+    base = heights == heights.min()
+    assert base.sum() > 300
+    assert np.ptp(MESH.vertices[base, :2], axis=0).min() > 150
+    flat = base[MESH.triangles].all(axis=1)
+    area = (
+        0.5
+        * np.linalg.norm(
+            np.cross(
+                MESH.vertices[MESH.triangles[flat, 1]] - MESH.vertices[MESH.triangles[flat, 0]],
+                MESH.vertices[MESH.triangles[flat, 2]] - MESH.vertices[MESH.triangles[flat, 0]],
+            ),
+            axis=1,
+        ).sum()
+    )
+    assert area > 20_000
+    assert (heights[~base] > heights.min() + 0.01).all()
+
+
+def test_the_head_is_smooth_without_the_steps_of_its_voxels():
+    """Nine of ten edges bend by less than 10 degrees; marching cubes alone would leave 20 to 45."""
+    corners = MESH.vertices[MESH.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    sides = np.sort(MESH.sides, axis=1)
+    order = np.lexsort((sides[:, 1], sides[:, 0]))
+    pairs = (order % len(MESH.triangles)).reshape(-1, 2)
+    bending = np.degrees(
+        np.arccos(np.clip(np.einsum("ij,ij->i", *normals[pairs].transpose(1, 0, 2)), -1, 1))
+    )
+    assert np.percentile(bending, 90) < 10
+
+
+def test_the_head_stands_upright_with_its_face_to_the_camera_and_its_right_to_the_robot():
+    turn = SCENARIO.head_to_world[:3, :3]
+    assert np.allclose(turn @ [0, 0, 1], [0, 0, 1])
+    assert np.allclose(turn @ [0, 1, 0], [0, -1, 0])
+    assert np.allclose(turn @ [1, 0, 0], [-1, 0, 0])
+    base = transforms.apply(SCENARIO.head_to_world, MESH.vertices)[:, 2].min()
+    assert base > 100
+    assert np.allclose(SCENARIO.target_position, MESH.centroid, atol=1e-3)
+
+
+def test_there_are_a_trial_run_and_five_tasks():
+    assert [task.name for task in SCENARIO.tasks] == TASK_NAMES
+
+
+@pytest.mark.parametrize("name", TASK_NAMES)
+def test_every_fiducial_is_on_the_skin_away_from_base_and_neighbors(name):
+    fiducials = SCENARIO.task(name).fiducials
+    assert max(nearest_on_mesh(MESH, point).distance for point in fiducials) <= 0.05
+    away = np.linalg.norm(fiducials[:, None] - fiducials[None], axis=2) + np.eye(15) * 1e3
+    assert away.min() >= 20
+    assert fiducials[:, 2].min() - MESH.vertices[:, 2].min() > 25
+
+
+def test_complexity_rises_from_task_to_task_and_is_what_the_files_say(computed):
+    indices = [parts.index for parts in computed]
+    assert all(harder > 1.05 * easier for easier, harder in pairwise(indices))
+    assert [task.complexity for task in SCENARIO.tasks] == pytest.approx(indices, abs=0.01)
+
+
+@pytest.mark.parametrize("name", ["trial-run", "task-5"])
+def test_the_shortest_path_is_what_the_files_say(name):
+    task = SCENARIO.task(name)
+    shortest = shortest_path_mm(task.fiducials, MESH, GRAPH)
+    assert task.shortest_path_mm == pytest.approx(shortest, abs=0.051)
+
+
+def test_the_readme_has_the_same_numbers(computed):
+    readme = (FOLDER.parent / "README.md").read_text(encoding="utf-8")
+    for task, parts in zip(SCENARIO.tasks, computed, strict=True):
+        row = (
+            f"| {task.title} | {parts.path_length_mm:.0f} | {parts.turning_deg:.0f} | "
+            f"{parts.hidden_points} | {parts.reorientation_deg:.0f} | {parts.index:.2f} |"
+        )
+        assert row in readme
+
+
+def test_the_first_tasks_are_all_in_view_and_the_last_goes_around_the_head(computed):
+    assert [parts.hidden_points for parts in computed[:2]] == [0, 0]
+    assert computed[-1].hidden_points >= 8
+    last = SCENARIO.task("task-5").fiducials
+    changes = np.count_nonzero(np.diff(np.sign(last[:, 0])))
+    assert changes >= 8
+
+
+@pytest.mark.parametrize("name", TASK_NAMES)
+def test_the_fiducials_locate_the_center_of_the_head_well(name):
+    fiducials = SCENARIO.task(name).fiducials
+    same = register(fiducials, fiducials)
+    covariance = tre_covariances(same, SCENARIO.target_position[None])[0]
+    ratio = np.sqrt(np.trace(covariance) / 3)
+    assert ratio < (0.7 if name == "trial-run" else 0.4)
+    assert target_spread(fiducials, SCENARIO.target_position) == pytest.approx(ratio**2)
+
+
+def test_the_robot_can_touch_every_fiducial_in_twenty_other_poses_of_the_head():
+    robot = load_robot()
+    collision = Collision(robot_shape(robot), MESH.vertices / MM_PER_M, MESH.triangles)
+    fiducials = np.concatenate([task.fiducials for task in SCENARIO.tasks])
+    normals = np.array([outward_normal(MESH, point) for point in fiducials])
+    seeds = range(90_000, 90_020)
+    poses = [SCENARIO.head_to_world, *map(SCENARIO.perturbed_head_to_world, seeds)]
+    can_be = touchable(TouchPlanner(robot, collision), collision, fiducials, normals, poses)
+    assert can_be.all()
+
+
+def test_the_notice_of_the_mri_travels_with_the_scenario():
+    content = json.loads((FOLDER / "scenario.json").read_text(encoding="utf-8"))
+    assert "Louis Collins, McConnell Brain Imaging Centre" in content["provenance"]["license"]
+
+
+def _body_count():
+    parent = np.arange(len(MESH.vertices))
+    while True:
+        low = np.minimum(parent[MESH.edges[:, 0]], parent[MESH.edges[:, 1]])
+        new = parent.copy()
+        np.minimum.at(new, MESH.edges[:, 0], low)
+        np.minimum.at(new, MESH.edges[:, 1], low)
+        new = new[new]
+        if np.array_equal(new, parent):
+            return len(np.unique(parent))
+        parent = new

@@ -1,0 +1,93 @@
+"""Fiducials placed by hand: moved onto the skin, in the order of their labels, or refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
+from rastrainer.scenario.draft import HeadDraft
+from rastrainer.scenario.tasks import LABELS
+from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
+from rastrainer_simulator.authoring.placed_tasks import read_placed_tasks
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from Testing.simulator.authoring.heads import egg
+from Testing.slicer.head.placed import fiducials
+
+
+@pytest.fixture(scope="module")
+def planning():
+    head = egg()
+    scenario = without_tasks(
+        HeadDraft(head, "made up"), ScenarioOptions("An egg", "made up", "none")
+    )
+    return PlanningSetup(scenario, head)
+
+
+@pytest.fixture(scope="module")
+def on_skin(planning):
+    """Fifteen places on the crown, (15, 3)."""
+    return np.array([nearest_on_mesh(planning.mesh, 1.4 * place).position for place in fiducials()])
+
+
+def read(planning, folder, points, labels=LABELS, count=1):
+    """Return the tasks of files with these points, what is wrong, and the warnings."""
+    path, warnings = folder / "mine.mrk.json", []
+    write_markups(path, PointList(labels, points))
+    files = (path,) * count
+    told = read_placed_tasks(planning, files, lambda _step, _share: None, warnings.append)
+    return *told, warnings
+
+
+def test_clicks_within_five_millimeters_of_the_skin_are_moved_onto_it_and_that_is_told(
+    planning, on_skin, tmp_path
+):
+    lifted = on_skin + np.linspace(-4.5, 4.5, 15)[:, None] * outward_normals(planning.mesh, on_skin)
+    (task,), wrong, warnings = read(planning, tmp_path, lifted)
+    assert not any("off the skin" in sentence for sentence in wrong)
+    assert len(warnings) == 1
+    assert warnings[0].startswith("Trial run: 14 fiducials were moved onto the skin, by at most 4.")
+    away = [nearest_on_mesh(planning.mesh, point).distance for point in task.fiducials]
+    assert max(away) < 1e-3
+    assert np.linalg.norm(task.fiducials - on_skin, axis=1).max() < 2.0
+
+
+def test_clicks_farther_away_are_named_with_how_far_they_are(planning, on_skin, tmp_path):
+    points = on_skin.copy()
+    points[2] *= 1.1
+    points[11] *= 0.9
+    tasks, wrong, _ = read(planning, tmp_path, points)
+    assert tasks == ()
+    (sentence,) = wrong
+    assert sentence.startswith("Trial run: off the skin by more than 5 mm: 3 (")
+    assert "12 (" in sentence
+
+
+def test_numbers_in_the_labels_are_the_order_to_touch(planning, on_skin, tmp_path):
+    backward = [f"F-{number}" for number in range(15, 0, -1)]
+    (task,), _, _ = read(planning, tmp_path, on_skin, backward)
+    assert np.allclose(task.fiducials, on_skin[::-1], atol=0.01)
+    assert task.labels == LABELS
+
+
+def test_a_list_that_is_no_task_and_a_seventh_list_are_refused(planning, on_skin, tmp_path):
+    _, wrong, _ = read(planning, tmp_path, on_skin[:14], LABELS[:14])
+    assert wrong == ["Trial run: it has 14 fiducials; a task has 15."]
+    twice = on_skin.copy()
+    twice[7] = twice[6]
+    assert read(planning, tmp_path, twice)[1] == ["Trial run: two fiducials are at the same place."]
+    _, wrong, _ = read(planning, tmp_path, on_skin, count=7)
+    assert wrong == ["A scenario has at most 6 tasks; 7 are given."]
+
+
+def test_everything_that_is_wrong_is_told_at_once(planning, on_skin, tmp_path):
+    low = on_skin.copy()
+    low[8] = nearest_on_mesh(planning.mesh, np.array([0.0, -30.0, -75.0])).position
+    low[5] = nearest_on_mesh(planning.mesh, np.array([30.0, -20.0, -75.0])).position
+    far = PlanningSetup(
+        replace(planning.scenario, target_position=np.array([0.0, 0.0, -60.0])), planning.mesh
+    )
+    _, wrong, _ = read(far, tmp_path, low)
+    assert "cannot touch fiducials 6, 9 where the head stands" in " ".join(wrong)

@@ -1,0 +1,79 @@
+"""What the command line says of a scenario: taken as it is said, or refused with a sentence."""
+
+import argparse
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer.head.pose import Perturbation
+from rastrainer_simulator.authoring.scenario_options import options_of
+from rastrainer_simulator.cli import scenario as scenario_command
+from rastrainer_simulator.cli.main import main
+
+
+def wished(*words):
+    parser = argparse.ArgumentParser()
+    scenario_command.add_parser(parser.add_subparsers())
+    return options_of(parser.parse_args(["scenario", "tasks", "draft", *words]), "the volume")
+
+
+def test_what_is_not_said_is_as_usual(tmp_path):
+    wishes = wished("-o", str(tmp_path / "my-head"))
+    assert (wishes.title, wishes.source, wishes.seed) == ("my-head", "the volume", 1)
+    assert (wishes.targets, wishes.trajectory, wishes.task_files) == ((), None, ())
+    assert wishes.setup.head_center == (480.0, 0.0, 220.0)
+    assert "nothing is known" in wishes.license
+
+
+def test_everything_that_is_said_is_taken(tmp_path):
+    (tmp_path / "setup.json").write_text(
+        json.dumps({"head": {"yawDeg": 20}, "perturbation": {"tiltDeg": 1}})
+    )
+    wishes = wished(
+        *("-o", "x", "--title", "Ms X", "--source", "clinic", "--license", "CC0", "--seed", "7"),
+        *("--target", "Tumor", "1", "-2", "3.5", "--target", "Cyst", "4", "5", "6"),
+        *("--trajectory", "Biopsy", "0", "0", "90", "1", "2", "3"),
+        *("--setup", str(tmp_path / "setup.json"), "--tasks", "a.mrk.json", "b.mrk.json"),
+    )
+    assert (wishes.title, wishes.source, wishes.license) == ("Ms X", "clinic", "CC0")
+    assert [target.name for target in wishes.targets] == ["Tumor", "Cyst"]
+    assert np.array_equal(wishes.targets[0].position, [1.0, -2.0, 3.5])
+    assert wishes.trajectory.name == "Biopsy"
+    assert np.array_equal(wishes.trajectory.entry, [0.0, 0.0, 90.0])
+    assert np.array_equal(wishes.trajectory.target, [1.0, 2.0, 3.0])
+    assert wishes.setup.head_yaw_deg == 20.0
+    assert wishes.setup.perturbation == Perturbation(15.0, 8.0, 1.0)
+    assert [path.name for path in wishes.task_files] == ["a.mrk.json", "b.mrk.json"]
+    assert wishes.seed == 7
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--title", "x" * 81], "--title must be printable text of 1 to 80"),
+        (["--title", "a\nb"], "--title must be printable"),
+        (["--title", "§§"], "cannot be a scenario's title"),
+        (["--license", ""], "--license must be printable"),
+        (["--target", "T", "1", "two", "3"], "--target needs numbers after its name"),
+        (["--target", "T", "1", "nan", "3"], "--target must be within ±2000 mm"),
+        (["--target", "", "1", "2", "3"], "--target must be printable"),
+        (["--target", "T", "1", "2", "2001"], "--target must be within ±2000 mm"),
+        (["--trajectory", "B", "0", "0", "90", "1", "2", "x"], "--trajectory needs numbers"),
+        (["--trajectory", "B", "0", "0", "1e9", "1", "2", "3"], "--trajectory must be within"),
+        (["--seed", "-1"], "--seed must be from 0"),
+        (["--setup", "{}/none.json"], "none.json"),
+        (["--setup", "{}/bad.json"], "a set-up has no 'haed'"),
+        (["--setup", "{}/wrong.json"], "yawDeg"),
+    ],
+)
+def test_what_cannot_be_used_gets_one_sentence_and_makes_nothing(tmp_path, capsys, words, sentence):
+    (tmp_path / "bad.json").write_text('{"haed": {}}')
+    (tmp_path / "wrong.json").write_text('{"head": {"yawDeg": "much"}}')
+    words = [word.replace("{}", str(tmp_path)) for word in words]
+    before = sorted(tmp_path.rglob("*"))
+    out = str(tmp_path / "made")
+    assert main(["scenario", "tasks", str(tmp_path / "no-draft"), "-o", out, *words]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    assert sentence in said
+    assert sorted(tmp_path.rglob("*")) == before

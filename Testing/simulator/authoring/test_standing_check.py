@@ -1,0 +1,87 @@
+"""Robot and head stand on the table in every trial, or a sentence says what does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.head.pose import Perturbation
+from rastrainer.scenario.draft import HeadDraft
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.setup import SetUp
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.scenario_check import (
+    check_plan,
+    check_standing,
+    lowest_in_trials_mm,
+)
+from Testing.simulator.authoring.heads import colin27, egg
+
+
+def standing(setup):
+    """Return what is wrong with where an egg of a head stands."""
+    return check_standing(scenario_of(setup), egg())
+
+
+def scenario_of(setup):
+    return without_tasks(
+        HeadDraft(egg(), "made up"), ScenarioOptions("Egg", "made up", "none", setup)
+    )
+
+
+@pytest.mark.parametrize(
+    ("setup", "sentence"),
+    [
+        pytest.param(SetUp(table_center=(800.0, 0.0)), "robot's foot", id="robot beside it"),
+        pytest.param(SetUp(robot_base=(-300.0, 0.0)), "robot's foot", id="robot over its edge"),
+        pytest.param(SetUp(head_center=(480.0, 700.0, 220.0)), "head's stand", id="head beside it"),
+        pytest.param(
+            SetUp(table_center=(0.0, 0.0), table_size=(1050.0, 1000.0, 40.0)),
+            "head's stand",
+            id="a trial's head over its edge",
+        ),
+        pytest.param(
+            SetUp(head_center=(480.0, 0.0, 120.0), perturbation=Perturbation(60.0, 0.0, 0.0)),
+            "mm into the table",
+            id="head moved into it",
+        ),
+        pytest.param(
+            SetUp(head_center=(480.0, 0.0, 110.0), perturbation=Perturbation(0.0, 0.0, 40.0)),
+            "mm into the table",
+            id="head tilted into it",
+        ),
+    ],
+)
+def test_what_does_not_stand_on_the_table_is_told(setup, sentence):
+    told = standing(setup)
+    assert sentence in told[0]
+    assert "\n" not in told[0]
+
+
+def test_the_usual_set_up_and_the_scenario_that_comes_with_it_stand_on_the_table():
+    assert standing(SetUp()) == []
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    assert check_standing(scenario, colin27()) == []
+
+
+def test_the_check_of_the_plan_tells_of_the_table():
+    planning = PlanningSetup(scenario_of(SetUp(table_center=(800.0, 0.0))), egg())
+    assert "robot's foot" in check_plan(planning)[0]
+
+
+def test_no_trial_brings_the_head_lower_than_is_told():
+    setup = SetUp(perturbation=Perturbation(20.0, 30.0, 25.0))
+    scenario, head = scenario_of(setup), egg()
+    told = lowest_in_trials_mm(scenario, head)
+    lowest = [
+        transforms.apply(scenario.perturbed_head_to_world(seed), head.vertices)[:, 2].min()
+        for seed in range(400)
+    ]
+    assert told <= min(lowest)
+    assert told > min(lowest) - 15.0
+    still = replace(scenario, perturbation=Perturbation(0.0, 0.0, 0.0))
+    world = transforms.apply(still.head_to_world, head.vertices)
+    assert lowest_in_trials_mm(still, head) == pytest.approx(np.min(world[:, 2]))

@@ -1,0 +1,115 @@
+"""Tasks proposed on a sphere the size of a head: what the plans ask for, for any seed."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh
+from rastrainer_simulator.authoring.task_proposal import (
+    PLANS,
+    RISE,
+    SPACING_MM,
+    TaskPlan,
+    TaskProposer,
+    places_seen_from,
+)
+from rastrainer_simulator.authoring.task_set import is_smooth, smooth_places, spread_out
+
+RADIUS_MM = 90.0
+EYE = np.array([0.0, 600.0, 220.0])
+TARGET = np.zeros(3)
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    sphere = trimesh.creation.icosphere(4, RADIUS_MM)
+    return HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
+
+
+@pytest.fixture(scope="module")
+def places(mesh):
+    vertices = smooth_places(mesh, 12.0)
+    return places_seen_from(mesh, mesh.vertices[vertices], mesh.vertex_normals[vertices], EYE)
+
+
+@pytest.fixture(scope="module")
+def proposer(mesh, places):
+    return TaskProposer(mesh, places, EYE, TARGET)
+
+
+def test_each_task_asks_more_than_the_one_before(proposer):
+    proposals = proposer.propose_rising(PLANS, seed=1)
+    assert [proposal.plan.name for proposal in proposals] == [plan.name for plan in PLANS]
+    indices = np.array([proposal.complexity.index for proposal in proposals])
+    assert (indices[1:] >= RISE * indices[:-1]).all()
+    for proposal in proposals:
+        assert proposal.complexity.hidden_points == proposal.plan.hidden
+        away = np.linalg.norm(proposal.fiducials[:, None] - proposal.fiducials[None], axis=2)
+        assert (away + 1e3 * np.eye(15)).min() >= SPACING_MM
+        assert len(proposal.fiducials) == 15
+
+
+def test_where_it_is_wanted_the_first_task_is_the_easiest_of_many(proposer):
+    usual, easy = (
+        proposer.propose_rising(PLANS[1:2], seed=1, begins_easy=begins_easy)[0]
+        for begins_easy in (False, True)
+    )
+    assert easy.complexity.index < usual.complexity.index
+
+
+def test_places_that_turn_out_useless_are_replaced(mesh, places, proposer):
+    plan = PLANS[2]
+    useless = proposer.propose(plan, 5).fiducials[:4]
+    asked = []
+
+    def usable(positions):
+        asked.append(len(positions))
+        return ~(positions[:, None] == useless[None]).all(axis=2).any(axis=1)
+
+    picky = TaskProposer(mesh, places, EYE, TARGET, usable=usable)
+    found = picky.propose(plan, 5)
+    assert usable(found.fiducials).all()
+    assert found.complexity.hidden_points == plan.hidden
+    assert 2 < len(asked) < 8
+    assert np.array_equal(picky.propose(plan, 5).fiducials, found.fiducials)
+
+
+def test_the_same_seed_proposes_the_same_task(proposer):
+    first, again = (proposer.propose(PLANS[2], 5) for _ in range(2))
+    assert np.array_equal(first.fiducials, again.fiducials)
+    assert not np.array_equal(first.fiducials, proposer.propose(PLANS[2], 6).fiducials)
+
+
+def test_a_task_changes_sides_as_often_as_planned(proposer):
+    plan = TaskPlan("x", "X", hidden=6, off_axis_deg=75.0, crossings=6)
+    sides = proposer.propose(plan, 3).fiducials[:, 0]
+    by_side = np.argsort(np.argsort(-sides)) < 8
+    assert np.count_nonzero(np.diff(by_side)) == 6
+
+
+def test_a_head_without_room_is_answered_with_a_sentence(mesh, places):
+    few = type(places)(*(values[:10] for values in vars(places).values()))
+    with pytest.raises(InputError, match="no room for the fiducials of Task 1"):
+        TaskProposer(mesh, few, EYE, TARGET).propose(PLANS[1], 1)
+
+
+def test_places_are_spread_evenly_and_cover_the_skin(mesh):
+    points = mesh.vertices
+    chosen = points[spread_out(points, 30.0)]
+    away = np.linalg.norm(points[:, None] - chosen[None], axis=2)
+    assert away.min(axis=1).max() < 30.0
+    among = np.linalg.norm(chosen[:, None] - chosen[None], axis=2) + 1e3 * np.eye(len(chosen))
+    assert among.min() >= 30.0
+
+
+def test_near_an_edge_is_no_place_for_a_fiducial():
+    drum = trimesh.creation.cylinder(radius=80.0, height=120.0, sections=96).subdivide_to_size(6.0)
+    mesh = HeadMesh(np.array(drum.vertices), np.array(drum.faces))
+
+    def nearest_vertex(point):
+        return int(np.linalg.norm(mesh.vertices - point, axis=1).argmin())
+
+    assert is_smooth(mesh, nearest_vertex([80.0, 0.0, 0.0]))
+    assert is_smooth(mesh, nearest_vertex([0.0, 0.0, 60.0]))
+    assert not is_smooth(mesh, nearest_vertex([80.0, 0.0, 54.0]))

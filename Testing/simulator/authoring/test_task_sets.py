@@ -1,0 +1,177 @@
+"""Sets of tasks for a head that nobody has seen before: what is proposed, and what is refused."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.head.face_removal import face_vertices
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.scenario.draft import HeadDraft
+from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.tasks import LABELS, read_task
+from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.scenario_check import check_plan
+from rastrainer_simulator.authoring.task_check import check_tasks
+from rastrainer_simulator.authoring.task_set import TaskSetProposer
+from Testing.simulator.authoring.heads import egg
+from Testing.simulator.authoring.test_many_task_sets import broken_promises
+
+SEED = 5
+NAMES = ["trial-run", "task-1", "task-2", "task-3", "task-4", "task-5"]
+
+
+WISHES = ScenarioOptions(
+    "An egg",
+    "made up",
+    "none needed",
+    targets=(PlannedTarget("Tumor", np.array([15.0, 10.0, 30.0])),),
+    trajectory=PlannedTrajectory("Biopsy", np.array([10.0, 20.0, 97.0]), np.array([15.0, 10, 30])),
+)
+
+
+@pytest.fixture(scope="module")
+def planning():
+    head = egg()
+    return PlanningSetup(without_tasks(HeadDraft(head, "made up"), WISHES), head)
+
+
+@pytest.fixture(scope="module")
+def tasks(planning):
+    return TaskSetProposer(planning).propose(SEED)
+
+
+def test_there_are_six_tasks_of_rising_complexity_on_the_skin_off_the_face(planning, tasks):
+    assert [task.name for task in tasks] == NAMES
+    assert all(harder.complexity > 1.05 * easier.complexity for easier, harder in pairwise(tasks))
+    fiducials = np.concatenate([task.fiducials for task in tasks])
+    assert max(nearest_on_mesh(planning.mesh, point).distance for point in fiducials) < 0.05
+    face = planning.mesh.vertices[face_vertices(planning.mesh)]
+    assert len(face) > 100
+    assert np.linalg.norm(fiducials[:, None] - face[None], axis=2).min() > 5.0
+
+
+def test_the_check_of_hand_placed_fiducials_finds_nothing_wrong_with_them(planning, tasks):
+    assert check_tasks(planning, tasks[::3], first_seed=70_000) == []
+
+
+def test_everything_that_is_promised_of_a_set_is_kept(planning, tasks):
+    assert broken_promises(planning, tasks) == []
+
+
+def test_the_first_planned_target_is_the_one_whose_error_is_told(planning):
+    assert planning.scenario.target_name == "Tumor"
+    assert check_plan(planning) == []
+
+
+def moved(task, index, point):
+    fiducials = task.fiducials.copy()
+    fiducials[index] = point
+    return replace(task, fiducials=fiducials)
+
+
+def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(planning, tasks):
+    run, first = tasks[:2]
+    lifted = moved(run, 2, run.fiducials[2] * 1.1)
+    assert "Trial run: fiducial 3 is" in check_tasks(planning, [lifted])[0]
+    near = nearest_on_mesh(planning.mesh, run.fiducials[4] + [6.0, 0.0, 0.0]).position
+    assert "fiducials 5 and 7 are" in check_tasks(planning, [moved(run, 6, near)])[0]
+    low = nearest_on_mesh(planning.mesh, np.array([0.0, -30.0, -75.0])).position
+    assert "cannot touch fiducial 9 where the head stands" in " ".join(
+        check_tasks(planning, [moved(run, 8, low)])
+    )
+    assert "must be above" in check_tasks(planning, [first, run])[-1]
+    assert "its complexity is" in check_tasks(planning, [replace(run, complexity=3.0)])[0]
+    unmeasured, wrong = (replace(run, shortest_path_mm=told) for told in (None, 5.0))
+    assert "shortestPathMm tells none" in check_tasks(planning, [unmeasured])[0]
+    assert "shortestPathMm tells 5.0 mm" in check_tasks(planning, [wrong])[0]
+
+
+def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(planning):
+    outside = (PlannedTarget("Elsewhere", np.array([300.0, 0.0, 0.0])),)
+    scenario = replace(planning.scenario, targets=outside)
+    assert "Elsewhere is" in check_plan(PlanningSetup(scenario, planning.mesh))[0]
+    below = PlannedTrajectory("From below", np.array([0.0, 0.0, -75.0]), np.array([0.0, 0, 20]))
+    scenario = replace(planning.scenario, trajectory=below)
+    assert "From below" in check_plan(PlanningSetup(scenario, planning.mesh))[0]
+
+
+def test_a_first_target_too_deep_to_start_above_stays_a_further_one_and_that_is_told():
+    deep = PlannedTarget("Brainstem", np.array([0.0, -10.0, -60.0]))
+    warnings = []
+    wishes = replace(WISHES, targets=(deep, *WISHES.targets))
+    scenario = without_tasks(HeadDraft(egg(), "made up"), wishes, warnings.append)
+    assert scenario.target_name == "Center of the head"
+    assert [target.name for target in scenario.targets] == ["Brainstem", "Tumor"]
+    (sentence,) = warnings
+    assert sentence.startswith("Brainstem lies too deep for trials to start above it")
+    assert "told at Center of the head" in sentence
+
+
+@pytest.mark.parametrize(
+    ("height", "sentence"),
+    [
+        (60.0, "Biopsy enters 35 mm below the skin, within the head; its entry must be within 10"),
+        (125.0, "Biopsy enters 27 mm above the skin; its entry must be within 10 mm of the skin."),
+        (90.0, None),
+    ],
+)
+def test_a_trajectory_enters_through_the_skin(planning, height, sentence):
+    entry = np.array([10.0, 20.0, height])
+    trajectory = replace(WISHES.trajectory, entry=entry)
+    wrong = check_plan(
+        PlanningSetup(replace(planning.scenario, trajectory=trajectory), planning.mesh)
+    )
+    assert [each[: len(sentence or "")] for each in wrong] == ([sentence] if sentence else [])
+
+
+def test_a_head_that_stands_too_far_away_is_refused_and_leaves_nothing(tmp_path):
+    far = ScenarioOptions("Far", "made up", "none", setup=SetUp(head_center=(1500.0, 0.0, 220.0)))
+    with pytest.raises(InputError, match="robot") as caught:
+        make_scenario(HeadDraft(egg(), "made up"), far, tmp_path / "far")
+    assert "\n" not in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture
+def placed(tmp_path, tasks):
+    """Wishes with fiducials that are placed by hand."""
+    path = tmp_path / "mine.mrk.json"
+    write_markups(path, PointList(LABELS, tasks[0].fiducials))
+    return replace(WISHES, task_files=(path,))
+
+
+def test_fiducials_placed_by_hand_become_tasks(tmp_path, tasks, placed):
+    scenario = make_scenario(HeadDraft(egg(), "made up"), placed, tmp_path / "egg")
+    assert [task.title for task in scenario.tasks] == ["Trial run"]
+    assert scenario.tasks[0].complexity == pytest.approx(tasks[0].complexity, abs=0.02)
+    assert scenario.preview is not None
+    again = read_task(placed.task_files[0], "trial-run", "Trial run", 0.0)
+    assert np.array_equal(scenario.tasks[0].fiducials, again.fiducials)
+
+
+def test_a_skull_that_is_made_meanwhile_goes_into_the_scenario(tmp_path, placed):
+    skull = HeadMesh(0.9 * egg().vertices, egg().triangles)
+    first, whole = HeadDraft(egg(), "made up"), HeadDraft(egg(), "with skull", skull, True)
+    scenario = make_scenario(first, placed, tmp_path / "egg", wait_for_skull=lambda: whole)
+    assert scenario.provenance.method == "with skull"
+    assert scenario.is_skull_approximate
+    assert len(read_head_mesh(scenario.skull_mesh).triangles) == len(skull.triangles)
+
+
+def test_a_skull_that_cannot_be_made_leaves_nothing_of_the_scenario(tmp_path, placed):
+    def fails():
+        raise InputError("The CT shows no bone.")
+
+    with pytest.raises(InputError, match="no bone"):
+        make_scenario(
+            HeadDraft(egg(), "made up"), placed, tmp_path / "made" / "egg", wait_for_skull=fails
+        )
+    assert not list((tmp_path / "made").iterdir())

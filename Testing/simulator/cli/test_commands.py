@@ -1,0 +1,205 @@
+"""The commands for files, as a user runs them."""
+
+import argparse
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.files.markups import write_markups
+from rastrainer.files.point_list import PointList
+from rastrainer.registration.registration import register
+from rastrainer_simulator.cli import register as register_command
+from rastrainer_simulator.cli import score as score_command
+from rastrainer_simulator.cli.main import main
+
+STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
+
+
+def run(*words):
+    parser = argparse.ArgumentParser()
+    subparsers = parser.add_subparsers(required=True)
+    register_command.add_parser(subparsers)
+    score_command.add_parser(subparsers)
+    arguments = parser.parse_args([str(word) for word in words])
+    return arguments.run(arguments)
+
+
+@pytest.fixture
+def run_json(capsys):
+    def run_and_decode(*words):
+        assert run(*words, "--json") == 0
+        return json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+
+    return run_and_decode
+
+
+def write_csv(path, points, labels=None):
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["x", "y", "z"] if labels is None else ["label", "x", "y", "z"])
+        for row, point in enumerate(points):
+            writer.writerow(
+                [*([] if labels is None else [labels[row]]), *map(repr, point.tolist())]
+            )
+    return path
+
+
+@pytest.fixture
+def files(touched_head, tmp_path):
+    moving, fixed, _ = touched_head(0)
+    labels = [str(i + 1) for i in range(15)]
+    write_markups(tmp_path / "fixed.mrk.json", PointList(tuple(labels), fixed))
+    write_csv(tmp_path / "moving.csv", moving[::-1], labels[::-1])
+    return moving, fixed, tmp_path / "moving.csv", tmp_path / "fixed.mrk.json"
+
+
+@pytest.mark.parametrize("kind", ["rigid", "similarity", "affine"])
+def test_register_pairs_by_label_and_prints_the_registration_as_json(kind, files, run_json):
+    moving, fixed, moving_file, fixed_file = files
+    result = run_json("register", moving_file, fixed_file, "--type", kind)
+    expected = register(moving, fixed, kind)
+    assert result["type"] == kind
+    assert result["fre_mm"] == pytest.approx(expected.fre_mm, abs=1e-9)
+    np.testing.assert_allclose(result["matrix"], expected.matrix, atol=1e-9)
+    assert result["labels"] == [str(i) for i in range(15, 0, -1)]
+    np.testing.assert_allclose(result["residuals_mm"], expected.residuals_mm[::-1], atol=1e-9)
+    mapped = transforms.apply(np.array(result["matrix"]), moving[::-1])
+    np.testing.assert_allclose(result["residual_vectors_mm"], mapped - fixed[::-1], atol=1e-9)
+    assert result["warnings"] == []
+    low, high = result["expected_tre"]["interval_mm"]
+    assert low < result["expected_tre"]["expected_mm"] < high
+
+
+def test_register_pairs_by_order_where_labels_are_left_out(files, tmp_path, run_json):
+    moving, fixed, _, fixed_file = files
+    unlabeled = write_csv(tmp_path / "unlabeled.csv", moving)
+    result = run_json("register", unlabeled, fixed_file)
+    assert result["fre_mm"] == pytest.approx(register(moving, fixed).fre_mm)
+
+
+def test_register_tells_warnings_in_json_and_in_words(files, tmp_path, run_json, capsys):
+    moving, _, _, fixed_file = files
+    moving[[2, 8]] = moving[[8, 2]]
+    swapped = write_csv(tmp_path / "swapped.csv", moving)
+    (warning,) = run_json("register", swapped, fixed_file)["warnings"]
+    assert (warning["code"], warning["points"]) == ("order", ["3", "9"])
+    assert run("register", swapped, fixed_file) == 0
+    assert f"Warning: {warning['message']}" in capsys.readouterr().out
+
+
+def test_register_expects_more_error_far_from_the_fiducials(files, run_json):
+    _, fixed, moving_file, fixed_file = files
+    center = run_json("register", moving_file, fixed_file)["expected_tre"]
+    np.testing.assert_allclose(center["target_mm"], fixed.mean(axis=0))
+    far = run_json("register", moving_file, fixed_file, "--target", "-200", "0", "0")
+    assert far["expected_tre"]["target_mm"] == [-200, 0, 0]
+    assert far["expected_tre"]["expected_mm"] > 2 * center["expected_mm"]
+
+
+def test_register_of_four_points_by_affine_says_nothing_about_targets(files, tmp_path, run_json):
+    moving, fixed, *_ = files
+    few = [write_csv(tmp_path / f"{i}.csv", points[:4]) for i, points in enumerate((moving, fixed))]
+    assert run_json("register", *few, "--type", "affine")["expected_tre"] is None
+
+
+def test_register_prints_a_table_with_units(files, capsys):
+    run("register", *files[2:])
+    text = capsys.readouterr().out
+    assert "Rigid registration of 15 pairs of points" in text
+    assert "Residual (mm)" in text
+    assert "it does not predict the error at a target" in text
+
+
+def test_score_reproduces_the_published_tables(run_json):
+    result = run_json("score", STUDY, "--mean-ct", "desktop=129.42")
+    assert list(result) == ["hmd", "desktop"]
+    assert round(result["hmd"]["overall"], 2) == 64.82
+    assert round(result["desktop"]["overall"], 2) == 67.29
+    assert round(result["hmd"]["tasks"]["4"], 2) == 37.10
+    assert round(result["desktop"]["subjects"]["1"], 2) == 81.72
+    assert round(result["hmd"]["sd_population"], 2) == 25.47
+    assert round(result["desktop"]["sd_sample"], 2) == 25.96
+    assert round(result["hmd"]["pearson_r"], 3) == 0.963
+    assert round(result["desktop"]["equation_3_overall"], 1) == 33.6
+
+
+def test_a_mean_time_without_a_mode_counts_for_all(run_json):
+    result = run_json("score", STUDY, "--mean-ct", "120")
+    assert (result["hmd"]["mean_ct"], result["desktop"]["mean_ct"]) == (120, 120)
+    own = run_json("score", STUDY)
+    assert own["desktop"]["mean_ct"] == pytest.approx(129.435)
+
+
+def test_what_one_trial_does_not_define_is_null(tmp_path, run_json):
+    path = tmp_path / "one.csv"
+    path.write_text("mode,subject,task,ct,rmse\ndesktop,a,task-1,100,1\n")
+    result = run_json("score", path)["desktop"]
+    assert (result["overall"], result["sd_sample"], result["pearson_r"]) == (100, None, None)
+
+
+def test_score_prints_tables_and_the_warning(capsys):
+    assert run("score", STUDY) == 0
+    text = capsys.readouterr().out
+    assert "hmd: 20 trials, mean CT 126.175 s, best RMSE 1.10 mm" in text
+    assert "CTPS rises with a slower completion" in text
+    text.encode("ascii")
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["register", "missing.csv", "missing.csv"], "There is no file missing.csv"),
+        (["register", ".", "missing.csv"], "is a folder"),
+        (["register", STUDY, STUDY], "with the header label,x,y,z"),
+        (["score", "missing.csv"], "There is no file missing.csv"),
+        (["score", STUDY, "--mean-ct", "fast"], "--mean-ct must be a number of seconds"),
+        (["score", STUDY, "--mean-ct", "vr=120"], "names the mode 'vr', but .* hmd, desktop"),
+        (["score", STUDY, "--mean-ct", "0"], "mean completion time must be"),
+        (["score", STUDY, "--mean-ct", "hmd=nan"], "mean completion time must be"),
+    ],
+)
+def test_bad_input_is_one_sentence(words, sentence):
+    with pytest.raises(InputError, match=sentence) as caught:
+        run(*words)
+    assert "\n" not in str(caught.value)
+
+
+def test_lists_that_do_not_pair_are_refused(files, tmp_path):
+    moving, _, _, fixed_file = files
+    other = write_csv(tmp_path / "other.csv", moving, [f"F-{i}" for i in range(15)])
+    with pytest.raises(InputError, match=r"paired by their labels, but F-0, .* and 1, 2"):
+        run("register", other, fixed_file)
+
+
+@pytest.mark.parametrize("name", ["bad.csv", "bad.mrk.json"])
+@pytest.mark.parametrize(
+    "content", [b"", b"\0" * 100, b"{", b"\xff\xfe", b"label,x,y,z\n1,nan,2,3\n"]
+)
+def test_bad_files_end_with_status_2_and_one_line(content, name, tmp_path, capsys):
+    path = tmp_path / name
+    path.write_bytes(content)
+    for words in (["register", str(path), str(path)], ["score", str(path)]):
+        assert main(words) == 2
+        printed = capsys.readouterr()
+        assert printed.out == ""
+        assert printed.err.count("\n") == 1
+        assert str(path) in printed.err
+
+
+@pytest.mark.parametrize("name", ["zeros.csv", "zeros.mrk.json"])
+def test_the_program_refuses_a_gigabyte_of_zeros_unread(name, tmp_path):
+    path = tmp_path / name
+    with path.open("wb") as file:
+        file.truncate(2**30)
+    program = [sys.executable, "-m", "rastrainer_simulator.cli.main", "register", path, path]
+    ended = subprocess.run(program, capture_output=True, text=True, check=False)
+    assert ended.returncode == 2
+    assert ended.stderr.count("\n") == 1
+    assert "larger than 4 MiB" in ended.stderr

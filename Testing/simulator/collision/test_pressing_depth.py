@@ -1,0 +1,192 @@
+"""How far the tool is pressed in: in the simulation's states and events, journal and replay."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+import pytest
+
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.protocol import CommandName, Proximity, check_arguments
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.collision.pressing import DEEPEST, Pressing
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.replay.resimulation import replay
+from rastrainer_simulator.state import EventKind
+from Testing.simulator.virtual.cheating_trainees import press
+
+DT = 0.004
+DOWN = OperatorInput(translation=(0.0, 0.0, -1.0), fine=True)
+UP = OperatorInput(translation=(0.0, 0.0, 1.0), fine=True)
+
+
+@pytest.fixture
+def simulation(setup):
+    """Return a trial whose tip rests on top of the head."""
+    simulation = Simulation(setup, 12)
+    do(simulation, CommandName.START_TASK, task="task-1", trainee="P01", seed=12)
+    truth = simulation.truth
+    move(simulation, truth.in_world(truth.target) + np.array([0.0, 0.0, 130.0]))
+    while simulation.state.proximity is not Proximity.CONTACT:
+        do(simulation, CommandName.JOG, velocityMmS=[0, 0, -5], durationS=DT)
+    return simulation
+
+
+def do(simulation, command, **arguments):
+    command = OperatorCommand(command, check_arguments(command, arguments))
+    return simulation.step(DT, OperatorInput(commands=(command,)))
+
+
+def rest(simulation, ticks):
+    return [simulation.step(DT, HANDS_OFF) for _ in range(ticks)]
+
+
+def move(simulation, place_mm, speed=300.0):
+    do(simulation, CommandName.MOVE_TIP_TO, positionMm=list(place_mm), speedMmS=speed)
+    rest(simulation, 1000)
+
+
+def tip_mm(simulation):
+    return MM_PER_M * simulation.state.tool_tip_to_world[:3, 3]
+
+
+def test_without_contact_there_is_no_depth(simulation):
+    move(simulation, tip_mm(simulation) - (0.0, 0.0, -30.0))
+    assert simulation.state.proximity is not Proximity.CONTACT
+    assert simulation.state.depth == 0.0
+    do(simulation, CommandName.JOG, velocityMmS=[0, 0, -20], durationS=0.1)
+    assert all(result.state.depth == 0.0 for result in rest(simulation, 50))
+
+
+def test_a_move_beyond_the_skin_presses_as_deep_as_its_end_and_rests_there(simulation):
+    move(simulation, tip_mm(simulation) - (0.0, 0.0, 2.0))
+    assert simulation.state.clearance > -1e-4
+    # The top of the head is not quite level.
+    assert MM_PER_M * simulation.state.depth == pytest.approx(2.0, abs=0.1)
+    depth = simulation.state.depth
+    assert {result.state.depth for result in rest(simulation, 50)} == {depth}
+
+
+def test_a_jog_presses_by_its_velocity_times_its_time(simulation):
+    before = simulation.state.depth
+    do(simulation, CommandName.JOG, velocityMmS=[0, 0, -5], durationS=0.4)
+    rest(simulation, 120)
+    assert MM_PER_M * (simulation.state.depth - before) == pytest.approx(2.0, abs=0.15)
+
+
+def test_a_stick_held_down_presses_to_the_limit_and_no_farther(simulation):
+    depths = [simulation.step(DT, DOWN).state.depth for _ in range(400)]
+    assert depths == sorted(depths)
+    assert depths[-1] == DEEPEST
+
+
+def test_lifting_takes_the_depth_back_and_the_end_of_contact_tells_the_greatest(simulation):
+    for _ in range(40):
+        simulation.step(DT, DOWN)
+    rest(simulation, 1)
+    deepest = simulation.state.depth
+    assert deepest > 0.0005
+    events, depths = [], []
+    while simulation.state.proximity is Proximity.CONTACT:
+        result = simulation.step(DT, UP)
+        events.extend(result.events)
+        depths.append(result.state.depth)
+    assert depths == sorted(depths, reverse=True)
+    assert depths[-1] == 0.0
+    (left,) = (event for event in events if event.kind is EventKind.PROXIMITY)
+    assert left.data["from"] == "contact"
+    assert left.data["depthMm"] == MM_PER_M * deepest
+
+
+def test_a_touch_and_a_refused_touch_tell_how_deep_they_are(simulation):
+    move(simulation, tip_mm(simulation) - (0.0, 0.0, 1.5))
+    depth_mm = MM_PER_M * simulation.state.depth
+    (event,) = do(simulation, CommandName.CAPTURE).events
+    assert event.kind is EventKind.REJECTED
+    assert event.data["depthMm"] == depth_mm > 1.0
+
+
+def test_a_new_trial_begins_without_depth(simulation):
+    simulation.step(DT, DOWN)
+    simulation.step(DT, DOWN)
+    assert simulation.state.depth > 0.0
+    do(simulation, CommandName.ABORT)
+    assert simulation.state.depth == 0.0
+
+
+def test_the_motion_does_not_depend_on_the_depth(setup, monkeypatch):
+    def played():
+        simulation = Simulation(setup, 12)
+        do(simulation, CommandName.START_TASK, task="task-1", trainee="P01", seed=12)
+        truth = simulation.truth
+        move(simulation, truth.in_world(truth.target))
+        random = np.random.default_rng(1)
+        pushes = [OperatorInput(tuple(random.uniform(-1, 0.3, 3))) for _ in range(300)]
+        states = [simulation.step(DT, push).state for push in pushes]
+        return [(state.q, state.proximity, state.clearance) for state in states]
+
+    measured = played()
+    monkeypatch.setattr(Pressing, "move", lambda *_: None)
+    assert played() == measured
+
+
+@pytest.fixture(scope="module")
+def pressed(setup):
+    return press(setup, "trial-run", 3, depth_mm=2.0)
+
+
+def written(entries, path):
+    journal = Journal(path)
+    journal.write(entries, sync=False)
+    journal.close()
+    return read_journal(path)
+
+
+def test_every_touch_of_a_journal_tells_the_depth_that_the_sample_after_it_has(pressed):
+    touches = [entry for entry in pressed.entries if entry["kind"] == "touch"]
+    assert [touch["depthMm"] for touch in touches] == pytest.approx([2.0] * 15, abs=0.1)
+    samples = {e["tick"]: e["depthMm"] for e in pressed.entries if e["kind"] == "sample"}
+    for touch in touches:
+        assert samples[touch["tick"]] == touch["depthMm"]
+
+
+def test_a_journal_with_depths_replays_to_the_last_bit(setup, pressed, tmp_path):
+    report = replay(written(pressed.entries, tmp_path / "new.journal"), setup)
+    assert report.difference is None
+    assert report.motion == pressed.record.motion
+
+
+@pytest.mark.parametrize("kind", ["sample", "touch", "proximity"])
+def test_a_forged_depth_is_found_by_the_replay(setup, pressed, tmp_path, kind):
+    entries = copy.deepcopy(pressed.entries)
+    told = [entry for entry in entries if entry["kind"] == kind and "depthMm" in entry]
+    told[-1]["depthMm"] += 0.5
+    report = replay(written(entries, tmp_path / "forged.journal"), setup)
+    assert "depthMm was" in report.difference
+
+
+def test_one_depth_left_out_is_found_by_the_replay(setup, pressed, tmp_path):
+    entries = copy.deepcopy(pressed.entries)
+    del next(entry for entry in entries if entry["kind"] == "touch")["depthMm"]
+    report = replay(written(entries, tmp_path / "forged.journal"), setup)
+    assert "depthMm was None" in report.difference
+
+
+def test_a_journal_from_before_depths_replays_to_the_last_bit_and_has_no_pressing_depth(
+    setup, pressed, tmp_path
+):
+    entries = copy.deepcopy(pressed.entries)
+    for entry in entries:
+        entry.pop("depthMm", None)
+    reading = written(entries, tmp_path / "old.journal")
+    assert replay(reading, setup).difference is None
+    trajectory = Recording.of(reading.entries).trajectory()
+    assert trajectory.depth_mm is None
+    motion = dict(pressed.record.motion)
+    del motion["pressing_depth_mm"]
+    assert trial_motion(trajectory) == motion

@@ -1,0 +1,107 @@
+import numpy as np
+import pytest
+import trimesh
+
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.authoring.planning_setup import touchable
+from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.touch_planner import TouchPlanner, tool_directions
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import load_robot
+
+CENTER = np.array([0.50, 0.0, 0.30])
+RADIUS = 0.08
+OUTWARD = {
+    "top": (0.0, 0.0, 1.0),
+    "front": (0.0, -0.9, 0.44),
+    "far side": (0.8, 0.0, 0.6),
+}
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return load_robot()
+
+
+@pytest.fixture(scope="module")
+def collision(robot):
+    sphere = trimesh.creation.icosphere(4, RADIUS)
+    collision = Collision(robot_shape(robot), np.array(sphere.vertices), np.array(sphere.faces))
+    pose = np.eye(4)
+    pose[:3, 3] = CENTER
+    collision.set_head_pose(pose)
+    return collision
+
+
+@pytest.fixture(scope="module")
+def planner(robot, collision):
+    return TouchPlanner(robot, collision)
+
+
+@pytest.mark.parametrize("place", OUTWARD)
+def test_a_touch_has_only_the_tip_at_the_skin_and_leans_as_it_says(
+    robot, collision, planner, place
+):
+    normal = np.array(OUTWARD[place]) / np.linalg.norm(OUTWARD[place])
+    position = CENTER + RADIUS * normal
+    touch = planner.touch(position, normal)
+    kinematics = make_kinematics(robot)
+    assert np.allclose(kinematics.tip(touch.q)[:3, 3], position, atol=1e-8)
+    assert (np.array(touch.q) >= robot.lower).all()
+    assert (np.array(touch.q) <= robot.upper).all()
+    leaning = np.degrees(np.arccos(min(-touch.direction @ normal, 1.0)))
+    assert leaning == pytest.approx(touch.leaning_deg, abs=1e-3)
+    found = collision.check(kinematics.links(touch.q))
+    assert found.shaft_m > 0
+    assert min(found.links_m, found.self_m, found.table_m) >= 0.005
+
+
+@pytest.mark.parametrize(
+    "position",
+    [
+        pytest.param(CENTER - [0, 0, RADIUS], id="below the head"),
+        pytest.param([1.5, 0, 0.3], id="out of reach"),
+    ],
+)
+def test_what_cannot_be_touched_has_no_touch(planner, position):
+    assert planner.touch(np.array(position), np.array([0.0, 0.0, -1.0])) is None
+
+
+def test_what_is_likely_is_tried_first_and_nothing_is_missed(planner):
+    for normal in map(np.array, OUTWARD.values()):
+        outward = normal / np.linalg.norm(normal)
+        place = CENTER + RADIUS * outward
+        found = planner.working_direction(place, outward)
+        leaning, direction = list(tool_directions(outward))[found]
+        touch = planner.touch(place, outward)
+        assert touch.leaning_deg == leaning
+        assert np.array_equal(touch.direction, direction)
+        assert planner.working_direction(place, outward, likely=24) is not None
+        assert planner.working_direction(place, outward, likely=found) == found
+    below = CENTER - [0, 0, RADIUS]
+    assert planner.working_direction(below, np.array([0.0, 0.0, -1.0]), likely=7) is None
+
+
+def test_a_place_is_touchable_only_if_it_is_so_in_every_pose(planner, collision):
+    positions = RADIUS * MM_PER_M * np.array([[0, 0, 1], [0.8, 0, 0.6]])
+    normals = positions / (RADIUS * MM_PER_M)
+    near, far = np.eye(4), np.eye(4)
+    near[:3, 3], far[:3, 3] = CENTER * MM_PER_M, [780, 0, 300]
+    everywhere = touchable(planner, collision, positions, normals, [near])
+    in_both = touchable(planner, collision, positions, normals, [near, far])
+    assert everywhere.tolist() == [True, True]
+    assert in_both.tolist() == [True, False]
+
+
+def test_directions_of_the_tool_lean_from_none_to_much_on_all_sides():
+    normal = np.array([0.6, 0.0, 0.8])
+    directions = list(tool_directions(normal))
+    assert np.allclose(directions[0][1], -normal)
+    leanings = [leaning for leaning, _ in directions]
+    assert leanings == sorted(leanings)
+    vectors = np.array([direction for _, direction in directions])
+    assert np.allclose(
+        np.degrees(np.arccos(np.minimum(-vectors @ normal, 1.0))), leanings, atol=1e-5
+    )
+    assert np.allclose(vectors[-8:].mean(axis=0), -np.cos(np.radians(leanings[-1])) * normal)

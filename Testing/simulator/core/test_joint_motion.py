@@ -1,0 +1,86 @@
+"""From the tip's way to the joints': exact for the tip, within limits, without wandering."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.core.arm import JointMotion, start_joints
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.vectors import unit
+
+DT = 0.004
+SPEED = 0.12
+
+
+@pytest.fixture(scope="module")
+def rest(setup):
+    return start_joints(setup.robot, setup.scenario, setup.settings.start_height)
+
+
+@pytest.fixture(scope="module")
+def motion(setup, rest):
+    return JointMotion(setup.robot, rest)
+
+
+@pytest.fixture(scope="module")
+def kinematics(setup):
+    return make_kinematics(setup.robot)
+
+
+def tip(kinematics, q):
+    return tuple(kinematics.tip(q)[:3, 3].tolist())
+
+
+def go(motion, kinematics, q, target, direction=None):
+    """Return the joint angles after a straight way of the tip."""
+    target = np.array(target)
+    while (remaining := target - tip(kinematics, q)) @ remaining > 1e-16:
+        step = remaining * min(1.0, SPEED * DT / np.linalg.norm(remaining))
+        q, _ = motion.toward(q, tip(kinematics, q), tuple(step.tolist()), direction, DT)
+    return q
+
+
+def test_the_tip_goes_exactly_where_it_shall(motion, kinematics, rest):
+    q, is_within_reach = motion.toward(
+        rest, tip(kinematics, rest), (0.0003, -0.0002, 0.0001), None, DT
+    )
+    moved = np.array(tip(kinematics, q)) - tip(kinematics, rest)
+    assert is_within_reach
+    assert moved == pytest.approx((0.0003, -0.0002, 0.0001), abs=1e-9)
+
+
+def test_a_tip_that_stands_still_moves_no_joint(motion, kinematics, rest):
+    away = go(motion, kinematics, rest, np.add(tip(kinematics, rest), (0.1, 0.1, 0)))
+    q, _ = motion.toward(away, tip(kinematics, away), (0.0, 0.0, 0.0), None, DT)
+    assert q == pytest.approx(away, abs=1e-9)
+
+
+def test_the_elbow_does_not_wander_on_closed_ways(motion, kinematics, rest):
+    start = np.array(tip(kinematics, rest))
+    q = rest
+    for _ in range(3):
+        for corner in ((0.15, 0.0, 0.0), (0.15, 0.2, 0.1), (0.0, 0.2, 0.1), (0.0, 0.0, 0.0)):
+            q = go(motion, kinematics, q, start + corner)
+    assert np.degrees(np.abs(np.subtract(q, rest)).max()) < 8.0
+
+
+def test_where_a_joint_is_too_slow_the_tip_stays_on_its_straight_way(
+    motion, kinematics, rest, setup
+):
+    start = np.array(tip(kinematics, rest))
+    q, _ = motion.toward(rest, tuple(start), (0.1, -0.05, 0.0), unit((1.0, 0.0, -0.2)), DT)
+    way = np.array(tip(kinematics, q)) - start
+    along = unit((0.1, -0.05, 0.0))
+    assert way @ along > 0.0
+    assert np.linalg.norm(way - (way @ along) * np.array(along)) < 2e-5
+    assert (np.abs(np.subtract(q, rest)) <= setup.robot.velocity * DT * (1 + 1e-9)).all()
+
+
+def test_where_the_joint_limits_forbid_a_direction_the_tip_comes_first(motion, kinematics, rest):
+    near_the_base = (0.36, 0.0, 0.25)
+    q = go(motion, kinematics, rest, near_the_base)
+    for _ in range(200):
+        q, is_within_reach = motion.toward(q, near_the_base, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), DT)
+        assert is_within_reach
+        assert tip(kinematics, q) == pytest.approx(near_the_base, abs=1e-6)

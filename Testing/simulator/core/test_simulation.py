@@ -1,0 +1,420 @@
+"""The simulation tick by tick: deterministic, stopped by the head, ready for a trial."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.protocol import CommandName, Phase, Proximity, TouchRule, check_arguments
+from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
+from rastrainer_simulator.robot.solution import FabrikSettings
+from rastrainer_simulator.state import EventKind, Motion, StartingPoint
+from rastrainer_simulator.teleoperation.axes import AxesChoice, camera_axes
+from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
+from rastrainer_simulator.teleoperation.tool_steering import SteeringSettings, ToolDirection
+
+DT = 0.004
+DOWN = OperatorInput(translation=(0.0, 0.0, -1.0))
+SEED = 12
+
+
+class Driver:
+    """Steps a simulation and remembers what happened."""
+
+    def __init__(self, simulation):
+        self.simulation = simulation
+        self.events = []
+
+    @property
+    def state(self):
+        return self.simulation.state
+
+    @property
+    def tip(self):
+        return self.state.tool_tip_to_world[:3, 3].copy()
+
+    def step(self, operator_input=HANDS_OFF):
+        result = self.simulation.step(DT, operator_input)
+        self.events.extend(result.events)
+        return result
+
+    def do(self, command, **arguments):
+        command = OperatorCommand(command, check_arguments(command, arguments), sender="tester")
+        return self.step(OperatorInput(commands=(command,))).answers[0]
+
+    def start(self, task="task-1", seed=SEED):
+        return self.do(CommandName.START_TASK, task=task, trainee="P01", seed=seed)
+
+    def move_to(self, position_mm, speed=500.0, most_ticks=2500):
+        self.do(CommandName.MOVE_TIP_TO, positionMm=list(position_mm), speedMmS=speed)
+        for _ in range(most_ticks):
+            if self.state.motion is Motion.NONE:
+                return [e.data["outcome"] for e in self.events if e.kind is EventKind.MOTION][-1]
+            self.step()
+        raise AssertionError("the move never ended")
+
+    def until(self, operator_input, reached, most_ticks=2500):
+        for _ in range(most_ticks):
+            self.step(operator_input)
+            if reached(self.state):
+                return
+        raise AssertionError("never reached")
+
+
+@pytest.fixture(scope="module")
+def shared(setup):
+    return Simulation(setup, SEED)
+
+
+@pytest.fixture
+def idle(shared):
+    """Return the shared simulation between two trials, with the arm where trials start."""
+    driver = Driver(shared)
+    if shared.state.training.phase in (Phase.REGISTERED, Phase.SCORED, Phase.IDLE):
+        driver.start()
+    driver.do(CommandName.ABORT)
+    driver.events.clear()
+    return driver
+
+
+@pytest.fixture
+def trial(idle):
+    idle.start()
+    idle.events.clear()
+    return idle
+
+
+def random_inputs(seed, ticks, down=(0.0, 0.0, -1.0)):
+    random = np.random.default_rng(seed)
+    stick = HANDS_OFF
+    for tick in range(ticks):
+        if tick % 60 == 0:
+            translation = tuple(random.uniform(-0.6, 0.6, 3) + down)
+            stick = OperatorInput(translation, tuple(random.uniform(-1, 1, 2)), tick % 420 == 360)
+        yield stick
+
+
+def trajectory(driver, inputs):
+    return [
+        (state.q, state.tool_tip_to_world.tobytes(), state.clearance, state.proximity)
+        for state in (driver.step(operator_input).state for operator_input in inputs)
+    ]
+
+
+def test_the_same_seed_and_inputs_give_the_same_states_to_the_last_bit(setup, trial):
+    other = Driver(Simulation(setup, SEED))
+    other.start()
+    first = trajectory(trial, random_inputs(1, 500))
+    second = trajectory(other, random_inputs(1, 500))
+    assert first == second
+    assert {proximity for *_, proximity in first} == set(Proximity)
+
+
+def test_a_trial_is_the_same_whatever_was_done_before_it(trial):
+    first = trajectory(trial, random_inputs(2, 300))
+    trial.do(CommandName.ABORT)
+    trajectory(trial, random_inputs(3, 300))
+    trial.do(CommandName.JOG, velocityMmS=[0, 0, 50], durationS=2.0)
+    trial.start()
+    assert trajectory(trial, random_inputs(2, 300)) == first
+
+
+def test_ticks_and_time_count_every_step(trial):
+    before = trial.state
+    for _ in range(10):
+        trial.step()
+    assert trial.state.tick == before.tick + 10
+    assert trial.state.sim_time == pytest.approx(before.sim_time + 10 * DT)
+    assert trial.state.elapsed == pytest.approx(11 * DT)
+
+
+def test_the_start_is_clear_of_the_head_in_every_seeded_pose(idle):
+    for seed in range(100):
+        idle.start(seed=seed)
+        assert idle.state.clearance > 0.05
+        assert idle.state.proximity is Proximity.FREE
+        idle.do(CommandName.ABORT)
+
+
+def test_the_tip_goes_where_the_stick_points_and_no_joint_is_ever_too_fast(trial, setup):
+    limits = np.array(setup.robot.velocity) * DT * (1 + 1e-9)
+    lower, upper = setup.robot.lower, setup.robot.upper
+    for operator_input in random_inputs(4, 600):
+        before = np.array(trial.state.q)
+        trial.step(operator_input)
+        q = np.array(trial.state.q)
+        assert (np.abs(q - before) <= limits).all()
+        assert ((lower <= q) & (q <= upper)).all()
+
+
+def axes_of_the_camera(scenario):
+    view = scenario.cameras["close-up"]
+    return camera_axes(tuple(view.focal_point - view.position), tuple(view.view_up))
+
+
+def test_the_tip_moves_right_when_the_stick_is_pushed_right(trial, scenario):
+    start = trial.tip
+    for _ in range(100):
+        trial.step(OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad"))
+    way = trial.tip - start
+    right = axes_of_the_camera(scenario).right
+    assert way @ right == pytest.approx(np.linalg.norm(way), rel=1e-6)
+    assert np.linalg.norm(way) > 0.03
+    assert trial.state.operator == "gamepad"
+    assert trial.state.motion is Motion.STICK
+
+
+def test_the_arm_stands_still_to_the_last_bit_once_the_stick_is_released(trial):
+    for _ in range(50):
+        trial.step(DOWN)
+    stopped = trial.step().state
+    assert stopped.motion is Motion.NONE
+    for _ in range(20):
+        assert trial.step().state.q == stopped.q
+
+
+def test_the_tool_cannot_be_driven_into_the_head_and_slides_along_it(trial):
+    trial.until(DOWN, lambda state: state.proximity is Proximity.CONTACT)
+    deepest = 0.0
+    touched = trial.tip
+    for tick in range(400):
+        push = OperatorInput(translation=(0.6 * math.sin(tick / 50), 0.0, -1.0))
+        deepest = min(deepest, trial.step(push).state.clearance)
+    assert deepest >= -0.0001
+    assert np.linalg.norm(trial.tip - touched) > 0.005
+
+
+def test_proximity_and_contact_come_and_go_once_each_on_the_way_in_and_out(trial):
+    trial.until(DOWN, lambda state: state.proximity is Proximity.CONTACT)
+    up = OperatorInput(translation=(0.0, 0.0, 1.0))
+    trial.until(up, lambda state: state.proximity is Proximity.FREE)
+    changes = [
+        (e.data["from"], e.data["to"]) for e in trial.events if e.kind is EventKind.PROXIMITY
+    ]
+    assert changes == [
+        ("free", "proximity"),
+        ("proximity", "contact"),
+        ("contact", "proximity"),
+        ("proximity", "free"),
+    ]
+
+
+def test_a_move_reaches_its_target_and_says_so(trial):
+    target = MM_PER_M * trial.tip + (10.0, -30.0, 15.0)
+    assert trial.move_to(target) == "reached"
+    assert MM_PER_M * trial.tip == pytest.approx(target, abs=0.001)
+    assert trial.state.operator == "tester"
+
+
+def test_a_move_into_the_head_stops_at_the_surface_and_says_that_it_was_blocked(trial):
+    center = trial.simulation.truth.in_world(trial.simulation.truth.target)
+    assert trial.move_to(center) == "blocked"
+    assert trial.state.clearance >= -0.0001
+    assert trial.state.proximity is Proximity.CONTACT
+
+
+def test_a_move_out_of_reach_comes_as_near_as_the_arm_gets_and_says_so(trial):
+    trial.move_to((1200.0, 0.0, 700.0))
+    assert EventKind.REACH in {event.kind for event in trial.events}
+
+
+@pytest.mark.parametrize("frame", ["world", "camera", "tool"])
+def test_a_jog_moves_along_the_axes_of_its_frame(trial, scenario, frame):
+    camera = axes_of_the_camera(scenario)
+    axes = {
+        "world": np.eye(3),
+        "camera": np.array([camera.right, camera.forward, camera.up]),
+        "tool": trial.state.tool_tip_to_world[:3, :3].T,
+    }[frame]
+    start = trial.tip
+    trial.do(CommandName.JOG, velocityMmS=[0.0, -40.0, 0.0], frame=frame, durationS=0.5)
+    trial.until(HANDS_OFF, lambda state: state.motion is Motion.NONE)
+    way = trial.tip - start
+    assert way / np.linalg.norm(way) == pytest.approx(-axes[1], abs=1e-3)
+    assert np.linalg.norm(way) == pytest.approx(0.04 * 0.5, rel=0.05)
+
+
+def test_while_the_trial_is_paused_the_arm_stands_still_and_motions_are_refused(trial):
+    trial.do(CommandName.MOVE_TIP_TO, positionMm=list(MM_PER_M * trial.tip + (0.0, 0.0, 50.0)))
+    trial.step()
+    trial.do(CommandName.PAUSE)
+    q, elapsed = trial.state.q, trial.state.elapsed
+    for _ in range(20):
+        trial.step(OperatorInput(translation=(1.0, 0.0, 0.0)))
+    assert trial.state.q == q
+    assert trial.state.elapsed == elapsed
+    assert "Resume it first" in trial.do(CommandName.JOG, velocityMmS=[1, 0, 0]).message
+    assert [e.data["outcome"] for e in trial.events if e.kind is EventKind.MOTION] == ["stopped"]
+
+
+def test_tasks_are_listed_with_their_titles(idle, scenario):
+    tasks = idle.do(CommandName.LIST_TASKS).data["tasks"]
+    assert [task["name"] for task in tasks] == [task.name for task in scenario.tasks]
+
+
+def test_the_camera_is_switched_and_told(trial):
+    trial.do(CommandName.SET_CAMERA, camera="far")
+    assert trial.state.camera == "far"
+    assert trial.events[-1].kind is EventKind.CAMERA
+    trial.do(CommandName.SET_CAMERA, camera="close-up")
+
+
+@pytest.mark.parametrize("task", ["trial-run", "task-5"])
+def test_hovering_nine_millimeters_above_the_skin_touches_nothing(setup, task):
+    simulation = Simulation(setup, SEED)
+    driver = Driver(simulation)
+    driver.start(task=task)
+    scenario, truth = setup.scenario, simulation.truth
+    point = scenario.task(task).fiducials[0]
+    normal = fiducial_normals(scenario, task)[0]
+    driver.move_to(truth.in_world(point + 60.0 * normal))
+    driver.move_to(truth.in_world(point + 9.0 * normal))
+    answer = driver.do(CommandName.CAPTURE)
+    assert not answer.ok
+    assert re.fullmatch(
+        r"(8\.\d|9\.0) mm above the skin: lower the tip onto point 1\.", answer.message
+    )
+    driver.move_to(truth.in_world(point - 1.0 * normal))
+    assert driver.do(CommandName.CAPTURE).ok
+
+
+def test_a_planned_target_is_shown_once_the_trial_is_registered(setup):
+    anywhere = replace(
+        setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
+    )
+    driver = Driver(
+        Simulation(replace(setup, settings=replace(setup.settings, training=anywhere)), 1)
+    )
+    driver.start()
+    plan = {"positionMm": [500.0, 0.0, 300.0], "name": "tumor"}
+    assert "not registered yet" in driver.do(CommandName.PLAN_TARGET, **plan).message
+    for _ in range(15):
+        driver.do(CommandName.CAPTURE)
+    driver.do(CommandName.REGISTER)
+    assert driver.do(CommandName.PLAN_TARGET, **plan).data == {"reachable": True, "reason": ""}
+    assert driver.state.planned_target.name == "tumor"
+    assert driver.state.planned_target.position == (0.5, 0.0, 0.3)
+    steep = driver.do(CommandName.PLAN_TARGET, **plan, entryMm=[500.0, 0.0, 360.0])
+    assert steep.data["reachable"]
+    assert driver.state.planned_target.entry == (0.5, 0.0, 0.36)
+    below = driver.do(CommandName.PLAN_TARGET, **plan, entryMm=[500.0, 0.0, 150.0])
+    assert "along the whole trajectory" in below.data["reason"]
+    far = driver.do(CommandName.PLAN_TARGET, positionMm=[2000.0, 0.0, 300.0])
+    assert far.data == {"reachable": False, "reason": "The target is out of the robot's reach."}
+    assert not driver.state.planned_target.reachable
+    driver.start()
+    assert driver.state.planned_target is None
+
+
+def test_several_commands_of_one_tick_are_answered_each_in_their_order(trial):
+    commands = tuple(
+        OperatorCommand(name, check_arguments(name, {}), ticket)
+        for ticket, name in enumerate((CommandName.PAUSE, CommandName.PAUSE, CommandName.RESUME))
+    )
+    answers = trial.step(OperatorInput(commands=commands)).answers
+    assert [(a.ticket, a.ok) for a in answers] == [(0, True), (1, False), (2, True)]
+
+
+def test_a_simulation_goes_on_from_anothers_tick_time_revision_and_camera(setup):
+    simulation = Simulation(setup, 1)
+    simulation.continue_from(StartingPoint(tick=1000, sim_time=4.0, revision=7, camera="far"))
+    state = simulation.step(DT, HANDS_OFF).state
+    assert (state.tick, state.sim_time, state.camera) == (1001, 4.0 + DT, "far")
+    assert state.training.revision == 7
+
+
+def test_the_robots_axes_are_followed_where_chosen(setup):
+    settings = replace(setup.settings, axes=AxesChoice.ROBOT)
+    driver = Driver(Simulation(replace(setup, settings=settings), 1))
+    start = driver.tip
+    for _ in range(50):
+        driver.step(OperatorInput(translation=(0.0, -1.0, 0.0)))
+    assert (driver.tip - start)[0] < -0.005
+    assert (driver.tip - start)[1:] == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def driver_with(setup, choice):
+    steering = SteeringSettings(choice=choice)
+    settings = SimulationSettings(teleoperation=TeleoperationSettings(steering=steering))
+    driver = Driver(Simulation(replace(setup, settings=settings), 1))
+    driver.start()
+    return driver
+
+
+def test_in_direction_mode_the_tool_comes_down_along_the_surface_normal(setup):
+    driver = driver_with(setup, ToolDirection.NORMAL)
+    driver.until(DOWN, lambda state: state.clearance < 0.004)
+    mesh = read_head_mesh(setup.scenario.head_mesh)
+    head = driver.simulation.truth.in_head(MM_PER_M * driver.tip)
+    nearest = np.linalg.norm(mesh.vertices - head, axis=1).argmin()
+    outward = driver.simulation.truth.head_to_world[:3, :3] @ mesh.vertex_normals[nearest]
+    tool = driver.state.tool_tip_to_world[:3, 2]
+    assert math.degrees(math.acos(-outward @ tool)) < 8.0
+
+
+def test_a_steered_tool_turns_about_its_tip(setup):
+    driver = driver_with(setup, ToolDirection.HELD)
+    tip, direction = driver.tip, driver.state.tool_tip_to_world[:3, 2].copy()
+    for _ in range(100):
+        driver.step(OperatorInput(rotation=(1.0, 0.0)))
+    turned = math.acos(direction @ driver.state.tool_tip_to_world[:3, 2])
+    assert turned == pytest.approx(100 * DT * SteeringSettings().coarse_turn, rel=0.01)
+    assert driver.tip == pytest.approx(tip, abs=1e-6)
+
+
+def test_in_pose_mode_the_tool_keeps_its_whole_rotation_where_it_is_driven(setup):
+    driver = driver_with(setup, ToolDirection.POSE)
+    rotation, tip = driver.state.tool_tip_to_world[:3, :3].copy(), driver.tip
+    for stick in ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 1.0, -1.0)):
+        for _ in range(100):
+            driver.step(OperatorInput(translation=stick))
+    assert np.linalg.norm(driver.tip - tip) > 0.02
+    assert driver.state.tool_tip_to_world[:3, :3] == pytest.approx(rotation, abs=1e-7)
+
+
+def test_the_tolerances_of_the_inverse_kinematics_are_settings_of_the_simulation(setup):
+    impossible = SimulationSettings(fabrik=FabrikSettings(tolerance_m=1e-300))
+    driver = Driver(Simulation(replace(setup, settings=impossible), 1))
+    driver.start()
+    step = driver.step(DOWN)
+    assert [event.data["isWithinReach"] for event in step.events] == [False]
+
+
+def hover(truth, label):
+    """Return a point 70 mm outside of a fiducial, as seen from the head's target."""
+    fiducial = truth.in_world(truth.fiducials[label])
+    away = fiducial - truth.in_world(truth.target)
+    return fiducial, fiducial + 70.0 * away / np.linalg.norm(away)
+
+
+def test_a_whole_trial_is_played_by_moves_and_every_touch_is_where_its_fiducial_is(trial):
+    truth = trial.simulation.truth
+    above = truth.in_world(truth.target) + np.array([0.0, 0.0, 240.0])
+    for number in range(1, 16):
+        fiducial, outside = hover(truth, str(number))
+        trial.move_to(outside)
+        assert trial.move_to(fiducial, speed=200.0) == "reached"
+        assert trial.do(CommandName.CAPTURE).ok
+        trial.move_to(outside)
+        trial.move_to(above)
+    assert trial.state.training.phase is Phase.COMPLETE
+    assert trial.do(CommandName.REGISTER).ok
+    exact = np.linalg.inv(truth.head_to_world).ravel().tolist()
+    answer = trial.do(
+        CommandName.SUBMIT_REGISTRATION,
+        trialId=trial.state.training.trial_id,
+        matrix=exact,
+        freMm=0.0,
+        expectedTreMm=0.0,
+    )
+    assert max(answer.data["touchErrorsMm"].values()) < 0.1
+    assert answer.data["trueTreMm"] < 1e-9

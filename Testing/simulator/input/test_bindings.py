@@ -1,0 +1,130 @@
+"""Bindings: one meaning an input, a way out of every menu, and files that may hold anything."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.input.bindings import (
+    DEFAULT_BINDINGS,
+    Bindings,
+    read_bindings,
+    write_bindings,
+)
+from rastrainer_simulator.input.control_name import ControlContext, ControlName
+from rastrainer_simulator.input.inputs import (
+    AXES,
+    BUTTONS,
+    GAMEPAD_INPUTS,
+    InputDevice,
+    gamepad_inputs,
+    w3c_gamepad_inputs,
+)
+
+CONTROLS = st.sampled_from(ControlName)
+
+
+@given(st.lists(st.tuples(CONTROLS, st.sampled_from(sorted(GAMEPAD_INPUTS))), max_size=30))
+def test_no_rebinding_leaves_a_control_without_input_or_an_input_with_two_meanings(changes):
+    bindings = DEFAULT_BINDINGS
+    for control, name in changes:
+        try:
+            bindings = bindings.rebound(InputDevice.GAMEPAD, control, name)
+        except InputError:
+            continue
+        assert bindings.gamepad[control] == (name,)
+    Bindings(bindings.gamepad, bindings.keyboard)
+
+
+@given(CONTROLS, st.sampled_from(sorted(GAMEPAD_INPUTS)))
+def test_saved_bindings_are_read_back_as_they_were(tmp_path_factory, control, name):
+    try:
+        bindings = DEFAULT_BINDINGS.rebound(InputDevice.GAMEPAD, control, name)
+    except InputError:
+        return
+    path = tmp_path_factory.mktemp("settings") / "deep" / "controls.json"
+    write_bindings(path, bindings)
+    assert read_bindings(path) == bindings
+
+
+def test_an_input_may_do_one_thing_at_work_and_another_in_menus():
+    assert (
+        DEFAULT_BINDINGS.control(InputDevice.GAMEPAD, "a", ControlContext.WORK) is ControlName.TOUCH
+    )
+    assert (
+        DEFAULT_BINDINGS.control(InputDevice.GAMEPAD, "a", ControlContext.MENU)
+        is ControlName.ACCEPT
+    )
+    assert DEFAULT_BINDINGS.others(InputDevice.GAMEPAD, ControlName.TOUCH, "a") == ()
+    assert DEFAULT_BINDINGS.others(InputDevice.GAMEPAD, ControlName.UNDO, "a") == (
+        ControlName.TOUCH,
+    )
+    assert set(DEFAULT_BINDINGS.others(InputDevice.GAMEPAD, ControlName.MENU, "a")) == {
+        ControlName.TOUCH,
+        ControlName.ACCEPT,
+    }
+
+
+def test_a_control_that_loses_its_only_input_gets_the_other_s():
+    bindings = DEFAULT_BINDINGS.rebound(InputDevice.KEYBOARD, ControlName.CAMERA, "KeyP")
+    assert bindings.keyboard[ControlName.CAMERA] == ("KeyP",)
+    assert bindings.keyboard[ControlName.PAUSE] == ("KeyC",)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("", "is empty"),
+        ("{", "is not JSON"),
+        ("[]", "must be a JSON object with the formatVersion 1"),
+        ('{"formatVersion": 2}', "formatVersion 1"),
+        ('{"formatVersion": 1, "mouse": {}}', "it takes gamepad and keyboard"),
+        ('{"formatVersion": 1, "gamepad": []}', "the field gamepad must be an object"),
+        ('{"formatVersion": 1, "gamepad": {"fly": ["a"]}}', "unknown control; known are touch"),
+        ('{"formatVersion": 1, "gamepad": {"touch": "a"}}', "gamepad.touch must be a list"),
+        ('{"formatVersion": 1, "gamepad": {"touch": []}}', "gamepad.touch must be a list"),
+        ('{"formatVersion": 1, "gamepad": {"touch": [7]}}', "gamepad.touch must be a list"),
+        ('{"formatVersion": 1, "gamepad": {"touch": ["ab"]}}', 'such as "a"'),
+        ('{"formatVersion": 1, "keyboard": {"touch": ["a b"]}}', 'such as "Space"'),
+        ('{"formatVersion": 1, "gamepad": {"touch": ["b"]}}', "cannot do both touch and undo"),
+        ('{"formatVersion": NaN}', "is not JSON with finite numbers"),
+        ("[" * 50_000, "is not JSON"),
+        (" " * 70_000, "larger than"),
+    ],
+)
+def test_a_file_that_holds_something_else_is_refused_with_a_sentence(tmp_path, content, sentence):
+    path = tmp_path / "controls.json"
+    path.write_text(content)
+    with pytest.raises(InputError, match=sentence):
+        read_bindings(path)
+
+
+def test_what_a_file_leaves_out_is_as_by_default(tmp_path):
+    path = tmp_path / "controls.json"
+    path.write_text(json.dumps({"formatVersion": 1, "keyboard": {"touch": ["KeyT"]}}))
+    bindings = read_bindings(path)
+    assert bindings.keyboard[ControlName.TOUCH] == ("KeyT",)
+    assert bindings.keyboard[ControlName.UNDO] == DEFAULT_BINDINGS.keyboard[ControlName.UNDO]
+    assert bindings.gamepad == DEFAULT_BINDINGS.gamepad
+
+
+def test_bindings_that_cannot_be_saved_are_told(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be made"):
+        write_bindings(tmp_path / "file" / "controls.json", DEFAULT_BINDINGS)
+
+
+def test_a_browser_s_pad_has_the_inputs_of_sdl_s():
+    # The W3C's standard gamepad: buttons 0-3 are A, B, X, Y, 6 and 7 the triggers, 12 up.
+    buttons = [0.0] * 17
+    buttons[0], buttons[7], buttons[12] = 1.0, 0.5, 1.0
+    inputs = w3c_gamepad_inputs([0.0, -1.0, 0.25, 0.0], buttons)
+    moved = {name: value for name, value in inputs.items() if value > 0.0}
+    assert moved == {"a": 1.0, "+righttrigger": 0.5, "dpup": 1.0, "-lefty": 1.0, "+rightx": 0.25}
+    sdl = gamepad_inputs([0.0] * len(AXES), [0.0] * len(BUTTONS))
+    assert set(sdl) == GAMEPAD_INPUTS
+    assert set(inputs) < GAMEPAD_INPUTS

@@ -1,0 +1,157 @@
+"""One operator at a time, and steps that repeat while a direction is held in a menu."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.control_name import ControlContext, ControlName
+from rastrainer_simulator.input.controls import IDLE_S, Controls
+from rastrainer_simulator.input.inputs import Source, SourceKind
+from rastrainer_simulator.operator_input import HANDS_OFF
+
+GAMEPAD = Source(SourceKind.GAMEPAD)
+KEYS = Source(SourceKind.KEYBOARD, view=1)
+PAGE = Source(SourceKind.KEYBOARD, "view 2", 2)
+
+
+class Ear:
+    def __init__(self):
+        self.presses, self.refusals, self.takers = [], [], []
+
+    def pressed(self, control):
+        self.presses.append(control)
+
+    def input_pressed(self, _device, _name):
+        return False
+
+    def taken_over(self, source):
+        self.takers.append(source)
+
+    def refused(self, source):
+        self.refusals.append(source)
+
+
+@pytest.fixture
+def ear():
+    return Ear()
+
+
+@pytest.fixture
+def controls(ear):
+    controls = Controls(DEFAULT_BINDINGS, ear)
+    controls.enter(ControlContext.WORK)
+    return controls
+
+
+def tap(controls, source, code):
+    controls.set_key(source, code, True)
+    controls.set_key(source, code, False)
+
+
+def test_nobody_holds_the_control_until_somebody_acts(controls):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.0, "a": 0.0})
+    assert controls.holder is None
+    assert controls.sticks == HANDS_OFF
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
+    assert controls.holder == GAMEPAD
+    assert controls.sticks.operator == "gamepad"
+
+
+def test_a_key_without_meaning_takes_nothing(controls, ear):
+    tap(controls, PAGE, "F12")
+    assert controls.holder is None
+    assert ear.refusals == []
+
+
+def test_another_seat_s_sticks_do_not_move_the_arm(controls):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
+    controls.set_key(PAGE, "KeyW", True)
+    controls.advance(1.0)
+    assert controls.holder == GAMEPAD
+    assert controls.sticks.translation == (0.4, 0.0, 0.0)
+
+
+def test_not_even_a_long_rest_gives_the_control_away_unasked(controls, ear):
+    controls.set_inputs(GAMEPAD, {"a": 1.0})
+    controls.set_inputs(GAMEPAD, {"a": 0.0})
+    controls.advance(1000.0)
+    tap(controls, PAGE, "Space")
+    controls.set_key(PAGE, "KeyW", True)
+    assert controls.holder == GAMEPAD
+    assert ear.presses == [ControlName.TOUCH]
+    assert PAGE in ear.refusals
+
+
+def test_the_menu_takes_an_idle_holder_s_control_and_does_nothing_else(controls, ear):
+    controls.set_inputs(GAMEPAD, {"a": 1.0})
+    controls.set_inputs(GAMEPAD, {"a": 0.0})
+    controls.advance(0.9 * IDLE_S)
+    tap(controls, PAGE, "KeyM")
+    assert controls.holder == GAMEPAD
+    controls.advance(0.2 * IDLE_S)
+    tap(controls, PAGE, "KeyM")
+    assert controls.holder == PAGE
+    assert ear.takers == [PAGE]
+    assert ear.presses == [ControlName.TOUCH]
+
+
+def test_a_holder_that_pushes_a_stick_is_never_idle(controls):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
+    controls.advance(10.0 * IDLE_S)
+    tap(controls, PAGE, "KeyM")
+    assert controls.holder == GAMEPAD
+
+
+def test_one_seat_passes_the_control_on_by_using_it_but_not_from_a_pushed_stick(controls):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
+    controls.set_inputs(Source(SourceKind.BROWSER_GAMEPAD, view=1), {"+lefty": 0.5})
+    assert controls.holder == GAMEPAD
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.0})
+    tap(controls, KEYS, "KeyC")
+    assert controls.holder == KEYS
+
+
+def test_a_holder_that_is_gone_holds_nothing(controls):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
+    controls.forget(GAMEPAD)
+    assert controls.sticks == HANDS_OFF
+    controls.set_key(PAGE, "KeyD", True)
+    assert controls.holder == PAGE
+
+
+def test_sticks_do_nothing_in_a_menu(controls):
+    controls.enter(ControlContext.MENU)
+    controls.set_inputs(GAMEPAD, {"+rightx": 0.9})
+    assert controls.sticks == HANDS_OFF
+
+
+def test_a_key_repeats_in_a_menu_only_while_its_keyboard_says_so(controls, ear):
+    controls.enter(ControlContext.MENU)
+    controls.set_key(KEYS, "ArrowDown", True)
+    # A window that draws for so long has not looked at the release.
+    controls.advance(3.0)
+    assert ear.presses == [ControlName.DOWN]
+    for _ in range(100):
+        controls.set_key(KEYS, "ArrowDown", True)
+        controls.advance(0.01)
+    assert 8 <= len(ear.presses) <= 11
+    controls.set_key(KEYS, "ArrowDown", False)
+    steps = len(ear.presses)
+    controls.set_key(KEYS, "ArrowDown", True)
+    controls.advance(3.0)
+    assert len(ear.presses) == steps + 1
+
+
+def test_a_held_direction_repeats_in_a_menu_and_nothing_else_does(controls, ear):
+    controls.enter(ControlContext.MENU)
+    controls.set_inputs(GAMEPAD, {"dpdown": 1.0})
+    for _ in range(100):
+        controls.advance(0.01)
+    steps = len(ear.presses)
+    assert 4 <= steps <= 7
+    assert set(ear.presses) == {ControlName.DOWN}
+    controls.set_inputs(GAMEPAD, {"dpdown": 0.0})
+    controls.set_inputs(GAMEPAD, {"a": 1.0})
+    controls.advance(5.0)
+    assert ear.presses[steps:] == [ControlName.ACCEPT]

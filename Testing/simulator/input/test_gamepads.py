@@ -1,0 +1,123 @@
+"""Gamepads through the real SDL: layout, hot plugging, vibration."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rastrainer_simulator.input.gamepads import Gamepads
+from rastrainer_simulator.input.inputs import AXES, BUTTONS
+from Testing.sdl_virtual_gamepad import WHEEL, VirtualGamepad
+
+
+def poll_until(gamepads, condition):
+    give_up = time.monotonic() + 5.0
+    while not condition():
+        assert time.monotonic() < give_up
+        gamepads.poll()
+        time.sleep(0.002)
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+def test_each_button_is_told_by_sdl_s_name_alone(gamepads, ear, plugged, button):
+    gamepad, _felt = plugged
+    gamepad.press(button)
+    gamepads.poll()
+    pressed = {name for name, value in ear.inputs[-1][1].items() if value > 0.0}
+    assert pressed == {button}
+
+
+@pytest.mark.parametrize("axis", AXES[:4])
+def test_each_way_of_a_stick_is_an_input_of_its_own(gamepads, ear, plugged, axis):
+    gamepad, _felt = plugged
+    for position, pushed, rests in ((0.5, "+" + axis, "-" + axis), (-1.0, "-" + axis, "+" + axis)):
+        gamepad.move(**{axis: position})
+        gamepads.poll()
+        inputs = ear.inputs[-1][1]
+        assert inputs[pushed] == pytest.approx(abs(position), abs=1e-4)
+        assert inputs[rests] == 0.0
+
+
+@pytest.mark.parametrize("trigger", AXES[4:])
+def test_a_trigger_goes_from_zero_to_one(gamepads, ear, plugged, trigger):
+    gamepad, _felt = plugged
+    gamepad.move(**{trigger: 1.0})
+    gamepads.poll()
+    assert ear.inputs[-1][1]["+" + trigger] == pytest.approx(1.0)
+    gamepad.move(**{trigger: 0.0})
+    gamepads.poll()
+    assert ear.inputs[-1][1]["+" + trigger] == pytest.approx(0.0, abs=1e-4)
+
+
+@pytest.mark.usefixtures("plugged")
+def test_what_does_not_change_is_not_told_again(gamepads, ear):
+    told = len(ear.inputs)
+    for _ in range(5):
+        gamepads.poll()
+    assert len(ear.inputs) <= max(told, 1)
+
+
+def test_a_gamepad_may_come_and_go_again_and_again(gamepads, ear, plugged):
+    gamepad, _felt = plugged
+    for times in (1, 2, 3):
+        gamepad.plug_out()
+        gamepads.poll()
+        assert [name for _, name in ear.went] == ["Virtual F310"] * times
+        gamepad.plug_in()
+        gamepads.poll()
+        assert len(ear.came) == times + 1
+    gamepad.press("a")
+    gamepads.poll()
+    assert ear.inputs[-1][1]["a"] == 1.0
+
+
+@pytest.mark.usefixtures("plugged")
+def test_two_gamepads_are_told_apart(gamepads, ear):
+    second = VirtualGamepad(name="Second")
+    second.plug_in()
+    gamepads.poll()
+    second.press("x")
+    gamepads.poll()
+    numbers = {name: number for number, name in ear.came}
+    assert ear.inputs[-1][0] == numbers["Second"] != numbers["Virtual F310"]
+    second.plug_out()
+
+
+def test_the_motors_run_as_strong_and_as_long_as_asked(gamepads, plugged):
+    _gamepad, felt = plugged
+    gamepads.rumble(0.5, 0.05)
+    assert felt == [pytest.approx((0.5, 0.5), abs=1e-4)]
+    poll_until(gamepads, lambda: len(felt) == 2)
+    assert felt[-1] == (0.0, 0.0)
+
+
+def test_a_joystick_of_unknown_layout_is_named_once(gamepads, ear):
+    wheel = VirtualGamepad(name="Odd wheel", kind=WHEEL)
+    wheel.plug_in()
+    for _ in range(3):
+        gamepads.poll()
+    assert ear.unknown == ["Odd wheel"]
+    assert ear.came == []
+    wheel.plug_out()
+
+
+def test_programs_that_the_simulator_starts_do_not_inherit_sdl_s_settings(monkeypatch):
+    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+    Gamepads(None).close()
+    assert "SDL_VIDEODRIVER" not in os.environ
+
+
+def test_a_computer_without_pygame_gets_a_sentence():
+    program = (
+        "import sys; sys.modules['pygame'] = None\n"
+        "from rastrainer_simulator.input.gamepads import NoGamepadsError, start_sdl\n"
+        "try: start_sdl()\n"
+        "except NoGamepadsError as error: print(error)\n"
+    )
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert said.stdout.startswith("pygame-ce cannot be loaded")
+    assert said.stderr == ""

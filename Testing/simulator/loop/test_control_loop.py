@@ -1,0 +1,438 @@
+"""The control loop: owns the time, tells nothing that is not on the disk, loses nothing."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.loop import control_loop
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.loop.rate_limit import TrialLimits
+from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
+from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.replay.resimulation import replay
+from rastrainer_simulator.state import StepResult
+
+PATIENCE_S = 30.0
+
+
+@pytest.fixture(scope="module")
+def shared(anywhere):
+    return Simulation(anywhere, 3)
+
+
+class Client:
+    """Submits commands to a loop and waits for the answers."""
+
+    def __init__(self, loop):
+        self.loop = loop
+
+    def do(self, command, **arguments):
+        return self.submit(command, **arguments).result(PATIENCE_S)
+
+    def submit(self, command, **arguments):
+        return self.loop.submit(command, check_arguments(command, arguments), "tester")
+
+    def start(self, **others):
+        answer = self.do(CommandName.START_TASK, task="task-1", trainee="P01", **others)
+        assert answer.ok, answer.message
+        return answer.data["trialId"]
+
+    def finish(self):
+        while self.loop.latest.training.phase is Phase.RUNNING:
+            assert self.do(CommandName.CAPTURE).ok
+        assert self.do(CommandName.REGISTER).ok
+
+    def register(self, trial_id):
+        return self.do(
+            CommandName.SUBMIT_REGISTRATION,
+            trialId=trial_id,
+            matrix=np.eye(4).ravel().tolist(),
+            freMm=1.0,
+            expectedTreMm=1.0,
+        )
+
+    def score(self, trial_id):
+        return self.do(CommandName.TRIAL_SCORED, trialId=trial_id, score=70.0)
+
+    def ticks(self, count):
+        """Wait until so many more ticks have been told."""
+        until = self.loop.latest.tick + count
+        wait_for(lambda: self.loop.latest.tick >= until)
+
+
+def wait_for(condition):
+    give_up = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < give_up, "it never came true"
+        time.sleep(0.001)
+
+
+@pytest.fixture
+def running(shared, tmp_path):
+    """Return a client of a loop around the shared simulation, between two trials."""
+    shared.step(0.004, OperatorInput(commands=(OperatorCommand(CommandName.ABORT),)))
+    with ControlLoop(shared, tmp_path / "records", speed=None) as loop:
+        yield Client(loop)
+
+
+def journals(folder):
+    return sorted((folder / "records").glob(f"*{SUFFIX}"))
+
+
+def labels(reading):
+    return [entry["label"] for entry in reading.of_kind("touch")]
+
+
+def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_by_bit(
+    running, tmp_path, anywhere
+):
+    sticks = OperatorInput(translation=(0.3, -0.2, -0.9), operator="gamepad")
+    trial_id = running.start()
+    for number in range(15):
+        running.loop.hold_sticks(replace(sticks, fine=number % 3 == 0))
+        running.ticks(12)
+        assert running.do(CommandName.CAPTURE).ok
+        if number == 4:
+            assert running.do(CommandName.UNDO).ok
+            assert running.do(CommandName.CAPTURE).ok
+    assert running.do(CommandName.REGISTER).ok
+    assert [record.trial_id for record in running.loop.unacknowledged()] == [trial_id]
+    assert "headToWorld" not in running.do(CommandName.GET_TRIAL, trialId=trial_id).data
+    assert running.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
+    assert running.loop.unacknowledged() == ()
+    answer = running.register(trial_id)
+    assert running.score(trial_id).ok
+    assert running.loop.latest.training.phase is Phase.SCORED
+    told = running.do(CommandName.GET_TRIAL, trialId=trial_id).data
+    assert told["headToWorld"] == answer.data["headToWorld"]
+    running.loop.stop()
+
+    (path,) = journals(tmp_path)
+    reading = read_journal(path)
+    assert reading.integrity is Integrity.INTACT
+    assert labels(reading) == ["1", "2", "3", "4", "5", *map(str, range(5, 16))]
+    report = replay(reading, anywhere)
+    assert report.difference is None
+    assert report.compared["sample"] > 20
+    assert report.motion["undone_touches"] == 1
+    assert report.motion == told["record"]["motion"]
+    record = TrialRecord.from_json(told["record"])
+    assert record.undone_touches == 1
+
+
+def test_a_replay_finds_a_number_that_does_not_follow_from_the_inputs(running, tmp_path, anywhere):
+    running.loop.hold_sticks(OperatorInput(translation=(0.0, -0.8, 0.4)))
+    running.start()
+    running.ticks(30)
+    running.do(CommandName.ABORT)
+    running.loop.stop()
+    reading = read_journal(journals(tmp_path)[0])
+    entry = reading.of_kind("sample")[3]
+    entry["q"][2] += 1e-15
+    report = replay(reading, anywhere)
+    assert not report.is_identical
+    assert f"line {entry['n']}: q was" in report.difference
+
+
+def test_an_answered_touch_is_on_the_disk(running, tmp_path):
+    running.start()
+    for number in range(1, 6):
+        assert running.do(CommandName.CAPTURE).ok
+        assert labels(read_journal(journals(tmp_path)[0])) == [str(i + 1) for i in range(number)]
+
+
+def test_nobody_sees_a_touch_before_it_is_on_the_disk_and_the_arm_goes_on_meanwhile(
+    running, monkeypatch
+):
+    running.start()
+    seen: list[StepResult] = []
+    running.loop.subscribe(seen.append)
+    may_sync = threading.Event()
+    fsync = os.fsync
+    monkeypatch.setattr(os, "fsync", lambda descriptor: (may_sync.wait(), fsync(descriptor)))
+    running.loop.hold_sticks(OperatorInput(translation=(1.0, 0.0, 0.0)))
+    answer = running.submit(CommandName.CAPTURE)
+    running.ticks(40)
+    before = running.loop.latest
+    assert not answer.done()
+    assert before.training.touches == ()
+    assert len({result.state.q for result in seen}) > 30
+    assert not any(event.kind == "touch" for result in seen for event in result.events)
+    may_sync.set()
+    assert answer.result(PATIENCE_S).ok
+    wait_for(lambda: len(running.loop.latest.training.touches) == 1)
+    assert sum(event.kind == "touch" for result in seen for event in result.events) == 1
+
+
+def test_commands_that_come_meanwhile_are_carried_out_in_their_order(running):
+    running.start()
+    futures = [running.submit(CommandName.CAPTURE) for _ in range(15)]
+    futures.append(running.submit(CommandName.REGISTER))
+    assert [future.result(PATIENCE_S).ok for future in futures] == [True] * 16
+    kept = [touch.label for touch in running.loop.latest.training.touches]
+    assert kept == [str(i) for i in range(1, 16)]
+
+
+def test_a_trial_whose_journal_cannot_be_made_does_not_start(running, tmp_path):
+    records = tmp_path / "records"
+    records.write_text("a file where the folder should be")
+    answer = running.do(CommandName.START_TASK, task="task-1", trainee="P01")
+    assert not answer.ok
+    assert "could not be recorded" in answer.message
+    wait_for(lambda: "cannot be recorded" in running.loop.latest.training.instruction)
+    assert running.loop.latest.training.phase is Phase.IDLE
+    records.unlink()
+    running.start()
+    assert len(journals(tmp_path)) == 1
+
+
+def test_on_a_full_disk_the_trial_pauses_and_goes_on_once_there_is_room(
+    running, tmp_path, anywhere, monkeypatch
+):
+    running.start()
+    running.loop.hold_sticks(OperatorInput(translation=(0.5, -0.5, 0.0)))
+    assert running.do(CommandName.CAPTURE).ok
+
+    def full(*_arguments):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "write", full)
+        refused = running.do(CommandName.CAPTURE)
+        wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
+        still_full = running.do(CommandName.RESUME)
+    assert not refused.ok
+    assert not still_full.ok
+    assert "No space left on device" in still_full.message
+    wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
+    assert len(running.loop.latest.training.touches) == 1
+    assert "No space left on device" in running.loop.latest.training.instruction
+
+    assert running.do(CommandName.RESUME).ok
+    assert running.do(CommandName.CAPTURE).data["label"] == "2"
+    running.finish()
+    running.loop.stop()
+    reading = read_journal(journals(tmp_path)[0])
+    assert reading.integrity is Integrity.INTACT
+    assert replay(reading, anywhere).difference is None
+    record = TrialRecord.from_json(reading.of_kind("registered")[-1]["record"])
+    assert record.labels == tuple(str(i) for i in range(1, 16))
+
+
+def test_a_disk_that_fills_up_between_two_touches_pauses_the_trial(running, monkeypatch):
+    running.start()
+
+    def full(*_arguments):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "write", full)
+        wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
+
+
+def test_a_finished_trial_waits_for_its_acknowledgment_also_after_a_restart(
+    running, tmp_path, anywhere
+):
+    trial_id = running.start()
+    running.finish()
+    running.loop.stop()
+    with ControlLoop(Simulation(anywhere, 9), tmp_path / "records", speed=None) as loop:
+        client = Client(loop)
+        assert [record.trial_id for record in loop.unacknowledged()] == [trial_id]
+        client.start()
+        assert client.register(trial_id).data["trueTreMm"] > 0.0
+        assert client.score(trial_id).ok
+        assert loop.latest.training.phase is Phase.RUNNING
+        assert client.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
+        assert loop.unacknowledged() == ()
+
+
+def test_a_question_about_an_older_trial_that_fails_unforeseen_is_answered(running, caplog):
+    trial_id = running.start()
+    running.finish()
+    assert running.register(trial_id).ok
+    assert running.score(trial_id).ok
+    running.start()
+    deep = []
+    for _ in range(100_000):
+        deep = [deep]
+    asked = {"trialId": trial_id, "details": deep}
+    answer = running.loop.submit(CommandName.TRIAL_SCORED, asked).result(PATIENCE_S)
+    assert not answer.ok
+    assert "log says why" in answer.message
+    assert "TrialScored of an older trial has failed" in caplog.text
+    assert running.do(CommandName.GET_TRIAL, trialId=trial_id).ok
+
+
+def test_a_trial_in_a_second_session_with_the_same_seed_is_another_trial(
+    anywhere, tmp_path, running
+):
+    first = running.start()
+    running.do(CommandName.ABORT)
+    running.loop.stop()
+    with ControlLoop(Simulation(anywhere, 3), tmp_path / "records", speed=None) as loop:
+        assert Client(loop).start() != first
+
+
+def test_stopping_in_the_middle_of_a_trial_marks_it_and_refuses_what_comes_too_late(
+    running, tmp_path
+):
+    running.start()
+    running.do(CommandName.CAPTURE)
+    running.loop.stop()
+    reading = read_journal(journals(tmp_path)[0])
+    assert reading.integrity is Integrity.INTACT
+    assert reading.entries[-1]["kind"] == "stopped"
+    assert "shutting down" in running.do(CommandName.CAPTURE).message
+
+
+def test_another_simulation_takes_over_between_two_trials_only(running, anywhere):
+    other = Simulation(anywhere, 4)
+    running.start()
+    assert not running.loop.replace_simulation(other).result(PATIENCE_S).ok
+    running.do(CommandName.ABORT)
+    tick = running.loop.latest.tick
+    assert running.loop.replace_simulation(other).result(PATIENCE_S).ok
+    running.ticks(3)
+    assert running.loop.latest.tick > tick
+    running.start()
+
+
+def test_trials_that_are_begun_too_often_are_refused_and_make_no_journal(anywhere, tmp_path):
+    places = (Simulation(anywhere, 1), tmp_path / "records")
+    with ControlLoop(*places, speed=None, trial_limits=TrialLimits(1e-6, 2)) as loop:
+        client = Client(loop)
+        for _ in range(2):
+            client.start()
+            client.do(CommandName.ABORT)
+        refused = client.do(CommandName.START_TASK, task="task-1", trainee="P01")
+        assert not refused.ok
+        assert "too often" in refused.message
+        assert loop.latest.training.phase is Phase.IDLE
+    assert len(journals(tmp_path)) == 2
+
+
+def test_a_trial_may_be_begun_again_after_a_while(anywhere, tmp_path):
+    limits = TrialLimits(1.0, 1)
+    with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None, trial_limits=limits) as loop:
+        client = Client(loop)
+        for _ in range(3):
+            client.start()
+            assert not client.do(CommandName.START_TASK, task="task-1", trainee="P01").ok
+            client.do(CommandName.ABORT)
+            client.ticks(251)
+
+
+def test_a_late_tick_is_counted_and_lost_ticks_are_not_hidden(anywhere, tmp_path):
+    holds_up_s = [0.0]
+    with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=1.0) as loop:
+        loop.subscribe(lambda _result: time.sleep(holds_up_s[0]))
+        holds_up_s[0] = 0.03
+        wait_for(lambda: loop.statistics.late > 0)
+        holds_up_s[0] = 0.5
+        wait_for(lambda: loop.statistics.skipped > 0)
+        holds_up_s[0] = 0.0
+        statistics = loop.statistics
+    assert statistics.worst_delay_s > 0.02
+    assert statistics.on_time < 1.0
+
+
+class ClockOfItsOwn:
+    """Time that goes on only where the loop sleeps or is held up: no machine stands still in it."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def monotonic(self):
+        return self.now
+
+    def sleep_until(self, moment):
+        self.now = max(self.now, moment)
+
+
+def test_after_a_delay_the_loop_makes_up_for_it_tick_by_tick(anywhere, tmp_path, monkeypatch):
+    clock = ClockOfItsOwn()
+    monkeypatch.setattr(control_loop, "time", clock)
+    monkeypatch.setattr(control_loop, "sleep_until", clock.sleep_until)
+    with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=1.0) as loop:
+        held_up = threading.Event()
+
+        def hold_up_once(_result):
+            if not held_up.is_set():
+                held_up.set()
+                clock.now += 0.06
+
+        loop.subscribe(hold_up_once)
+        wait_for(held_up.is_set)
+        Client(loop).ticks(100)
+        # 56 ms behind, then 52, …, 4.
+        assert loop.statistics.late == 14
+        assert loop.statistics.skipped == 0
+
+
+def test_a_faulty_subscriber_stops_the_loop_and_every_question_is_still_answered(
+    anywhere, tmp_path, caplog
+):
+    with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None) as loop:
+        loop.subscribe(lambda _result: 1 / 0)
+        wait_for(lambda: not loop.is_running)
+        assert not Client(loop).do(CommandName.LIST_TASKS).ok
+    assert "ZeroDivisionError" in caplog.text
+
+
+KILLED = """
+import sys
+from dataclasses import replace
+from pathlib import Path
+from rastrainer.protocol import CommandName, TouchRule, check_arguments
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.simulation import Simulation
+
+setup = load_setup()
+training = replace(
+    setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
+)
+setup = replace(setup, settings=replace(setup.settings, training=training))
+with ControlLoop(Simulation(setup, 1), Path(sys.argv[1]), speed=None) as loop:
+    def do(name, **arguments):
+        assert loop.submit(name, check_arguments(name, arguments)).result().ok
+        print(name, flush=True)
+    while True:
+        do(CommandName.START_TASK, task="task-1", trainee="P01")
+        for _ in range(15):
+            do(CommandName.CAPTURE)
+        do(CommandName.REGISTER)
+"""
+
+
+def test_kill_9_in_the_middle_of_trials_loses_no_acknowledged_touch(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-c", KILLED, str(tmp_path / "records")],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    with process:
+        told = [process.stdout.readline().strip() for _ in range(40)]
+        os.kill(process.pid, signal.SIGKILL)
+        told += process.stdout.read().split()
+    assert told.count("Capture") >= 30
+    readings = [read_journal(path) for path in journals(tmp_path)]
+    assert all(reading.integrity is not Integrity.ALTERED for reading in readings)
+    assert told.count("Capture") <= sum(len(labels(reading)) for reading in readings)
+    assert told.count("Register") <= sum(len(r.of_kind("registered")) for r in readings)
+    assert told.count("StartTask") <= len(readings)

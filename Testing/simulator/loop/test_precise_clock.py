@@ -1,0 +1,107 @@
+"""The control loop's place among the threads of the machine."""
+
+import os
+import sys
+import threading
+
+import pytest
+
+from rastrainer_simulator.loop.precise_clock import (
+    FIRST,
+    SECOND,
+    SWITCH_INTERVAL_S,
+    precise_timing,
+    raise_thread_priority,
+)
+
+linux_only = pytest.mark.skipif(sys.platform != "linux", reason="how Linux schedules threads")
+
+
+def policy() -> int:
+    return os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
+
+
+def in_a_thread(call):
+    results = []
+    thread = threading.Thread(target=lambda: results.append(call()))
+    thread.start()
+    thread.join()
+    return results[0]
+
+
+def may_be_first() -> bool:
+    """Tell whether the system permits this process a real-time priority."""
+
+    def ask() -> bool:
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIRST))
+        except PermissionError:
+            return False
+        return True
+
+    return in_a_thread(ask)
+
+
+@linux_only
+def test_the_loop_runs_before_ordinary_threads_where_the_system_permits_it():
+    def inside() -> int:
+        with precise_timing(is_first_in_line=True):
+            return policy()
+
+    assert in_a_thread(inside) == (os.SCHED_FIFO if may_be_first() else os.SCHED_OTHER)
+
+
+@linux_only
+def test_threads_that_the_loop_starts_stay_ordinary():
+    def inside() -> int:
+        with precise_timing(is_first_in_line=True):
+            return in_a_thread(policy)
+
+    assert in_a_thread(inside) == os.SCHED_OTHER
+
+
+@linux_only
+def test_who_shares_the_interpreter_with_the_loop_comes_after_it_and_before_ordinary_threads():
+    def told() -> tuple[int, int]:
+        return policy(), os.sched_getparam(0).sched_priority
+
+    def second() -> tuple[tuple[int, int], tuple[int, int]]:
+        raise_thread_priority()
+        return told(), in_a_thread(told)
+
+    def first() -> tuple[int, int]:
+        with precise_timing(is_first_in_line=True):
+            return told()
+
+    ordinary = (os.SCHED_OTHER, 0)
+    itself, started = in_a_thread(second)
+    assert started == ordinary
+    if may_be_first():
+        assert itself == (os.SCHED_FIFO, SECOND)
+        assert in_a_thread(first) == (os.SCHED_FIFO, FIRST)
+        assert FIRST > SECOND
+    else:
+        assert itself == in_a_thread(first) == ordinary
+
+
+@linux_only
+def test_a_loop_that_never_sleeps_is_not_put_first():
+    def inside() -> int:
+        with precise_timing(is_first_in_line=False):
+            return policy()
+
+    assert in_a_thread(inside) == os.SCHED_OTHER
+
+
+def test_everything_is_as_before_when_it_ends():
+    interval = sys.getswitchinterval()
+
+    def around() -> tuple[float, int]:
+        with precise_timing(is_first_in_line=True):
+            within = sys.getswitchinterval()
+        return within, policy() if sys.platform == "linux" else 0
+
+    within, after = in_a_thread(around)
+    assert within == pytest.approx(SWITCH_INTERVAL_S)
+    assert after == 0
+    assert sys.getswitchinterval() == interval

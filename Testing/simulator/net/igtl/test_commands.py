@@ -1,0 +1,171 @@
+"""Commands over real sockets: each is answered once, with what would have been right."""
+
+from __future__ import annotations
+
+import json
+import struct
+from concurrent.futures import Future
+
+import pytest
+
+from rastrainer.igtl.checksum import crc64
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Command, CommandReply
+from rastrainer.igtl.message import Message, pack
+from rastrainer.protocol import COMMAND_ARGUMENTS, PROTOCOL_VERSION
+from rastrainer_simulator.state import Answer
+from Testing.simulator.net.igtl.servers import LinkServer, answer_to
+
+TRIAL = "6f1e1b9e-6c3f-4a53-8a55-0d0f5a3b7c11"
+HELLO = {"protocolVersion": PROTOCOL_VERSION, "client": "test"}
+ARGUMENTS = {
+    "Hello": HELLO,
+    "LoadScenario": {"folder": "scenarios/colin27"},
+    "StartTask": {"task": "task-1", "trainee": "anna", "seed": None},
+    "Jog": {"velocityMmS": [1, 2, 3]},
+    "MoveTipTo": {"positionMm": [500, 0, 300], "direction": None},
+    "SetCamera": {"camera": "far"},
+    "SubmitRegistration": {
+        "trialId": TRIAL,
+        "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+        "freMm": 0.5,
+        "expectedTreMm": 0.6,
+    },
+    "TrialScored": {"trialId": TRIAL, "score": 80},
+    "PlanTarget": {"positionMm": [0, 0, 0]},
+    "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},
+    "GetTrial": {"trialId": TRIAL},
+    "AcknowledgeTrial": {"trialId": TRIAL},
+}
+
+
+@pytest.mark.parametrize("name", COMMAND_ARGUMENTS)
+def test_every_command_of_the_protocol_is_answered(client, name):
+    arguments = ARGUMENTS.get(name, {})
+    given = {key: value for key, value in arguments.items() if value is not None}
+    assert client.send_command(name, given).ok
+
+
+def test_simulation_gets_checked_arguments_and_the_name_of_the_client(client, link_server):
+    client.send_command("Hello", HELLO)
+    client.send_command("Jog", {"velocityMmS": [1, 2, 3]})
+    name, arguments, sender = link_server.simulated.commands[-1]
+    assert (name, sender) == ("Jog", "test")
+    assert arguments == {"velocityMmS": (1.0, 2.0, 3.0), "frame": "world", "durationS": 0.1}
+
+
+def test_refusal_of_the_simulation_comes_back_in_its_words(client, link_server):
+    link_server.simulated.answer = lambda *_: Answer(0, False, "Begin one with StartTask.")
+    reply = client.send_command("Capture")
+    assert (reply.ok, reply.error) == (False, "Begin one with StartTask.")
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "words"),
+    [
+        ("Fly", {}, 'The command "Fly" is unknown; known are Hello, ListTasks'),
+        ("Capture", {"point": 3}, 'Capture has no argument "point"; it takes none'),
+        ("StartTask", {"task": "task-1"}, "StartTask needs the argument trainee"),
+        ("Jog", {"velocityMmS": [1, 2]}, "must be a list of 3 numbers within ±500 mm/s"),
+        ("Jog", {"velocityMmS": [1, 2, 1e9]}, "must be a list of 3 numbers within ±500 mm/s"),
+        ("GetTrial", {"trialId": "../../etc/passwd"}, "must be the UUID of a trial"),
+    ],
+)
+def test_wrong_command_is_answered_with_what_would_be_right(client, name, arguments, words):
+    reply = client.send_command(name, arguments)
+    assert not reply.ok
+    assert words in reply.error
+    assert reply.data["error"] == reply.error
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        *("[]", "{", "nonsense", '{"velocityMmS": NaN}', "[" * 60_000, '{"x": 1e999}'),
+        json.dumps({str(number): number for number in range(1001)}),
+    ],
+    ids=lambda body: body[:20],
+)
+def test_body_that_is_no_json_object_is_refused(link_server, body):
+    command = pack(Message("command", Command(77, "Jog", body)))
+    reply = answer_to(link_server.port, command)
+    assert reply.metadata["Status"] == "FAIL"
+    assert "must be one JSON object with finite numbers" in reply.metadata["ErrorMessage"]
+
+
+def test_name_that_cannot_be_repeated_is_answered_without_it(link_server):
+    body = Command(5, "Fly").pack().replace(b"Fly", b"\xff\x01\x02")
+    header = struct.pack(">H12s20sIIQQ", 1, b"COMMAND", b"command", 0, 0, len(body), crc64(body))
+    reply = answer_to(link_server.port, header + body).content
+    assert (reply.command_id, reply.name) == (5, "")
+    assert "is unknown" in reply.body
+
+
+def test_hello_of_another_protocol_version_is_refused_with_ours(client):
+    reply = client.send_command("Hello", {**HELLO, "protocolVersion": PROTOCOL_VERSION + 1})
+    assert "install RASTrainer of the same version on both sides" in reply.error
+    assert reply.data["protocolVersion"] == PROTOCOL_VERSION
+
+
+def test_commands_of_a_client_are_carried_out_in_their_order(client, link_server):
+    count = 300
+    for number in range(count):
+        body = json.dumps({"velocityMmS": [number, 0, 0]})
+        client.send(Message("command", Command(1000 + number, "Jog", body)))
+    client.send_command("ListTasks")
+    jogs = [given for name, given, _ in link_server.simulated.commands if name == "Jog"]
+    assert [given["velocityMmS"][0] for given in jogs] == list(range(count))
+
+
+def test_simulation_is_given_few_commands_of_one_client_at_once(start):
+    server = start(LinkServer, commands_at_once=4)
+    given = []
+
+    def hold(*_):
+        given.append(Future())
+        return given[-1]
+
+    server.link._submit_command = hold
+    with Client(port=server.port) as client:
+        for number in range(1000, 1020):
+            client.send(Message("command", Command(number, "Capture")))
+        client.send_command("Fly")
+        assert len(given) == 4
+        for _ in range(20):
+            given.pop(0).set_result(Answer(0, True))
+            client.send_command("Fly")
+        assert given == []
+
+
+def test_client_with_too_many_commands_is_told_so(start):
+    server = start(LinkServer, commands_at_once=1, waiting_commands=2)
+    server.link._submit_command = lambda *_: Future()
+    with Client(port=server.port) as client:
+        for number in range(1000, 1003):
+            client.send(Message("command", Command(number, "Capture")))
+        assert "Too many commands wait" in client.send_command("Capture").error
+
+
+def test_simulation_that_fails_is_reported_and_the_link_goes_on(client, link_server):
+    def fail(*_):
+        future = Future()
+        future.set_exception(RuntimeError("broken"))
+        return future
+
+    link_server.link._submit_command = fail
+    assert "could not carry the command out" in client.send_command("Capture").error
+    assert client.send_command("Hello", HELLO).ok
+
+
+def test_answer_carries_number_and_name_of_its_command(link_server):
+    command = pack(Message("command", Command(258, "ListTasks")))
+    reply = answer_to(link_server.port, command)
+    assert reply.metadata == {"Status": "SUCCESS"}
+    assert reply.content == CommandReply(258, "ListTasks", '{"did": "ListTasks"}')
+
+
+def test_client_of_header_version_1_reads_the_reason_in_the_body(link_server):
+    command = pack(Message("command", Command(1, "Fly"), version=1))
+    reply = answer_to(link_server.port, command)
+    assert reply.version == 1
+    assert "is unknown" in json.loads(reply.content.body)["error"]

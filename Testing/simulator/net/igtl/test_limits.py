@@ -1,0 +1,173 @@
+"""What a client may cost: memory, time, connections; and who is no client at all."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+import json
+import socket
+import struct
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Command, String, Transform
+from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.stream import MessageReader
+from rastrainer_simulator.net.limits import LinkLimits
+from rastrainer_simulator.net.rates import AsyncRateLimiter
+from rastrainer_simulator.state import Answer
+from Testing.simulator.net.igtl.servers import HOST, LinkServer, PlainServer
+
+PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)), timestamp=1)
+ABORT = pack(Message("command", Command(1, "Abort", "{}")))
+# What a browser sends for fetch(url, {method: "POST", mode: "no-cors", body: …}).
+FROM_A_PAGE = (
+    b"POST / HTTP/1.1\r\nHost: 127.0.0.1:18944\r\nConnection: keep-alive\r\n"
+    b"Content-Length: %d\r\nOrigin: http://evil.example\r\nAccept: */*\r\n\r\n"
+)
+
+
+def ended(peer: socket.socket) -> bool:
+    """Read to the end; the server may also have reset the connection."""
+    with contextlib.suppress(ConnectionError):
+        while peer.recv(65_536):
+            pass
+    return True
+
+
+def test_a_page_in_a_browser_commands_nothing(link_server):
+    with socket.create_connection((HOST, link_server.port), 10) as peer:
+        peer.sendall(FROM_A_PAGE % len(ABORT) + ABORT)
+        assert ended(peer)
+    with Client(port=link_server.port) as client:
+        assert client.send_command("ListTasks").ok
+    assert [name for name, *_ in link_server.simulated.commands] == ["ListTasks"]
+
+
+def test_bytes_now_and_then_do_not_keep_a_half_message_alive(start):
+    server = start(PlainServer, half_message_s=0.1)
+    with socket.create_connection((HOST, server.port), 10) as peer:
+        peer.sendall(pack(Message("Note", String("x" * 60_000)))[:70])
+        peer.settimeout(0.02)
+        for _ in range(1000):
+            try:
+                peer.send(b"x")
+                if peer.recv(1) == b"":
+                    break
+            except TimeoutError:
+                continue
+            except ConnectionError:
+                break
+        else:
+            pytest.fail("the connection was kept")
+
+
+def test_a_message_that_comes_slowly_but_steadily_is_taken(start):
+    server = start(PlainServer, half_message_s=0.05, slowest_bytes_per_s=1.0)
+    note = pack(Message("Note", String("x" * 1000), timestamp=1))
+    with socket.create_connection((HOST, server.port), 10) as peer:
+        for begin in range(0, len(note), 100):
+            peer.sendall(note[begin : begin + 100])
+            server.thread.run(asyncio.sleep(0.02))
+        assert server.handler.wait_for_messages(1)[0].content == String("x" * 1000)
+
+
+def test_who_asks_for_echoes_and_does_not_read_them_is_dropped_before_they_pile_up(start):
+    server = start(LinkServer, slow_client_s=60.0, waiting_bytes=300_000)
+    metadata = {f"key-{number}": "x" * 10_000 for number in range(6)}
+    with Client(port=server.port) as good, socket.socket() as peer:
+        peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        peer.settimeout(10)
+        peer.connect((HOST, server.port))
+        with contextlib.suppress(ConnectionError):
+            for number in itertools.count():
+                peer.sendall(pack(Message(f"Echo {number}", PROBE.content, metadata)))
+        assert ended(peer)
+        good.send(PROBE)
+        assert good.wait_for("Probe").content == PROBE.content
+
+
+def test_commands_wait_only_up_to_so_many_bytes(start):
+    server = start(LinkServer, commands_at_once=0, waiting_command_bytes=100_000)
+    server.simulated.answer = lambda _name, _arguments: Answer(0, True)
+    details = {"text": "x" * 30_000}
+    scored = {
+        "trialId": "6b8f2f1e-6a60-4c0e-9a37-111111111111",
+        "score": 1,
+        "details": details,
+    }
+    reader, replies = MessageReader(), []
+    with socket.create_connection((HOST, server.port), 10) as peer:
+        for number in range(6):
+            peer.sendall(
+                pack(Message("command", Command(number, "TrialScored", json.dumps(scored))))
+            )
+        while len(replies) < 2:
+            for message in reader.feed(peer.recv(65_536)):
+                if message.device == "command":
+                    replies.append((message.content.command_id, message.metadata["ErrorMessage"]))
+    sentence = "Too many commands wait: wait for their answers."
+    assert replies == [(4, sentence), (5, sentence)]
+
+
+@contextlib.contextmanager
+def served_socket(plain_server):
+    """Connect a client; the server's socket of that connection."""
+    with socket.create_connection((HOST, plain_server.port), 10):
+        plain_server.handler.wait_until(lambda: plain_server.handler.connections)
+        (connection,) = plain_server.server.clients
+        yield connection._transport.get_extra_info("socket")
+
+
+def test_the_system_is_asked_to_notice_a_machine_that_has_gone(plain_server):
+    with served_socket(plain_server) as peer:
+        assert peer.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
+        seconds = plain_server.server.limits.silent_peer_s
+        idle, between, tries = (
+            peer.getsockopt(socket.IPPROTO_TCP, getattr(socket, name))
+            for name in ("TCP_KEEPIDLE", "TCP_KEEPINTVL", "TCP_KEEPCNT")
+        )
+        assert idle + between * tries <= seconds
+        timeout_ms = peer.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT)
+        assert timeout_ms == 1000 * seconds
+
+
+def test_small_messages_are_sent_at_once(plain_server):
+    with served_socket(plain_server) as peer:
+        assert peer.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+
+
+def test_connections_are_taken_in_turn_however_many_want_one(monkeypatch):
+    waits = []
+
+    async def note(seconds):
+        waits.extend([seconds] if seconds > 1e-6 else [])
+
+    async def many():
+        monkeypatch.setattr(asyncio.get_running_loop(), "time", lambda: 100.0)
+        monkeypatch.setattr(asyncio, "sleep", note)
+        rate_limiter = AsyncRateLimiter(10.0)
+        for _ in range(13):
+            await rate_limiter.passed()
+
+    asyncio.run(many())
+    assert waits == pytest.approx([0.1, 0.2, 0.3])
+
+
+def test_a_flood_of_connections_keeps_nobody_from_being_served(start):
+    server = start(LinkServer, new_clients_per_s=1000.0, clients=20)
+    with Client(port=server.port) as good:
+        good.send(PROBE)
+        good.wait_for("Probe")
+        for _ in range(300):
+            with socket.create_connection((HOST, server.port), 10) as peer:
+                peer.send(struct.pack(">H", 1))
+        good.send(replace(PROBE, device="Again"))
+        assert good.wait_for("Again").content == PROBE.content
+
+
+def test_every_limit_is_above_zero():
+    assert all(value > 0 for value in vars(LinkLimits()).values())

@@ -1,0 +1,239 @@
+"""What is published, how often in simulated time, and in millimeters."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.igtl.content import String
+from rastrainer.igtl.message import HEADER_BYTES, read_header, unpack
+from rastrainer.igtl.points import Points
+from rastrainer.protocol import DeviceName, Phase, Proximity
+from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
+from rastrainer_simulator.net.rates import Pacer
+from rastrainer_simulator.state import TouchState, TrainingState
+from Testing.simulator.net.igtl.servers import at_rest
+
+TICK_S = 0.004
+RUNNING = TrainingState(1, Phase.RUNNING, "anna", "task-1", "desktop", "id-1", "1", "Touch 1.")
+FIRST = TouchState("1", (0.5, -0.25, 0.125), 1.0, 1.0)
+SECOND = TouchState("2", (0.4, 0.1, 0.2), 2.0, 2.0)
+
+
+class Receiver:
+    """Stands in for a connection and unpacks what it is sent."""
+
+    def __init__(self):
+        self.messages = []
+
+    def send_latest(self, outgoing):
+        data = outgoing.packed(2)
+        self.messages.append(unpack(read_header(data), data[HEADER_BYTES:]))
+
+    def of(self, device):
+        return [message for message in self.messages if message.device == device]
+
+
+@pytest.fixture
+def receiver() -> Receiver:
+    return Receiver()
+
+
+@pytest.fixture
+def publisher(receiver) -> Publisher:
+    """A publisher whose one subscriber knows how things stand."""
+    publisher = Publisher(at_rest)
+    publisher.subscribe(receiver, PoseSubscription())
+    publisher.publish(at_rest())
+    receiver.messages.clear()
+    return publisher
+
+
+def run(publisher, seconds, state_at=lambda t: at_rest(sim_time=t), start=1.0):
+    for tick in range(round(seconds / TICK_S)):
+        state = state_at(start + tick * TICK_S)
+        if publisher.is_due(state):
+            publisher.publish(state)
+
+
+def moving(sim_time):
+    pose = np.eye(4)
+    pose[0, 3] = sim_time
+    return at_rest(sim_time=sim_time, tool_tip_to_world=pose, link_to_world=(pose,) * 8)
+
+
+def test_tip_comes_60_times_and_each_link_30_times_a_simulated_second(publisher, receiver):
+    run(publisher, 10, moving)
+    counts = Counter(message.device for message in receiver.messages)
+    assert counts["ToolTipToWorld"] == pytest.approx(600, abs=1)
+    for link in range(8):
+        assert counts[f"Link{link}ToWorld"] == pytest.approx(300, abs=1)
+
+
+def test_each_client_has_the_rates_that_it_asked_for(publisher, receiver):
+    fast, silent = Receiver(), Receiver()
+    publisher.subscribe(fast, PoseSubscription(250, 10))
+    publisher.subscribe(silent, PoseSubscription(0, 0))
+    run(publisher, 4, moving)
+    assert len(fast.of("ToolTipToWorld")) == pytest.approx(1000, abs=1)
+    assert len(fast.of("Link3ToWorld")) == pytest.approx(40, abs=1)
+    assert len(receiver.of("ToolTipToWorld")) == pytest.approx(240, abs=1)
+    assert not silent.of("ToolTipToWorld") + silent.of("Link0ToWorld")
+
+
+def test_at_rest_nothing_is_sent(publisher, receiver):
+    run(publisher, 10)
+    assert receiver.messages == []
+
+
+def test_a_link_that_stands_is_not_sent_with_one_that_moves(publisher, receiver):
+    def elbow(sim_time):
+        return replace(moving(sim_time), link_to_world=(*[np.eye(4)] * 7, np.eye(4) * sim_time))
+
+    run(publisher, 2, elbow)
+    assert len(receiver.of("Link7ToWorld")) == pytest.approx(60, abs=1)
+    assert not any(receiver.of(f"Link{link}ToWorld") for link in range(7))
+
+
+def test_what_32_bits_do_not_tell_apart_has_not_changed(publisher, receiver):
+    pose = np.eye(4) * (1 + 1e-12)
+    run(publisher, 1, lambda t: at_rest(sim_time=t, link_to_world=(pose,) * 8))
+    assert receiver.messages == []
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_who_has_just_subscribed_gets_every_pose_once(publisher, times):
+    late = Receiver()
+    for _ in range(times):
+        publisher.subscribe(late, PoseSubscription())
+        run(publisher, 1)
+    counts = Counter(message.device for message in late.messages)
+    assert counts.pop("CapturedPoints") == counts.pop("SimState") == times
+    assert counts == dict.fromkeys([*DeviceName.LINK_TO_WORLD, DeviceName.TOOL_TIP_TO_WORLD], times)
+
+
+def test_a_steady_client_gets_its_poses_at_rest_too(publisher, receiver):
+    steady = Receiver()
+    publisher.subscribe(steady, PoseSubscription(is_steady=True))
+    run(publisher, 2)
+    assert len(steady.of("ToolTipToWorld")) == pytest.approx(120, abs=1)
+    assert receiver.of("ToolTipToWorld") == []
+
+
+def test_a_gap_in_the_numbers_is_never_left_by_what_was_not_new(publisher, receiver):
+    run(publisher, 1)
+    run(publisher, 1, moving, start=3.0)
+    numbers = [int(m.metadata["seq"]) for m in receiver.messages]
+    assert set(np.diff(numbers)) == {0, 1}
+
+
+def test_state_comes_only_when_it_changes(publisher, receiver):
+    run(publisher, 5)
+    assert receiver.of("SimState") == []
+
+
+def test_state_that_changes_at_every_tick_comes_at_most_30_times_a_second(publisher, receiver):
+    run(publisher, 10, lambda t: at_rest(sim_time=t, q=(t,) * 7))
+    assert len(receiver.of("SimState")) == pytest.approx(300, abs=1)
+
+
+def test_tip_travels_in_millimeters_with_its_number_and_time(publisher, receiver):
+    pose = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.125], [0, 0, 0, 1]])
+    publisher.publish(at_rest(sim_time=2.5, tool_tip_to_world=pose))
+    moved = pose + np.array([0, 0, 0, 1e-3]) * np.array([[1], [1], [1], [0]])
+    publisher.publish(at_rest(sim_time=2.6, tool_tip_to_world=moved))
+    first, second = receiver.of("ToolTipToWorld")
+    expected = ((0, -1, 0, 500), (1, 0, 0, -250), (0, 0, 1, 125), (0, 0, 0, 1))
+    assert first.content.matrix == expected
+    assert first.metadata["simTime"] == "2.500000"
+    assert first.metadata["TransformStatus"] == "OK"
+    assert int(second.metadata["seq"]) > int(first.metadata["seq"])
+
+
+def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
+    state = at_rest(
+        sim_time=3.0,
+        training=replace(RUNNING, trainee="Zoë"),
+        proximity=Proximity.PROXIMITY,
+        clearance=0.0123456,
+        depth=0.0012345,
+        operator="gamepad",
+    )
+    publisher.publish(state)
+    (message,) = receiver.of("SimState")
+    assert message.content.text.isascii()
+    told = json.loads(message.content.text)
+    assert told.pop("seq") > 0
+    assert told == {
+        "simTime": 3.0,
+        "elapsedS": state.elapsed,
+        "phase": "running",
+        "trainee": "Zoë",
+        "task": "task-1",
+        "mode": "desktop",
+        "trialId": "id-1",
+        "nextPoint": "1",
+        "instruction": "Touch 1.",
+        "proximity": "proximity",
+        "clearanceMm": 12.346,
+        "depthMm": 1.234,
+        "q": [0.0] * 7,
+        "operator": "gamepad",
+    }
+
+
+def test_clearance_without_a_head_is_told_as_null(publisher, receiver):
+    publisher.publish(at_rest(sim_time=1.0, clearance=math.inf))
+    assert json.loads(receiver.of("SimState")[0].content.text)["clearanceMm"] is None
+
+
+def test_points_come_whole_at_every_touch_and_undo_and_at_once(publisher, receiver):
+    steps = [(FIRST,), (FIRST, SECOND), (FIRST,), ()]
+    for number, touches in enumerate(steps):
+        state = at_rest(sim_time=5.0, training=replace(RUNNING, revision=number, touches=touches))
+        assert publisher.is_due(state)
+        publisher.publish(state)
+    lists = [message.content for message in receiver.of("CapturedPoints")]
+    labels = [[point.label for point in points.points] for points in lists]
+    assert labels == [["1"], ["1", "2"], ["1"], []]
+    assert lists[0].points[0].position == (500, -250, 125)
+
+
+def test_empty_list_carries_the_metadata_with_which_slicer_clears_its_own(publisher, receiver):
+    with_point = replace(RUNNING, touches=(FIRST,))
+    publisher.publish(at_rest(sim_time=5.0, training=with_point))
+    publisher.publish(at_rest(sim_time=5.1, training=replace(RUNNING, trial_id="id-2")))
+    last = receiver.of("CapturedPoints")[-1]
+    assert last.content == Points(())
+    assert last.metadata == {"count": "0", "trialId": "id-2"}
+
+
+def test_late_client_is_told_how_things_stand(publisher):
+    state = at_rest(training=replace(RUNNING, touches=(FIRST, SECOND)))
+    late = Receiver()
+    publisher = Publisher(lambda: state)
+    publisher.subscribe(late, PoseSubscription())
+    assert len(late.of("CapturedPoints")[0].content.points) == 2
+    assert type(late.of("SimState")[0].content) is String
+
+
+def test_nothing_is_due_while_nobody_listens(publisher, receiver):
+    publisher.unsubscribe(receiver)
+    assert not publisher.is_due(at_rest(sim_time=9.0, training=RUNNING))
+
+
+def test_pacer_keeps_its_rate_on_a_clock_that_starts_again():
+    pacer = Pacer(10)
+    assert sum(pacer.is_due(t * TICK_S) for t in range(250)) == 10
+    assert sum(pacer.is_due(t * TICK_S) for t in range(250)) == 10
+
+
+def test_pacer_makes_no_burst_after_a_gap():
+    pacer = Pacer(10)
+    assert pacer.is_due(0.0)
+    assert [pacer.is_due(t) for t in (50.0, 50.001, 50.002, 50.11)] == [True, False, False, True]

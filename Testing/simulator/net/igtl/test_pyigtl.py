@@ -1,0 +1,215 @@
+"""pyigtl, an independent implementation, as client and as server: every type that it has.
+
+It has no COMMAND and no STATUS; those are made here from its base class, which packs the header,
+the metadata and the checksum.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import signal
+import socket
+import struct
+import time
+
+import numpy as np
+import pyigtl
+import pytest
+from pyigtl.messages import MessageBase, message_type_to_class_constructor
+
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Command, Status, String, Transform
+from rastrainer.igtl.message import Message
+from rastrainer.igtl.points import Point, Points
+from rastrainer_simulator.state import TouchState, TrainingState
+from Testing.simulator.net.igtl.servers import PlainServer, at_rest
+
+MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])
+TRANSFORM = Transform.from_matrix(MATRIX)
+TIP = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.125], [0, 0, 0, 1]])
+TOUCHES = (TouchState("1", (0.5, -0.25, 0.125), 1, 1), TouchState("2", (0.1, 0.2, 0.3), 2, 2))
+
+
+class CommandMessage(MessageBase):
+    def __init__(self, number=0, name="", body=""):
+        super().__init__(device_name="command")
+        self._message_type = "COMMAND"
+        self._valid_message = True
+        self.number, self.name, self.body = number, name, body
+
+    def _pack_content(self):
+        body = self.body.encode()
+        return struct.pack(">I128sHI", self.number, self.name.encode(), 3, len(body)) + body
+
+    def _unpack_content(self, content):
+        self.number, name, _encoding, _size = struct.unpack(">I128sHI", content[:138])
+        self.name, self.body = name.rstrip(b"\0").decode(), content[138:].decode()
+
+
+class StatusMessage(MessageBase):
+    def __init__(self):
+        super().__init__(device_name="Device")
+        self._message_type = "STATUS"
+        self._valid_message = True
+        self.code, self.subcode, self.message = 1, 42, "well"
+
+    def _pack_content(self):
+        return struct.pack(">HQ20s", self.code, self.subcode, b"") + self.message.encode() + b"\0"
+
+    def _unpack_content(self, content):
+        self.code, self.subcode, _name = struct.unpack(">HQ20s", content[:30])
+        self.message = content[30:].rstrip(b"\0").decode()
+
+
+@pytest.fixture(autouse=True)
+def more_types(monkeypatch):
+    for name, kind in [
+        ("COMMAND", CommandMessage),
+        ("RTS_COMMAND", CommandMessage),
+        ("STATUS", StatusMessage),
+    ]:
+        monkeypatch.setitem(message_type_to_class_constructor, name, kind)
+
+
+@pytest.fixture
+def connected():
+    """Makes pyigtl clients of a port, and ends them."""
+    clients = []
+
+    def connect(port):
+        clients.append(pyigtl.OpenIGTLinkClient("127.0.0.1", port))
+        return clients[-1]
+
+    yield connect
+    for client in clients:
+        client.stop()
+
+
+@pytest.fixture
+def pyigtl_server():
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    server = pyigtl.OpenIGTLinkServer(port)
+    yield server
+    server.communication_thread_stop_requested = True
+    server.stop()
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+
+
+def test_pyigtl_gets_the_echo_of_its_transform(link_server, connected):
+    client = connected(link_server.port)
+    client.send_message(pyigtl.TransformMessage(MATRIX, device_name="Probe"))
+    np.testing.assert_array_equal(client.wait_for_message("Probe", 10).matrix, MATRIX)
+
+
+@pytest.mark.parametrize("header_version", [1, 2])
+def test_what_pyigtl_sends_is_read(plain_server, connected, header_version):
+    client = connected(plain_server.port)
+    sent = [
+        pyigtl.TransformMessage(MATRIX, device_name="Probe"),
+        pyigtl.StringMessage("touch point 3", device_name="Note"),
+        pyigtl.PointMessage([[1.5, -2, 3.25]], names=["7"], device_name="Points"),
+        StatusMessage(),
+        CommandMessage(4711, "Hello", "{}"),
+    ]
+    for message in sent:
+        message.header_version = header_version
+        client.send_message(message)
+    assert [message.content for message in plain_server.handler.wait_for_messages(5)] == [
+        TRANSFORM,
+        String("touch point 3"),
+        Points((Point("7", (1.5, -2, 3.25)),)),
+        Status(1, 42, "", "well"),
+        Command(4711, "Hello", "{}"),
+    ]
+
+
+def test_pyigtl_reads_all_that_is_published(link_server, connected):
+    client = connected(link_server.port)
+    training = TrainingState(trial_id="id-1", touches=TOUCHES)
+    link_server.simulated.latest = at_rest(tool_tip_to_world=TIP, training=training)
+    while not link_server.server.clients:
+        time.sleep(0.01)
+    link_server.publish(at_rest(sim_time=1.0, tool_tip_to_world=TIP, training=training))
+    tip = client.wait_for_message("ToolTipToWorld", 10)
+    expected = [[0, -1, 0, 500], [1, 0, 0, -250], [0, 0, 1, 125], [0, 0, 0, 1]]
+    np.testing.assert_array_equal(tip.matrix, expected)
+    assert tip.metadata["TransformStatus"] == "OK"
+    points = client.wait_for_message("CapturedPoints", 10)
+    assert points.names == ["1", "2"]
+    np.testing.assert_allclose(points.positions, [[500, -250, 125], [100, 200, 300]], rtol=1e-7)
+    state = client.wait_for_message("SimState", 10)
+    assert json.loads(state.string)["trialId"] == "id-1"
+    assert client.wait_for_message("Link7ToWorld", 10) is not None
+    heartbeat = client.wait_for_message("SimServer", 10)
+    assert json.loads(heartbeat.message)["protocolVersion"] == heartbeat.subcode
+
+
+def test_pyigtl_gets_the_answer_to_its_command_with_its_metadata(link_server, connected):
+    client = connected(link_server.port)
+    command = CommandMessage(5, "ListTasks", "{}")
+    command.header_version = 2
+    client.send_message(command)
+    reply = client.wait_for_message("command", 10)
+    assert (reply.number, reply.name, reply.body) == (5, "ListTasks", '{"did": "ListTasks"}')
+    assert reply.metadata == {"Status": "SUCCESS"}
+
+
+def test_our_client_and_a_pyigtl_server_understand_each_other(pyigtl_server):
+    with Client(port=pyigtl_server.port) as client:
+        client.send(Message("Probe", TRANSFORM, {"seq": "1"}))
+        client.send(Message("Points", Points((Point("7", (1, 2, 3)),))))
+        probe = pyigtl_server.wait_for_message("Probe", 10)
+        np.testing.assert_array_equal(probe.matrix, MATRIX)
+        assert pyigtl_server.wait_for_message("Points", 10).names == ["7"]
+        pyigtl_server.send_message(pyigtl.StringMessage("hello", device_name="Note"))
+        assert client.wait_for("Note", timeout=10).content == String("hello")
+
+
+def test_what_pyigtl_sends_and_we_cannot_use_costs_nobody_the_connection(link_server, connected):
+    hostile, good = connected(link_server.port), connected(link_server.port)
+    voxels = np.zeros((20, 64, 64), np.uint8)
+    cut = pyigtl.TransformMessage(MATRIX, device_name="Cut")
+    cut._pack_content = lambda: b"\0" * 20
+    long = pyigtl.StringMessage("x" * 60_000, device_name="Long")
+    long.metadata = {f"key {number}": "x" * 300 for number in range(100)}
+    for _ in range(20):
+        for message in (
+            pyigtl.ImageMessage(voxels, device_name="Image"),
+            pyigtl.PositionMessage([1, 2, 3], device_name="Position"),
+            pyigtl.TransformMessage(np.full((4, 4), np.nan), device_name="Probe"),
+            CommandMessage(1, "X" * 128, "{" * 10_000),
+            cut,
+            long,
+        ):
+            hostile.send_message(message)
+    for client in (hostile, good):
+        client.send_message(pyigtl.TransformMessage(MATRIX, device_name="Probe"))
+        echo = client.wait_for_message("Probe", 10)
+        np.testing.assert_array_equal(echo.matrix, MATRIX)
+
+
+def test_a_pyigtl_server_that_sends_what_we_cannot_use_is_not_left(pyigtl_server, start):
+    server = start(PlainServer, reconnect_s=0.05)
+    connecting = server.server.keep_connected_to("127.0.0.1", pyigtl_server.port)
+    task = asyncio.run_coroutine_threadsafe(connecting, server.thread.loop)
+    server.handler.wait_until(lambda: server.handler.connections)
+    for _ in range(20):
+        voxels = np.zeros((20, 64, 64), np.uint8)
+        pyigtl_server.send_message(pyigtl.ImageMessage(voxels, device_name="Image"))
+        nothing = pyigtl.TransformMessage(np.full((4, 4), np.inf), device_name="Probe")
+        pyigtl_server.send_message(nothing)
+    pyigtl_server.send_message(pyigtl.StringMessage("still there", device_name="Note"))
+    assert server.handler.wait_for_messages(1)[0].content == String("still there")
+    assert server.handler.left == []
+    task.cancel()
+
+
+def test_many_pyigtl_clients_at_once_get_their_echo(link_server, connected):
+    clients = [connected(link_server.port) for _ in range(5)]
+    for client in clients:
+        client.send_message(pyigtl.TransformMessage(MATRIX, device_name="Probe"))
+    assert all(client.wait_for_message("Probe", 10) is not None for client in clients)

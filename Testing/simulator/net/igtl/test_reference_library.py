@@ -1,0 +1,130 @@
+"""The C++ reference library, as a client of ours: every type, both ways, and as a hostile one."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer.igtl.content import Command, Status, String, Transform
+from rastrainer.igtl.points import Point, Points
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer_simulator.net.limits import LinkLimits
+from rastrainer_simulator.state import TouchState, TrainingState
+from Testing.simulator.net.igtl.servers import LinkServer, at_rest
+
+SOURCE = Path(__file__).with_name("reference_client.cpp")
+HEADERS = Path("/usr/include/openigtlink")
+TIP = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.125], [0, 0, 0, 1]])
+TOUCH = TouchState("1", (0.5, -0.25, 0.125), 1.0, 1.0)
+
+
+@pytest.fixture(scope="module")
+def reference_client(tmp_path_factory) -> Path:
+    """Our client of the reference library, compiled."""
+    if sys.platform != "linux":
+        pytest.skip("the library is Debian's package")
+    assert shutil.which("g++"), "Install a C++ compiler: apt-get install g++"
+    assert HEADERS.is_dir(), "Install the reference library: apt-get install libopenigtlink-dev"
+    program = tmp_path_factory.mktemp("reference") / "reference_client"
+    command = ["g++", "-std=c++11", "-w", f"-I{HEADERS}", str(SOURCE), "-o", str(program)]
+    subprocess.run([*command, "-lOpenIGTLink", "-lpthread"], check=True)
+    return program
+
+
+@pytest.fixture(scope="module", params=["", "hostile"], ids=["good", "hostile"])
+def exchange(reference_client, loop_thread, request):
+    """What each side read of the other: our server's messages, and the client's lines by device.
+
+    A hostile client sends what cannot be used before all else: that costs it and others nothing.
+    """
+
+    server = LinkServer(loop_thread, LinkLimits())
+    server.simulated.latest = at_rest(
+        tool_tip_to_world=TIP, training=TrainingState(trial_id="id-1", touches=(TOUCH,))
+    )
+    taken = []
+    receive = server.link.received
+
+    def keep_and_receive(connection, message):
+        taken.append(message)
+        receive(connection, message)
+
+    server.link.received = keep_and_receive
+    beat = asyncio.run_coroutine_threadsafe(server.link.beat(), loop_thread.loop)
+    process = subprocess.Popen(
+        [reference_client, str(server.port), *request.param.split()],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    sim_time = 0.0
+    while process.poll() is None:
+        sim_time += 0.02
+        state = server.simulated.latest
+        server.publish(at_rest(sim_time=sim_time, tool_tip_to_world=TIP, training=state.training))
+        try:
+            process.wait(0.02)
+        except subprocess.TimeoutExpired:
+            continue
+    output = process.stdout.read()
+    beat.cancel()
+    loop_thread.run(server.server.close())
+    assert process.returncode == 0, output
+    lines = [line.split(" ", 2) for line in output.splitlines()]
+    return {message.device: message for message in taken}, {line[1]: line for line in lines}
+
+
+@pytest.mark.parametrize(
+    ("device", "content"),
+    [
+        ("Reference", Transform((0, 1, 0, -1, 0, 0, 0, 0, 1, 10.5, -20.25, 300.125))),
+        ("Note", String("touch point 3")),
+        ("Points", Points((Point("7", (1.5, -2, 3.25), (1, 2, 3, 255), "Fiducial"),))),
+        ("Device", Status(1, 42, "none", "well")),
+        ("command", Command(4711, "Hello", '{"protocolVersion": 1, "client": "reference"}')),
+    ],
+)
+def test_what_the_reference_library_sends_is_read(exchange, device, content):
+    assert exchange[0][device].content == content
+
+
+def test_reference_library_gets_the_echo_of_its_transform(exchange):
+    _type, _device, numbers = exchange[1]["Reference"]
+    assert numbers == "0 -1 0 10.5 1 0 0 -20.25 0 0 1 300.125"
+
+
+def test_reference_library_reads_the_tip_in_millimeters(exchange):
+    assert exchange[1]["ToolTipToWorld"][::2] == [
+        "TRANSFORM",
+        "0 -1 0 500 1 0 0 -250 0 0 1 125",
+    ]
+
+
+def test_reference_library_reads_the_touched_points(exchange):
+    assert exchange[1]["CapturedPoints"][::2] == ["POINT", "1 500 -250 125"]
+
+
+def test_reference_library_reads_the_state(exchange):
+    kind, _device, text = exchange[1]["SimState"]
+    assert kind == "STRING"
+    assert json.loads(text)["trialId"] == "id-1"
+
+
+def test_reference_library_reads_the_heartbeat(exchange):
+    kind, _device, text = exchange[1]["SimServer"]
+    code, subcode, message = text.split(" ", 2)
+    assert (kind, code, int(subcode)) == ("STATUS", "1", PROTOCOL_VERSION)
+    assert json.loads(message)["protocolVersion"] == PROTOCOL_VERSION
+
+
+def test_reference_library_gets_the_answer_to_its_command(exchange):
+    kind, _device, text = exchange[1]["command"]
+    number, name, body = text.split(" ", 2)
+    assert (kind, number, name) == ("RTS_COMMAND", "4711", "Hello")
+    assert json.loads(body)["server"] == "RASTrainer simulator"

@@ -1,0 +1,270 @@
+"""The server on real sockets: good clients are served whatever bad ones do."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import random
+import socket
+import struct
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Command, Status, String, Transform
+from rastrainer.igtl.message import LARGEST_BODY, Message, pack
+from rastrainer.igtl.points import Point, Points
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
+from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
+
+PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)), timestamp=1)
+EVERY_MESSAGE = [
+    PROBE,
+    Message("Note", String("hello"), timestamp=1),
+    Message("Points", Points((Point("1", (1, 2, 3)),)), timestamp=1),
+    Message("Device", Status(1, message="well"), timestamp=1),
+    Message("command", Command(1, "Hello", "{}"), timestamp=1),
+]
+LONG_TEXT = Outgoing(Message("Text", String("x" * 60_000)))
+
+
+def connect(port: int, receive_buffer: int = 0) -> socket.socket:
+    peer = socket.socket()
+    if receive_buffer:
+        peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+    peer.settimeout(10)
+    peer.connect((HOST, port))
+    return peer
+
+
+def read_to_end(peer: socket.socket) -> bytes:
+    data = b""
+    with contextlib.suppress(ConnectionError):
+        while piece := peer.recv(65_536):
+            data += piece
+    return data
+
+
+def header(kind: bytes, size: int) -> bytes:
+    return struct.pack(">H12s20sIIQQ", 1, kind, b"Peer", 0, 0, size, 1)
+
+
+@contextlib.contextmanager
+def good_client(server: LinkServer):
+    """A client that proves, at the end, that its link still works."""
+    with Client(port=server.port) as client:
+        yield client
+        client.send(PROBE)
+        assert client.wait_for("Probe").content == PROBE.content
+
+
+def test_every_type_arrives_as_it_was_sent(plain_server):
+    with Client(port=plain_server.port) as client:
+        for message in EVERY_MESSAGE:
+            client.send(message)
+        assert plain_server.handler.wait_for_messages(5) == EVERY_MESSAGE
+
+
+def test_every_type_reaches_every_client(plain_server):
+    with Client(port=plain_server.port) as first, Client(port=plain_server.port) as second:
+        plain_server.handler.wait_until(lambda: len(plain_server.handler.connections) == 2)
+        for message in EVERY_MESSAGE:
+            outgoing = Outgoing(message)
+            for connection in plain_server.server.clients:
+                plain_server.thread.call(connection.send, outgoing)
+        for client in (first, second):
+            for message in EVERY_MESSAGE:
+                assert client.wait_for(message.device) == message
+
+
+def test_client_that_speaks_header_version_1_is_answered_in_it(link_server):
+    with connect(link_server.port) as peer, peer.makefile("rb") as stream:
+        peer.sendall(pack(Message("Echo", PROBE.content, version=1)))
+        while True:
+            version, kind, device, *_rest, size, _crc = struct.unpack(
+                ">H12s20sIIQQ", stream.read(58)
+            )
+            body = stream.read(size)
+            if device.startswith(b"Echo"):
+                break
+        assert (version, kind.rstrip(b"\0"), body) == (1, b"TRANSFORM", PROBE.content.pack())
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        b"GET / HTTP/1.1\r\nHost: simulator\r\n\r\n" + bytes(100),
+        header(b"TRANSFORM", 48) + bytes(48),
+        header(b"TRANSFORM", 48)[:30],
+        header(b"GET_STATUS", 0),
+        header(b"IMAGE", 300_000) + bytes(300_000),
+        header(b"COMMAND", 0),
+        header(b"STRING", 2**20 + 1) + bytes(2**20 + 1),
+        pack(PROBE)[:-1] + b"\x01",
+    ],
+    ids=["HTTP", "checksum", "cut", "prefixed", "image", "empty", "long", "bit"],
+)
+def test_bad_message_disturbs_no_other_client(link_server, bad):
+    with good_client(link_server), connect(link_server.port) as peer:
+        peer.sendall(bad)
+
+
+@pytest.mark.parametrize(
+    "bad", [header(b"TRANSFORM", 48) + bytes(48), header(b"IMAGE", 300_000) + bytes(300_000)]
+)
+def test_bad_message_does_not_end_the_connection(plain_server, bad):
+    with connect(plain_server.port) as peer:
+        peer.sendall(bad + pack(PROBE))
+        assert plain_server.handler.wait_for_messages(1) == [PROBE]
+
+
+def test_claimed_body_above_16_mib_ends_the_connection(plain_server):
+    with connect(plain_server.port) as peer:
+        peer.sendall(header(b"STRING", LARGEST_BODY + 1))
+        assert read_to_end(peer) == b""
+
+
+def test_client_that_does_not_read_is_dropped_and_disturbs_no_other(start):
+    server = start(LinkServer, slow_client_s=0.2)
+    with good_client(server) as good, connect(server.port, receive_buffer=4096):
+        good.wait_for("SimServer")
+        while len(server.server.clients) == 2:
+            for connection in server.server.clients:
+                server.thread.call(connection.send_latest, LONG_TEXT)
+        assert good.is_open
+
+
+def test_client_that_lets_too_many_answers_wait_is_dropped_at_once(start):
+    server = start(PlainServer, slow_client_s=60, waiting_bytes=200_000)
+    with connect(server.port, receive_buffer=4096):
+        server.handler.wait_until(lambda: server.handler.connections)
+        (connection,) = server.server.clients
+        for _ in range(200):
+            server.thread.call(connection.send, LONG_TEXT)
+        server.handler.wait_until(lambda: server.handler.left == [connection])
+
+
+def test_state_of_a_client_that_reads_slowly_is_replaced_not_piled_up(start):
+    server = start(PlainServer, waiting_bytes=200_000)
+    with connect(server.port, receive_buffer=4096) as peer, peer.makefile("rb") as stream:
+        server.handler.wait_until(lambda: server.handler.connections)
+        (connection,) = server.server.clients
+        texts = [Outgoing(Message("Text", String(f"{i:03}" * 20_000))) for i in range(200)]
+        for text in texts:
+            server.thread.call(connection.send_latest, text)
+        read = []
+        while not read or read[-1] != b"199":
+            size = struct.unpack(">Q", stream.read(58)[42:50])[0]
+            read.append(stream.read(size)[16:19])
+        assert len(read) < 100
+        assert read == sorted(read)
+
+
+def test_message_left_half_sent_ends_the_connection(start):
+    server = start(PlainServer, half_message_s=0.1)
+    with connect(server.port) as peer:
+        peer.sendall(pack(PROBE)[:70])
+        assert read_to_end(peer) == b""
+
+
+def test_one_client_too_many_is_turned_away(start):
+    server = start(PlainServer, clients=2)
+    with connect(server.port) as first, connect(server.port) as second:
+        for peer in (first, second):
+            peer.sendall(pack(PROBE))
+        server.handler.wait_for_messages(2)
+        with connect(server.port) as third:
+            assert read_to_end(third) == b""
+        first.sendall(pack(PROBE))
+        server.handler.wait_for_messages(3)
+
+
+def test_the_oldest_client_that_never_said_a_word_yields_when_its_place_is_needed(start):
+    server = start(PlainServer, clients=3)
+    with connect(server.port) as talking, contextlib.ExitStack() as stack:
+        talking.sendall(pack(PROBE))
+        server.handler.wait_for_messages(1)
+        silent = [stack.enter_context(connect(server.port)) for _ in range(2)]
+        server.handler.wait_until(lambda: len(server.handler.connections) == 3)
+        for number in range(2):
+            newcomer = stack.enter_context(connect(server.port))
+            newcomer.sendall(pack(PROBE))
+            server.handler.wait_for_messages(2 + number)
+            assert read_to_end(silent[number]) == b""
+        talking.sendall(pack(PROBE))
+        server.handler.wait_for_messages(4)
+        assert len(server.server.clients) == 3
+
+
+def test_fifty_clients_get_their_echo(link_server):
+    with contextlib.ExitStack() as stack:
+        clients = [stack.enter_context(Client(port=link_server.port)) for _ in range(50)]
+        for client in clients:
+            client.send(PROBE)
+        for client in clients:
+            assert client.wait_for("Probe").content == PROBE.content
+
+
+def test_mutated_messages_end_at_worst_their_own_connection(link_server):
+    generator = random.Random(5)
+    seeds = [pack(message) for message in EVERY_MESSAGE]
+    with good_client(link_server):
+        for _ in range(30):
+            with connect(link_server.port) as peer, contextlib.suppress(OSError):
+                for _ in range(100):
+                    data = bytearray(generator.choice(seeds))
+                    for _ in range(generator.randint(1, 5)):
+                        data[generator.randrange(len(data))] = generator.randrange(256)
+                    peer.sendall(data)
+
+
+def test_trouble_is_logged_once_a_second_at_most(plain_server, caplog):
+    with caplog.at_level(logging.WARNING, "rastrainer.igtl"), connect(plain_server.port) as peer:
+        for _ in range(500):
+            peer.sendall(header(b"IMAGE", 0))
+        peer.sendall(pack(PROBE))
+        plain_server.handler.wait_for_messages(1)
+        first, *others = [record.getMessage() for record in caplog.records]
+        assert "unsupported type" in first
+        assert len(others) <= 1
+
+
+def test_port_in_use_is_said_in_one_sentence(plain_server, start):
+    other = start(LinkServer)
+    with pytest.raises(InputError, match=f"Cannot listen on 127.0.0.1:{plain_server.port}"):
+        other.thread.run(other.server.listen(HOST, plain_server.port))
+
+
+def test_host_that_is_none_is_said_in_one_sentence(link_server):
+    with pytest.raises(InputError, match="Cannot listen on"):
+        link_server.thread.run(link_server.server.listen("256.1.1.1", 0))
+
+
+def test_server_connects_to_a_listening_slicer_and_comes_back(start, loop_thread: LoopThread):
+    server = start(LinkServer, reconnect_s=0.05)
+    with socket.create_server((HOST, 0)) as slicer:
+        slicer.settimeout(10)
+        task = asyncio.run_coroutine_threadsafe(
+            server.server.keep_connected_to(HOST, slicer.getsockname()[1]), loop_thread.loop
+        )
+        for _ in range(2):
+            accepted, _address = slicer.accept()
+            with accepted:
+                assert accepted.recv(2) == b"\x00\x02"
+        task.cancel()
+
+
+def test_slicer_that_does_not_listen_is_told_once(start, loop_thread: LoopThread, caplog):
+    server = start(LinkServer, reconnect_s=0.01)
+    with socket.create_server((HOST, 0)) as probe:
+        port = probe.getsockname()[1]
+    attempts = server.server.keep_connected_to(HOST, port)
+    with caplog.at_level(logging.WARNING, "rastrainer.igtl"):
+        task = asyncio.run_coroutine_threadsafe(attempts, loop_thread.loop)
+        loop_thread.run(asyncio.sleep(0.2))
+        task.cancel()
+    assert [record.getMessage() for record in caplog.records] == [
+        f"1 × Nothing listens at {HOST}:{port} yet."
+    ]

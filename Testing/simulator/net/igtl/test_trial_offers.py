@@ -1,0 +1,105 @@
+"""A finished trial is offered again and again until a client acknowledges it."""
+
+from __future__ import annotations
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.protocol import PROTOCOL_VERSION, Phase
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer_simulator.net.igtl.simulator_link import OFFERS_AT_ONCE
+from rastrainer_simulator.state import TrainingState
+from Testing.domain.trial.aborted_records import make_aborted
+from Testing.simulator.net.igtl.servers import LinkServer, at_rest
+
+
+def record(name: str):
+    return SimpleNamespace(trial_id=name, to_json=lambda: {"trialId": name})
+
+
+class Collector(Client):
+    """A client that keeps the offers it gets."""
+
+    def __init__(self, server: LinkServer, name: str = "TrialCompleted"):
+        self.offers = []
+        self.name = name
+        self.server = server
+        super().__init__(port=server.port, on_message=self._keep)
+        self._say_hello()
+
+    def _keep(self, message):
+        if message.device == "command":
+            assert message.content.name == self.name
+            self.offers.append(message.content)
+
+    def _say_hello(self):
+        """What was sent before the answer has then arrived."""
+        self.send_command("Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "collector"})
+
+    def after(self, action) -> list[str]:
+        """Return the trials that were offered up to now, once `action` has been carried out."""
+        self.server.thread.call(action)
+        self._say_hello()
+        offered = [json.loads(offer.body)["trialId"] for offer in self.offers]
+        self.offers.clear()
+        return offered
+
+
+@pytest.fixture
+def collector(link_server):
+    with Collector(link_server) as collector:
+        yield collector
+
+
+def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
+    link_server.simulated.unacknowledged = (record("old"), record("new"))
+    registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="new"))
+    assert collector.after(lambda: link_server.link.tell(registered)) == ["new"]
+    assert collector.after(lambda: link_server.link.tell(registered)) == []
+
+
+def test_trial_is_offered_again_until_it_is_acknowledged(collector, link_server):
+    link_server.simulated.unacknowledged = (record("a"), record("b"))
+    assert collector.after(link_server.link.offers.repeat) == ["a", "b"]
+    assert collector.after(link_server.link.offers.repeat) == ["a", "b"]
+    link_server.simulated.unacknowledged = (record("b"),)
+    assert collector.after(link_server.link.offers.repeat) == ["b"]
+    link_server.simulated.unacknowledged = ()
+    assert collector.after(link_server.link.offers.repeat) == []
+
+
+def test_every_client_is_offered_the_trial(collector, link_server):
+    link_server.simulated.unacknowledged = (record("a"),)
+    with Collector(link_server) as other:
+        assert other.after(link_server.link.offers.repeat) == ["a"]
+    assert collector.after(lambda: None) == ["a"]
+
+
+def test_trials_that_nobody_takes_do_not_hold_up_the_others(collector, link_server):
+    names = [str(i) for i in range(OFFERS_AT_ONCE * 2 + 3)]
+    link_server.simulated.unacknowledged = tuple(record(name) for name in names)
+    offered = [collector.after(link_server.link.offers.repeat) for _ in range(3)]
+    assert {name for names in offered for name in names} == set(names)
+    assert max(map(len, offered)) == OFFERS_AT_ONCE
+
+
+def test_offers_are_numbered_so_that_each_can_be_answered(link_server):
+    link_server.simulated.unacknowledged = (record("a"), record("b"))
+    with Collector(link_server) as collector:
+        collector.server.thread.call(link_server.link.offers.repeat)
+        collector.send_command("ListTasks")
+        first, second = collector.offers
+        assert first.command_id != second.command_id
+
+
+def test_an_aborted_trial_is_offered_as_such(link_server):
+    aborted = AbortedTrial.from_json(make_aborted())
+    link_server.simulated.unacknowledged = (aborted,)
+    with Collector(link_server, "TrialAborted") as collector:
+        collector.server.thread.call(link_server.link.offers.repeat)
+        collector.send_command("ListTasks")
+        (offer,) = collector.offers
+    assert AbortedTrial.from_json(json.loads(offer.body)) == aborted

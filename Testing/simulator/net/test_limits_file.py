@@ -1,0 +1,104 @@
+"""A site's own limits: what the file may set, and that the simulator keeps to it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Client, LinkError
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer_simulator.loop.rate_limit import TrialLimits
+from rastrainer_simulator.net.limits import (
+    LIMITS_FILE,
+    LinkLimits,
+    ServerLimits,
+    ViewLimits,
+    read_limits,
+)
+from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
+
+HELLO = {"protocolVersion": PROTOCOL_VERSION, "client": "a site"}
+
+
+def write(folder, content):
+    folder.mkdir(exist_ok=True)
+    (folder / LIMITS_FILE).write_text(content if isinstance(content, str) else json.dumps(content))
+
+
+def test_without_a_file_the_limits_are_the_defaults(tmp_path):
+    assert read_limits(tmp_path) == ServerLimits(LinkLimits(), ViewLimits(), TrialLimits())
+
+
+def test_what_the_file_leaves_out_is_as_by_default(tmp_path):
+    write(tmp_path, {"clients": {"clients": 3, "slow_client_s": 2}, "views": {"views": 5}})
+    assert read_limits(tmp_path) == ServerLimits(
+        LinkLimits(clients=3, slow_client_s=2), ViewLimits(views=5)
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("{", "limits.json"),
+        ([], "must be a JSON object with any of clients, views, trials"),
+        ({"robots": {}}, "must be a JSON object with any of clients, views, trials"),
+        ({"views": 5}, "views must be a JSON object with any of views, connections"),
+        ({"views": {"colour": 5}}, "views must be a JSON object with any of"),
+        ({"clients": {"clients": 0}}, "clients.clients must be a whole number above 0"),
+        ({"clients": {"clients": 2.5}}, "clients.clients must be a whole number above 0"),
+        ({"clients": {"clients": True}}, "clients.clients must be a whole number above 0"),
+        ({"clients": {"slow_client_s": -1}}, "clients.slow_client_s must be a number above 0"),
+        ({"clients": {"slow_client_s": "5"}}, "clients.slow_client_s must be a number above 0"),
+        ({"clients": {"waiting_bytes": 2**40}}, "up to 1073741824"),
+        (
+            {"clients": {"clients": 10**6}},
+            "clients.clients must be a whole number above 0, up to 65",
+        ),
+        ({"clients": {"reading_share": 1.5}}, "reading_share must be a number above 0, up to 1."),
+        ({"clients": {"silent_peer_s": 1e9}}, "silent_peer_s must be a number above 0, up to 864"),
+        ({"views": {"requests_per_s": 1e9}}, "requests_per_s must be a number above 0, up to 104"),
+        ('{"clients": {"slow_client_s": NaN}}', "limits.json"),
+    ],
+)
+def test_what_is_no_limit_is_refused_with_what_would_be_one(tmp_path, content, sentence):
+    write(tmp_path, content)
+    with pytest.raises(InputError) as refused:
+        read_limits(tmp_path)
+    assert sentence in str(refused.value)
+
+
+def test_the_simulator_turns_away_one_client_more_than_the_file_allows(tmp_path):
+    write(tmp_path / "records-config", {"clients": {"clients": 1}})
+    with (
+        SimulatorProcess(tmp_path / "records", "--no-views") as simulator,
+        Client(port=simulator.port) as client,
+    ):
+        assert client.send_command("Hello", HELLO, timeout=20).ok
+        with pytest.raises(LinkError), Client(port=simulator.port) as one_more:
+            one_more.send_command("Hello", HELLO, timeout=20)
+        assert client.send_command("Hello", HELLO, timeout=20).ok
+
+
+def test_the_simulator_begins_no_more_trials_than_the_file_allows(tmp_path):
+    write(tmp_path / "records-config", {"trials": {"starts_per_s": 1e-6, "starts_at_once": 1}})
+    task = {"task": "task-1", "trainee": "P01"}
+    with (
+        SimulatorProcess(tmp_path / "records", "--no-views") as simulator,
+        Client(port=simulator.port) as client,
+    ):
+        assert client.send_command("StartTask", task, timeout=20).ok
+        assert client.send_command("Abort", timeout=20).ok
+        assert "too often" in client.send_command("StartTask", task, timeout=20).error
+
+
+def test_a_wrong_file_ends_the_start_with_one_sentence_and_status_2(tmp_path):
+    write(tmp_path, {"clients": {"clients": 0}})
+    places = ["--records", str(tmp_path / "records"), "--config", str(tmp_path)]
+    command = [*COMMAND, *places, "--port", "0", "--no-views"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert "clients.clients must be a whole number above 0" in done.stderr
+    assert len(done.stderr.splitlines()) == 1

@@ -1,0 +1,210 @@
+"""A view server on a real socket with a real control loop, and views that join it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from contextlib import suppress
+
+import aiohttp
+
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.limits import ViewLimits
+from rastrainer_simulator.net.views.presenter import Control
+from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.view_server import ViewServer
+from Testing.simulator.net.igtl.servers import HOST, LoopThread
+
+SUBPROTOCOL = "rastrainer.views.1"
+HELLO = {"type": "hello", "kind": "page", "device": "Quest 2", "refreshHz": 72}
+PATIENCE_S = 20
+
+
+class RecordingPresenter:
+    """A `Presenter` that keeps what it is told, and tells what a test wants."""
+
+    def __init__(self):
+        self.screen = Screen()
+        self.control = Control()
+        self.calls = []
+        self._listeners = []
+
+    def subscribe(self, listener):
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener)
+
+    def tell(self, *news):
+        for one in news:
+            for listener in tuple(self._listeners):
+                listener(one)
+
+    def __getattr__(self, name):
+        if not name.startswith(("on_", "view_")):
+            raise AttributeError(name)
+        return lambda *values: self.calls.append((name, *values))
+
+
+class ServedViews:
+    """A `ViewServer` in an event loop of its own.
+
+    Attributes:
+        presenter: where the views' input ends.
+        url: of the server.
+        new_codes: the pairing codes that were to be shown after the first.
+        pictures: files of the scenarios' pictures by the scenarios' names.
+    """
+
+    def __init__(self, thread: LoopThread, control_loop: ControlLoop, port: int = 0, **limits):
+        self.thread = thread
+        self.presenter = RecordingPresenter()
+        self.new_codes = []
+        self.pictures = {}
+        self._is_closed = False
+        self.server = thread.call(
+            ViewServer,
+            control_loop,
+            self.presenter,
+            self.new_codes.append,
+            limits=ViewLimits(**limits),
+            scenario_picture=self.pictures.get,
+        )
+        self.port = thread.run(self.server.listen(HOST, port))
+        self.url = f"http://{HOST}:{self.port}"
+
+    @property
+    def code(self) -> str:
+        return self.server.code.code
+
+    def new_key(self) -> str:
+        return self.thread.call(self.server.sessions.open)
+
+    def tell(self, *news):
+        """Have the presenter tell several things at once."""
+        self.thread.call(self.presenter.tell, *news)
+
+    def wait_for_call(self, *call):
+        """Wait until the presenter has been told something; return all that it was told."""
+
+        async def wait():
+            while call not in self.presenter.calls:
+                await asyncio.sleep(0.005)
+
+        self.thread.run(asyncio.wait_for(wait(), PATIENCE_S / 2))
+        return self.presenter.calls
+
+    def close(self):
+        """End the server; a second time does nothing."""
+        if not self._is_closed:
+            self._is_closed = True
+            self.thread.run(self.server.close())
+
+
+class ViewClient:
+    """One view, for tests that block."""
+
+    def __init__(self, thread: LoopThread, url: str, key: str):
+        self._thread = thread
+        self._session = thread.run(_session())
+        headers = {"Authorization": f"Bearer {key}"}
+        connecting = self._session.ws_connect(
+            f"{url}/stream", protocols=[SUBPROTOCOL], headers=headers
+        )
+        try:
+            self._socket = self._run(connecting)
+        except aiohttp.ClientError:
+            self.__exit__()
+            raise
+
+    def __enter__(self) -> ViewClient:
+        return self
+
+    def __exit__(self, *_exception):
+        self._run(self._session.close())
+
+    def join(self, **changes) -> dict:
+        """Say hello and return the welcome."""
+        self.send({**HELLO, **changes})
+        return self.next()
+
+    def send(self, message):
+        """Send an object as JSON, a text or bytes as they are."""
+        if isinstance(message, bytes):
+            self._run(self._socket.send_bytes(message))
+        else:
+            text = message if isinstance(message, str) else json.dumps(message)
+            self._run(self._socket.send_str(text))
+
+    def ping(self):
+        """Send a ping; its answer is not told."""
+        self._run(self._socket.ping())
+
+    def next(self, kind: str | None = None) -> dict:
+        """Return the next message, or the next of a kind."""
+        while True:
+            decoded = json.loads(self.next_text())
+            if kind in (None, decoded["type"]):
+                return decoded
+
+    def next_text(self) -> str:
+        """Return the next message as it came."""
+        message = self._receive()
+        assert message.type is aiohttp.WSMsgType.TEXT, message
+        return message.data
+
+    def all_until(self, is_last) -> list[dict]:
+        """Return the messages up to the first for which `is_last` is true."""
+        messages = []
+        while not messages or not is_last(messages[-1]):
+            messages.append(self.next())
+        return messages
+
+    def closing(self) -> tuple[int, str]:
+        """Read on until the server closes; return its code and its reason."""
+        while (message := self._receive()).type is aiohttp.WSMsgType.TEXT:
+            pass
+        assert message.type is aiohttp.WSMsgType.CLOSE, message
+        return message.data, message.extra
+
+    def leave(self):
+        self._run(self._socket.close())
+
+    def _receive(self):
+        return self._run(self._socket.receive())
+
+    def _run(self, coroutine):
+        async def patient():
+            return await asyncio.wait_for(coroutine, PATIENCE_S)
+
+        return asyncio.run_coroutine_threadsafe(patient(), self._thread.loop).result()
+
+
+async def _session() -> aiohttp.ClientSession:
+    return aiohttp.ClientSession()
+
+
+def request(url: str, path: str, method: str = "GET", **arguments) -> tuple[int, dict, bytes]:
+    """Return status, headers and body of one request."""
+
+    async def ask():
+        async with (
+            aiohttp.ClientSession(cookie_jar=aiohttp.DummyCookieJar()) as session,
+            session.request(method, url + path, **arguments) as response,
+        ):
+            return response.status, response.headers, await response.read()
+
+    return asyncio.run(ask())
+
+
+def raw_request(port: int, head: str) -> bytes:
+    """Send a request as it is written, with no client to clean it; return the whole answer."""
+
+    async def ask():
+        reader, writer = await asyncio.open_connection(HOST, port)
+        writer.write(f"{head}\r\nHost: {HOST}:{port}\r\nConnection: close\r\n\r\n".encode())
+        answer = await asyncio.wait_for(reader.read(), PATIENCE_S)
+        writer.close()
+        with suppress(ConnectionError):
+            await writer.wait_closed()
+        return answer
+
+    return asyncio.run(ask())

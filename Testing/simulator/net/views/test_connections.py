@@ -1,0 +1,43 @@
+"""What belongs to a connection goes with it."""
+
+import asyncio
+import gc
+
+import aiohttp
+from aiohttp import web
+
+from rastrainer_simulator.net.views.connections import Connections
+from Testing.simulator.net.igtl.servers import HOST
+
+LONG_S = 1000.0
+
+
+def in_memory() -> int:
+    """Return how many connections anything still knows of."""
+    gc.collect()
+    return sum(isinstance(each, web.RequestHandler) for each in gc.get_objects())
+
+
+def test_a_connection_that_has_asked_for_something_and_ended_is_let_go_of():
+    connections = Connections(8, LONG_S)
+    before = in_memory()
+
+    async def answer(request: web.BaseRequest) -> web.Response:
+        connections.note(request)
+        return web.Response()
+
+    async def ask_and_leave(url: str) -> None:
+        async with aiohttp.ClientSession() as session, session.get(url) as response:
+            assert response.status == 200
+            assert in_memory() == before + 1
+
+    async def run() -> None:
+        connections.server = web.Server(answer)
+        server = await asyncio.get_running_loop().create_server(connections, HOST, 0)
+        for _ in range(3):
+            await ask_and_leave(f"http://{HOST}:{server.sockets[0].getsockname()[1]}")
+            while connections.server.connections:
+                await asyncio.sleep(0.01)
+        server.close()
+
+    asyncio.run(asyncio.wait_for(run(), 20.0))

@@ -1,0 +1,201 @@
+import asyncio
+import contextlib
+import json
+import socket
+
+import aiohttp
+import pytest
+
+from rastrainer_simulator.net.views import view_server as view_server_module
+from Testing.simulator.net.igtl.servers import HOST
+from Testing.simulator.net.views.served import HELLO
+
+KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
+
+
+def changed(message: dict, **changes) -> str:
+    return json.dumps({**message, **changes})
+
+
+STICKS = {"type": "sticks", "translation": [0, 0, 0], "rotation": [0, 0], "fine": False}
+GARBAGE = {
+    "no JSON": "{",
+    "no object": "[]",
+    "binary": b"\x00\x01",
+    "deep": "[" * 8000,
+    "long number": '{"type":' + "1" * 8000 + "}",
+    "lone surrogate": '{"type":"\\ud800"}',
+    "no type": "{}",
+    "unknown type": '{"type":"quit"}',
+    "type is a list": '{"type":["key"]}',
+    "second hello": json.dumps(HELLO),
+    "member missing": '{"type":"key","code":"KeyW"}',
+    "member too many": changed(KEY, more=1),
+    "NaN": '{"type":"pad","axes":[NaN],"buttons":[]}',
+    "infinite": '{"type":"pad","axes":[1e999],"buttons":[]}',
+    "axis far out": '{"type":"pad","axes":[1000],"buttons":[]}',
+    "too many axes": json.dumps({"type": "pad", "axes": [0] * 17, "buttons": []}),
+    "axes are a text": '{"type":"pad","axes":"0000","buttons":[]}',
+    "stick out of range": changed(STICKS, translation=[0, 0, 1.1]),
+    "stick is true": changed(STICKS, rotation=[True, 0]),
+    "flag is a number": changed(STICKS, fine=1),
+    "code is a number": changed(KEY, code=7),
+    "code is long": changed(KEY, code="K" * 33),
+    "text has a line feed": changed(KEY, text="\n"),
+    "text is long": json.dumps({"type": "text", "name": "trainee", "value": "x" * 201}),
+    "frames below zero": '{"type":"frames","shown":-1,"dropped":0,"refreshHz":60}',
+    "frames in halves": '{"type":"frames","shown":1.5,"dropped":0,"refreshHz":60}',
+}
+
+
+@pytest.mark.parametrize("message", GARBAGE.values(), ids=GARBAGE.keys())
+def test_what_is_no_message_closes_only_that_view(served, connect, message):
+    good, bad = connect(served), connect(served)
+    good.join()
+    number = bad.join()["view"]
+    bad.send(message)
+    code, reason = bad.closing()
+    assert (code, reason.startswith(("A ", "The ", "Messages "))) == (1008, True)
+    served.wait_for_call("view_left", number)
+    assert good.next("state")["type"] == "state"
+    assert not any(call[0].startswith("on_") for call in served.presenter.calls)
+
+
+def test_an_oversized_message_closes_only_that_view(served, connect):
+    good, bad = connect(served), connect(served)
+    good.join()
+    bad.join()
+    bad.send("x" * 20_000)
+    assert bad.closing()[0] == 1009
+    assert good.next("state")["type"] == "state"
+
+
+def flood(send):
+    """Send a hundred times, or until the connection has ended."""
+    for _ in range(100):
+        try:
+            send()
+        except ConnectionError:
+            break
+
+
+def test_a_flood_closes_only_that_view(serve, connect):
+    served = serve(messages_per_s=10.0)
+    good, bad = connect(served), connect(served)
+    good.join()
+    bad.join()
+    flood(lambda: bad.send({"type": "alive"}))
+    assert bad.closing()[0] == 1008
+    assert good.next("state")["type"] == "state"
+
+
+def test_a_flood_of_pings_closes_only_that_view(serve, connect):
+    served = serve(messages_per_s=10.0)
+    good, bad = connect(served), connect(served)
+    good.join()
+    bad.join()
+    flood(bad.ping)
+    assert bad.closing()[0] == 1008
+    assert good.next("state")["type"] == "state"
+
+
+def test_a_ping_is_answered_and_is_no_sign_that_somebody_holds_on(serve, connect):
+    served = serve(silent_s=0.2)
+    view = connect(served)
+    number = view.join()["view"]
+    view.send(KEY)
+    served.wait_for_call("on_key", number, "KeyW", True, "w")
+    while ("on_key", number, "KeyW", False, "") not in served.presenter.calls:
+        view.ping()
+        served.thread.run(asyncio.sleep(0.02))
+    assert view.next("state")["type"] == "state"
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "{",
+        b"hello",
+        '{"type":"alive"}',
+        json.dumps({**HELLO, "kind": "hologram"}),
+        json.dumps({**HELLO, "device": "x" * 81}),
+        json.dumps({**HELLO, "refreshHz": -1}),
+    ],
+)
+def test_a_view_that_does_not_begin_with_hello_is_told_nothing(served, connect, message):
+    view = connect(served)
+    view.send(message)
+    code, _ = view.closing()
+    assert code == 1008
+    assert served.presenter.calls == []
+
+
+def test_a_view_that_never_says_hello_is_closed(serve, connect):
+    view = connect(serve(first_message_s=0.05))
+    assert view.closing() == (1008, "The first message of a view must be a hello.")
+
+
+def test_connections_beyond_the_limit_are_closed(serve, connect):
+    served = serve(connections=1)
+    view = connect(served)
+    view.join()
+    with pytest.raises(aiohttp.ClientError):
+        connect(served)
+    assert view.next("state")["type"] == "state"
+
+
+def asking(port: int, path: str) -> socket.socket:
+    """Return a connection that asks for a file, and does not read it."""
+    stranger = socket.create_connection((HOST, port), 10)
+    stranger.sendall(f"GET {path} HTTP/1.1\r\nHost: {HOST}:{port}\r\n\r\n".encode())
+    assert stranger.recv(12) == b"HTTP/1.1 200"
+    return stranger
+
+
+def test_strangers_that_ask_and_never_read_keep_nobody_out(
+    serve, connect, tmp_path, monkeypatch, caplog
+):
+    (tmp_path / "index.html").write_text("the page")
+    (tmp_path / "page.js").write_bytes(bytes(20_000_000))
+    monkeypatch.setattr(view_server_module, "page_folder", lambda: tmp_path)
+    served = serve(connections=3)
+    paired = connect(served)
+    paired.join()
+    with contextlib.ExitStack() as stack:
+        strangers = [stack.enter_context(asking(served.port, "/page.js")) for _ in range(2)]
+        for stranger in strangers:
+            connect(served).join()
+            while stranger.recv(1_000_000):
+                pass
+        with pytest.raises(aiohttp.ClientError):
+            connect(served)
+    assert paired.next("state")["type"] == "state"
+    assert caplog.text == ""
+
+
+STRANGE_REQUESTS = [
+    b"\x00\xff garbage\r\n\r\n",
+    b"GET / HTTP/9.9\r\n\r\n",
+    b"GET /" + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n",
+    b"GET / HTTP/1.1\r\nAuthorization: Bearer secret\x01\r\n\r\n",
+    b"GET / HTTP/1.1\r\nTransfer-Encoding: chunked\r\nContent-Length: 3\r\n\r\nzz",
+    b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+    b"POST /pair HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 99999999999\r\n\r\n{}",
+]
+
+
+@pytest.mark.parametrize("request_bytes", STRANGE_REQUESTS)
+def test_what_is_no_request_is_refused_and_not_logged(served, caplog, request_bytes):
+    with socket.create_connection((HOST, served.port), 10) as stranger:
+        stranger.sendall(request_bytes)
+        stranger.shutdown(socket.SHUT_WR)
+        answer = stranger.recv(100)
+    assert answer == b"" or answer.split(b" ")[1] in (b"400", b"413")
+    assert caplog.text == ""
+
+
+def test_a_connection_that_asks_for_nothing_is_closed(serve):
+    served = serve(first_message_s=0.05)
+    with socket.create_connection((HOST, served.port), 10) as stranger:
+        stranger.sendall(b"GET / HTTP/1.1\r\nHost:")
+        assert stranger.recv(100) == b""

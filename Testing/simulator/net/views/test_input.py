@@ -1,0 +1,103 @@
+import pytest
+
+from rastrainer_simulator.net.views.presenter import Frames
+
+KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
+PAD = {"type": "pad", "axes": [0.5, -1.0, 0, 0], "buttons": [0, 1, 0.25]}
+STICKS = {"type": "sticks", "translation": [1, 0, -0.5], "rotation": [0, 0.5], "fine": True}
+
+MESSAGES = [
+    (KEY, ("on_key", "KeyW", True, "w")),
+    (PAD, ("on_pad", (0.5, -1.0, 0.0, 0.0), (0.0, 1.0, 0.25))),
+    (STICKS, ("on_sticks", (1.0, 0.0, -0.5), (0.0, 0.5), True)),
+    ({"type": "press", "control": "touch"}, ("on_press", "touch")),
+    ({"type": "item", "name": "task-1"}, ("on_item", "task-1")),
+    ({"type": "text", "name": "trainee", "value": "T 01"}, ("on_text", "trainee", "T 01")),
+    ({"type": "text", "name": "trainee", "value": ""}, ("on_text", "trainee", "")),
+    (
+        {"type": "frames", "shown": 72, "dropped": 1, "refreshHz": 72.0},
+        ("on_frames", Frames(72, 1, 72.0)),
+    ),
+    ({"type": "visibility", "isVisible": False}, ("on_visibility", False)),
+]
+
+
+@pytest.mark.parametrize(("message", "call"), MESSAGES)
+def test_what_a_view_sends_reaches_the_presenter(served, connect, message, call):
+    view = connect(served)
+    number = view.join()["view"]
+    view.send(message)
+    name, *values = call
+    served.wait_for_call(name, number, *values)
+
+
+def test_what_is_a_little_beyond_the_end_of_a_pad_is_its_end(served, connect):
+    view = connect(served)
+    number = view.join()["view"]
+    view.send({"type": "pad", "axes": [1.0001, -1.2], "buttons": [-0.001, 1.01]})
+    served.wait_for_call("on_pad", number, (1.0, -1.0), (0.0, 1.0))
+
+
+RELEASED = [
+    (KEY, ("on_key", "KeyW", False, "")),
+    (PAD, ("on_pad", (0.0,) * 4, (0.0,) * 3)),
+    (STICKS, ("on_sticks", (0.0, 0.0, 0.0), (0.0, 0.0), False)),
+]
+
+
+@pytest.mark.parametrize(("message", "call"), RELEASED)
+def test_a_view_that_falls_silent_has_let_go(serve, connect, message, call):
+    served = serve(silent_s=0.05)
+    view = connect(served)
+    number = view.join()["view"]
+    view.send(message)
+    name, *values = call
+    calls = served.wait_for_call(name, number, *values)
+    assert ("view_left", number) not in calls, "it may go on watching"
+
+
+def test_a_view_that_told_its_frames_and_falls_silent_shows_a_picture_that_stands_still(
+    serve, connect
+):
+    served = serve(lost_s=0.05)
+    view = connect(served)
+    number = view.join()["view"]
+    view.send({"type": "frames", "shown": 60, "dropped": 0, "refreshHz": 60})
+    calls = served.wait_for_call("on_silence", number)
+    assert ("view_left", number) not in calls, "it may go on watching"
+
+
+def test_a_view_that_says_it_is_alive_holds_on(serve, connect):
+    served = serve(silent_s=5.0)
+    view = connect(served)
+    number = view.join()["view"]
+    view.send(KEY)
+    start = view.next("state")["time"]
+    while view.next("state")["time"] < start + 6.0:
+        view.send({"type": "alive"})
+    assert ("on_key", number, "KeyW", False, "") not in served.presenter.calls
+
+
+def test_a_view_that_leaves_has_let_go_before(serve, connect):
+    served = serve(silent_s=1000.0)
+    view = connect(served)
+    number = view.join()["view"]
+    for message, _ in RELEASED:
+        view.send(message)
+    view.send({**KEY, "code": "KeyA"})
+    view.send({**KEY, "code": "KeyA", "isDown": False})
+    view.leave()
+    calls = served.wait_for_call("view_left", number)
+    released = [(name, number, *values) for _, (name, *values) in RELEASED]
+    assert calls[-4:] == [*released, ("view_left", number)]
+
+
+def test_no_view_holds_more_keys_than_hands_can(serve, connect):
+    served = serve(silent_s=1000.0)
+    view = connect(served)
+    number = view.join()["view"]
+    for index in range(100):
+        view.send({**KEY, "code": f"Key{index}"})
+    view.leave()
+    calls = served.wait_for_call("view_left", number)
+    assert sum(call[0] == "on_key" for call in calls) == 2 * 32

@@ -1,0 +1,108 @@
+"""Views of the local network: by TLS alone, with a certificate that can be compared."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import socket
+import ssl
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.net.views.certificate import FILE_NAME, fingerprint, tls_context
+from Testing.forked_child import in_child
+from Testing.simulator.net.igtl.servers import HOST
+
+REQUEST = f"GET / HTTP/1.1\r\nHost: {HOST}\r\nConnection: close\r\n\r\n".encode()
+
+
+@pytest.fixture(scope="module")
+def certificates(tmp_path_factory):
+    """Return a folder with a certificate."""
+    folder = tmp_path_factory.mktemp("certificates")
+    tls_context(folder)
+    return folder
+
+
+@pytest.fixture
+def port(served, certificates):
+    """Return the port on which the local network is served."""
+    return served.thread.run(served.server.listen_in_network(0, tls_context(certificates)))
+
+
+def connected(port: int, version: ssl.TLSVersion) -> ssl.SSLSocket:
+    """Return a connection by exactly one version of TLS, to a certificate that is not checked."""
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    # A client of its own default would refuse to speak an old version, and prove nothing.
+    context.set_ciphers("ALL:@SECLEVEL=0")
+    context.minimum_version = context.maximum_version = version
+    return context.wrap_socket(socket.create_connection((HOST, port), 10))
+
+
+@pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
+def test_the_page_is_served_by_tls_1_2_and_1_3(port, version):
+    with connected(port, version) as browser:
+        browser.sendall(REQUEST)
+        assert browser.recv(100).startswith(b"HTTP/1.1 200")
+
+
+@pytest.mark.filterwarnings("ignore:ssl.TLSVersion:DeprecationWarning")
+@pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1])
+def test_tls_older_than_1_2_is_refused(port, certificates, version):
+    # By the server, and not by this side.
+    with pytest.raises(ssl.SSLError, match=r"(?i)alert protocol version|EOF"):
+        connected(port, version)
+    # Where the system's own OpenSSL would allow it, too.
+    assert tls_context(certificates).minimum_version > version
+
+
+def test_plain_http_gets_no_answer_from_the_local_network_s_port(port):
+    with socket.create_connection((HOST, port), 10) as browser:
+        browser.sendall(REQUEST)
+        answer = b""
+        try:
+            while piece := browser.recv(1000):
+                answer += piece
+        except ConnectionResetError:
+            pass
+    assert b"HTTP" not in answer
+
+
+def test_the_fingerprint_that_is_told_is_that_of_the_certificate_that_is_shown(port, certificates):
+    with connected(port, ssl.TLSVersion.TLSv1_3) as browser:
+        shown = browser.getpeercert(binary_form=True)
+    told = fingerprint(certificates)
+    assert bytes.fromhex(told.replace(":", "")) == hashlib.sha256(shown).digest()
+
+
+def test_a_certificate_is_kept_and_a_torn_one_made_anew(tmp_path):
+    tls_context(tmp_path)
+    first = fingerprint(tmp_path)
+    tls_context(tmp_path)
+    assert fingerprint(tmp_path) == first
+    file = tmp_path / FILE_NAME
+    file.write_bytes(file.read_bytes()[:700])
+    tls_context(tmp_path)
+    assert fingerprint(tmp_path) != first
+
+
+def refused_without_rights(folder: Path) -> str:
+    if os.getuid() == 0:
+        os.setuid(65534)
+    with pytest.raises(InputError) as refused:
+        tls_context(folder / "certificates")
+    return str(refused.value)
+
+
+def test_a_folder_that_cannot_be_written_to_is_told():
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o555)
+        said = in_child(refused_without_rights, Path(folder))
+        Path(folder).chmod(0o755)
+    assert said.startswith("The certificate for the local network cannot be kept in ")
+    assert "Permission denied" in said
+    assert "choose another folder of settings" in said

@@ -1,0 +1,213 @@
+import logging
+
+import pytest
+
+from rastrainer_simulator.net.views import view_server as view_server_module
+from rastrainer_simulator.net.views.gate import COOKIE
+from rastrainer_simulator.net.views.pairing import PairingCode, Sessions
+from Testing.simulator.net.views.served import SUBPROTOCOL, raw_request, request
+
+UPGRADE = {
+    "Connection": "Upgrade",
+    "Upgrade": "websocket",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+    "Sec-WebSocket-Protocol": SUBPROTOCOL,
+}
+SCENE = f"/scene/{'0' * 64}.glb"
+PROTECTED = (SCENE, "/sounds/touch.wav", "/stream", "/anything")
+
+
+def bearer(key: str) -> dict[str, str]:
+    return {"Authorization": f"Bearer {key}"}
+
+
+def pair(served, code, **headers):
+    return request(served.url, "/pair", "POST", json={"code": code}, headers=headers)
+
+
+def wrong(code: str) -> str:
+    return f"{(int(code) + 1) % 10**6:06d}"
+
+
+@pytest.mark.parametrize("path", PROTECTED)
+def test_without_a_key_nothing_can_be_seen(served, path):
+    for headers in ({}, bearer("x" * 43), {"Cookie": f"{COOKIE}=x"}, bearer("é" * 40)):
+        status, _, body = request(served.url, path, headers={**UPGRADE, **headers})
+        assert (status, b"Pair first" in body) == (401, True)
+
+
+def test_the_pairing_code_gives_a_key_and_a_cookie_that_scripts_cannot_read(served):
+    status, headers, body = pair(served, served.code)
+    assert status == 200
+    cookie = headers["Set-Cookie"]
+    assert {"HttpOnly", "SameSite=Strict", "Path=/"} <= set(cookie.split("; "))
+    key = cookie.split(";")[0].partition("=")[2]
+    assert key.encode() in body
+    for way in (bearer(key), {"Cookie": f"{COOKIE}={key}"}):
+        assert request(served.url, "/sounds/touch.wav", headers=way)[0] == 200
+
+
+def test_sounds_are_wav_files(served):
+    for name in ("touch", "proximity", "contact", "error", "finish", "undo", "focus", "accept"):
+        status, _, body = request(
+            served.url, f"/sounds/{name}.wav", headers=bearer(served.new_key())
+        )
+        assert (status, body[:4], body[8:12]) == (200, b"RIFF", b"WAVE")
+
+
+def test_five_wrong_codes_make_a_new_one_and_a_pause(served):
+    first = served.code
+    for _ in range(5):
+        assert pair(served, wrong(first))[0] == 403
+    assert served.new_codes == [served.code]
+    status, headers, _ = pair(served, served.code)
+    assert (status, int(headers["Retry-After"])) == (429, 1)
+
+
+def test_a_view_of_this_computer_is_told_how_others_are_paired(served, connect):
+    view = connect(served)
+    view.join()
+    told = {"type": "pairing", "code": served.code, "addresses": [served.url]}
+    assert view.next("pairing") == told
+    for _ in range(5):
+        pair(served, wrong(served.code))
+    assert view.next("pairing") == {**told, "code": served.new_codes[0]}
+
+
+def test_the_pause_ends_and_grows_until_the_right_code_comes():
+    now, shown = [0.0], []
+    code = PairingCode(lambda: now[0], shown.append)
+    for pause in (1.0, 2.0, 4.0):
+        for _ in range(5):
+            assert not code.accepts(wrong(code.code))
+        assert code.seconds_to_wait() == pause
+        now[0] += pause
+        assert code.seconds_to_wait() == 0.0
+    assert len(shown) == 3
+    assert code.accepts(code.code)
+    for _ in range(5):
+        code.accepts(wrong(code.code))
+    assert code.seconds_to_wait() == 1.0
+
+
+def test_guessing_never_waits_longer_than_five_minutes_and_a_right_code_still_pairs():
+    now = [0.0]
+    code = PairingCode(lambda: now[0], lambda _new: None)
+    for _ in range(20):
+        for _ in range(5):
+            code.accepts(wrong(code.code))
+        assert code.seconds_to_wait() <= 300.0
+        now[0] += 300.0
+    assert code.accepts(code.code)
+
+
+@pytest.mark.parametrize(
+    "body", [b"", b"{", b"[]", b'{"code": 1}', b'{"code": ""}', b"\xff", b'{"code": NaN}']
+)
+def test_a_body_without_a_code_is_refused_and_costs_no_guess(served, body):
+    status, _, answer = request(served.url, "/pair", "POST", data=body)
+    assert (status, b"the 6 digits" in answer) == (400, True)
+    assert served.new_codes == []
+
+
+def test_a_long_body_is_refused(served):
+    assert request(served.url, "/pair", "POST", data=b"1" * 100_000)[0] == 413
+
+
+def test_codes_and_keys_are_never_logged(served, caplog):
+    caplog.set_level(logging.DEBUG)
+    codes = [served.code]
+    key = pair(served, served.code)[1]["Set-Cookie"].split(";")[0].partition("=")[2]
+    request(served.url, SCENE, headers=bearer(key))
+    for _ in range(5):
+        codes.append(wrong(served.code))
+        pair(served, codes[-1])
+    codes.append(served.code)
+    assert "wrong pairing codes" in caplog.text
+    assert not any(secret in caplog.text for secret in (key, *codes))
+
+
+def test_a_page_of_another_origin_can_neither_pair_nor_connect(served):
+    key = served.new_key()
+    for origin in ("http://evil.example", f"https://127.0.0.1:{served.port}", "null"):
+        assert pair(served, served.code, Origin=origin)[0] == 403
+        headers = {**UPGRADE, **bearer(key), "Origin": origin}
+        assert request(served.url, "/stream", headers=headers)[0] == 403
+    assert pair(served, served.code, Origin=served.url)[0] == 200
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "", "localhost.evil.example"])
+def test_a_foreign_name_that_leads_here_is_refused(served, host):
+    origin = f"http://{host}"
+    assert pair(served, served.code, Host=host, Origin=origin)[0] in (400, 403)
+
+
+@pytest.mark.parametrize("host", ["localhost", "LOCALHOST:1", "[::1]:80", "127.0.0.1"])
+def test_the_own_names_are_known(served, host):
+    assert pair(served, served.code, Host=host)[0] == 200
+
+
+def test_every_answer_tells_the_browser_what_to_refuse(served):
+    for path in ("/", SCENE, "/missing"):
+        headers = request(served.url, path)[1]
+        policy = headers["Content-Security-Policy"].split("; ")
+        assert {"default-src 'self'", "object-src 'none'", "frame-ancestors 'none'"} <= set(policy)
+        assert headers["Referrer-Policy"] == "no-referrer"
+        assert headers["X-Content-Type-Options"] == "nosniff"
+        assert headers["Cross-Origin-Resource-Policy"] == "same-origin"
+
+
+def test_without_a_built_page_it_says_how_to_build_it(served):
+    status, headers, body = request(served.url, "/")
+    assert (status, headers["Content-Type"].split(";")[0]) == (200, "text/html")
+    assert b"make page" in body
+
+
+@pytest.fixture
+def page(tmp_path, monkeypatch):
+    """A built page, and beside its folder a file that is nobody's business."""
+    folder = tmp_path / "page"
+    folder.mkdir()
+    (folder / "index.html").write_text("<title>built</title>")
+    (folder / "page.js").write_text("export {};")
+    (tmp_path / "secret.txt").write_text("secret")
+    (folder / "link.txt").symlink_to(tmp_path / "secret.txt")
+    monkeypatch.setattr(view_server_module, "page_folder", lambda: folder)
+
+
+@pytest.mark.usefixtures("page")
+def test_the_built_page_is_served_to_everyone(served):
+    assert b"built" in request(served.url, "/")[2]
+    status, headers, _ = request(served.url, "/page.js")
+    assert status == 200
+    assert headers["Content-Type"].split(";")[0].endswith("/javascript")
+
+
+@pytest.mark.usefixtures("page")
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/../secret.txt",
+        "/%2e%2e/secret.txt",
+        "/..%2fsecret.txt",
+        "/..\\secret.txt",
+        "//secret.txt",
+        "/link.txt",
+        "/page.js/../../secret.txt",
+        "/sounds/../secret.txt",
+        "/scene/..%2f..%2fsecret.txt.glb",
+    ],
+)
+def test_no_path_leads_out_of_the_page(served, path):
+    answer = raw_request(served.port, f"GET {path} HTTP/1.1")
+    assert answer.split(b" ")[1] in (b"400", b"401", b"403", b"404")
+    assert b"secret" not in answer.partition(b"\r\n\r\n")[2]
+
+
+def test_the_oldest_key_is_forgotten_when_there_are_too_many():
+    sessions = Sessions(most=2)
+    keys = [sessions.open() for _ in range(3)]
+    assert [sessions.knows(key) for key in keys] == [False, True, True]
+    assert len(set(keys)) == 3
+    assert not sessions.knows("")

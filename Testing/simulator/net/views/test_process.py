@@ -1,0 +1,86 @@
+"""The view server as a user starts it: in the simulator's process, by the command."""
+
+import secrets
+import socket
+import time
+
+import pytest
+
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.simulator.net.igtl.servers import HOST
+from Testing.simulator.net.views.served import ViewClient, request
+
+
+def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, loop_thread):
+    with ViewedSimulator(tmp_path / "records", "--view-port", "0") as simulator:
+        status, headers, _ = request(simulator.url, "/pair", "POST", json={"code": simulator.code})
+        assert status == 200
+        key = headers["Set-Cookie"].split(";")[0].partition("=")[2]
+        with ViewClient(loop_thread, simulator.url, key) as view:
+            assert view.join()["protocol"] == 1
+            assert view.next("screen")["screen"]["menu"]["name"] == "start"
+            first, second = view.next("state"), view.next("state")
+            assert second["tick"] > first["tick"]
+            view.send("{")
+            assert view.closing()[0] == 1008
+        with ViewClient(loop_thread, simulator.url, key) as again:
+            assert again.join()["view"] == 2
+            scene = again.next("scene")["url"]
+            headers = {"Authorization": f"Bearer {key}"}
+            assert request(simulator.url, scene, headers=headers)[2][:4] == b"glTF"
+        status, errors = simulator.stop()
+        assert status == 0
+        assert key not in errors
+        assert simulator.code not in errors
+
+
+def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, loop_thread):
+    key = secrets.token_urlsafe()
+    with (
+        ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator,
+        ViewClient(loop_thread, simulator.url, key) as view,
+    ):
+        view.join()
+        view.next("state")
+        assert simulator.stop()[0] == 0
+        assert view.closing() == (1001, "The simulator has been stopped.")
+
+
+def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):
+    with socket.create_server((HOST, 0)) as other:
+        taken = other.getsockname()[1]
+        with pytest.raises(AssertionError, match=f"Views cannot be served on 127.0.0.1:{taken}"):
+            _opened(tmp_path, "--view-port", str(taken))
+    with _usual_port_taken(), ViewedSimulator(tmp_path / "others") as simulator:
+        assert simulator.view_port != 18945
+
+
+def _opened(tmp_path, *arguments):
+    """Start a simulator that should say on stderr why it cannot serve views."""
+    process = SimulatorProcess(tmp_path / "records", "--no-gamepad", *arguments)
+    status, errors = process.wait()
+    assert status == 2
+    raise AssertionError(errors)
+
+
+def _usual_port_taken():
+    """Return a socket at the usual port, once whoever else may have it is gone."""
+    while True:
+        try:
+            return socket.create_server((HOST, 18945))
+        except OSError:
+            time.sleep(0.05)
+
+
+def test_without_views_there_are_none(tmp_path):
+    with SimulatorProcess(tmp_path / "records", "--no-views") as simulator:
+        assert simulator.stop()[0] == 0
+
+
+@pytest.mark.parametrize(
+    "arguments", [("--view-port", "65536"), ("--view-port", "1", "--no-views")]
+)
+def test_unusable_ports_are_refused_in_one_sentence(tmp_path, arguments):
+    with pytest.raises(AssertionError, match=r"rastrainer: .*--view-port"):
+        SimulatorProcess(tmp_path / "records", *arguments)

@@ -1,0 +1,202 @@
+import hashlib
+
+import aiohttp
+import numpy as np
+import pytest
+from trimesh.transformations import quaternion_matrix
+
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.net.views.outgoing import quaternion
+from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
+from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, ScreenMessage, Tone
+from Testing.domain.scenario.made_up_scenario import png
+from Testing.simulator.net.views.served import request
+
+BODIES = [*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand"]
+SCREEN = Screen(
+    menu=Menu("start", "RASTrainer", items=(MenuItem("go", "Begin"),), focus="go"),
+    instruction=ScreenMessage("Touch 3", Tone.GOOD),
+    hints=(Hint("A", "Touch"),),
+)
+
+
+def feedback(number: int) -> Feedback:
+    return Feedback(number, "touch", "touch", rumble=0.5, data={"label": str(number)})
+
+
+def test_a_view_is_welcomed_first_and_told_how_things_stand(served, connect):
+    served.presenter.screen = SCREEN
+    served.presenter.control = Control("gamepad")
+    view = connect(served)
+    assert view.join() == {"type": "welcome", "protocol": 1, "view": 1, "bodies": BODIES}
+    seen = {message["type"]: message for message in view.all_until(lambda m: m["type"] == "state")}
+    assert seen["control"] == {"type": "control", "holder": "gamepad", "isYou": False}
+    screen = seen["screen"]["screen"]
+    assert screen["menu"]["items"][0]["name"] == "go"
+    assert screen["instruction"] == {"text": "Touch 3", "tone": "good"}
+    assert screen["hints"] == [{"control": "A", "action": "Touch"}]
+    assert ("view_joined", 1, Hello("page", "Quest 2", 72.0)) in served.presenter.calls
+
+
+def test_poses_are_where_the_simulation_has_them(served, connect, control_loop):
+    view = connect(served)
+    view.join()
+    state = view.next("state")
+    now = control_loop.latest
+    matrices = [*now.link_to_world, now.tool_tip_to_world, now.head_to_world, now.stand_to_world]
+    assert len(state["poses"]) == len(BODIES)
+    for (x, y, z, qx, qy, qz, qw), expected in zip(state["poses"], matrices, strict=True):
+        told = quaternion_matrix([qw, qx, qy, qz])
+        told[:3, 3] = x, y, z
+        assert told == pytest.approx(expected, abs=3e-6)
+    assert state["clearanceMm"] == pytest.approx(1000 * now.clearance, abs=1e-3)
+    assert (state["phase"], state["next"], state["touched"]) == ("idle", None, [])
+    assert state["camera"] == "close-up"
+
+
+def test_quaternions_agree_with_another_library_for_any_rotation():
+    rng = np.random.default_rng(7)
+    halves = np.eye(4)[[1, 2, 3]]
+    for wanted in [*rng.normal(size=(500, 4)), *halves, *(halves + 1e-9), [1, 0, 0, 0]]:
+        rotation = quaternion_matrix(wanted)
+        x, y, z, w = quaternion(rotation.tolist())
+        assert quaternion_matrix([w, x, y, z]) == pytest.approx(rotation, abs=1e-12)
+        assert np.hypot(np.hypot(x, y), np.hypot(z, w)) == pytest.approx(1.0)
+
+
+def test_states_go_on_coming_and_their_ticks_rise(served, connect):
+    view = connect(served)
+    view.join()
+    ticks = [view.next("state")["tick"] for _ in range(20)]
+    assert ticks == sorted(set(ticks))
+
+
+def test_the_scene_is_named_after_its_content_and_fits_the_scenario(served, connect, scenario):
+    view = connect(served)
+    view.join()
+    scene = view.next("scene")
+    headers = {"Authorization": f"Bearer {served.new_key()}"}
+    status, answer, glb = request(served.url, scene["url"], headers=headers)
+    assert (status, answer["Content-Type"]) == (200, "model/gltf-binary")
+    assert "immutable" in answer["Cache-Control"]
+    assert scene["url"] == f"/scene/{hashlib.sha256(glb).hexdigest()}.glb"
+    assert (scene["task"], scene["fiducials"]) == ("", {})
+    for name, camera in scenario.cameras.items():
+        assert scene["cameras"][name]["position"] == pytest.approx(camera.position / MM_PER_M)
+        assert scene["cameras"][name]["viewAngleDeg"] == camera.view_angle_deg
+
+
+def test_a_scene_that_never_was_is_not_found(served):
+    headers = {"Authorization": f"Bearer {served.new_key()}"}
+    assert request(served.url, f"/scene/{'0' * 64}.glb", headers=headers)[0] == 404
+
+
+def test_every_view_gets_each_event_once_and_in_order(served, connect):
+    views = [connect(served) for _ in range(3)]
+    for view in views:
+        view.join()
+        view.next("state")
+    for number in range(1, 201):
+        served.tell(feedback(number))
+    for view in views:
+        events = [view.next("event") for _ in range(200)]
+        assert [event["number"] for event in events] == list(range(1, 201))
+    assert events[2] == {
+        "type": "event",
+        "number": 3,
+        "kind": "touch",
+        "sound": "touch",
+        "volume": 1.0,
+        "rumble": 0.5,
+        "data": {"label": "3"},
+    }
+
+
+def test_a_view_that_joins_later_does_not_hear_what_has_been(served, connect):
+    first = connect(served)
+    first.join()
+    served.tell(feedback(1))
+    assert first.next("event")["number"] == 1
+    late = connect(served)
+    late.join()
+    late.next("state")
+    served.tell(feedback(2))
+    assert late.next("event")["number"] == 2
+
+
+def test_a_view_that_has_not_read_gets_the_latest_screen_and_not_all_before(served, connect):
+    view = connect(served)
+    view.join()
+    view.next("state")
+    text = "x" * 20_000
+    count = 2000
+    for number in range(count):
+        served.tell(Screen(instruction=ScreenMessage(f"{number} {text}")))
+    last = f"{count - 1} {text}"
+    messages = view.all_until(lambda m: m["type"] == "screen" and text in str(m) and _is(m, last))
+    screens = [message for message in messages if message["type"] == "screen"]
+    assert len(screens) < count / 2, "what nobody read was replaced, not kept"
+
+
+def _is(message: dict, text: str) -> bool:
+    return message["screen"]["instruction"]["text"] == text
+
+
+def test_a_view_that_lets_too_many_events_wait_is_dropped_and_may_come_back(served, connect):
+    view, other = connect(served), connect(served)
+    for one in (view, other):
+        one.join()
+        one.next("state")
+    served.tell(*(feedback(number) for number in range(1, 300)))
+    code, reason = view.closing()
+    assert (code, reason) == (1013, "The view has not read its events; it may come back.")
+    again = connect(served)
+    again.join()
+    served.tell(feedback(300))
+    assert again.next("event")["number"] == 300
+
+
+def test_each_view_is_told_whether_it_drives(served, connect):
+    views = [connect(served), connect(served)]
+    numbers = [view.join()["view"] for view in views]
+    for view in views:
+        view.next("control")
+    served.tell(Control("keyboard", numbers[1]))
+    told = [view.next("control") for view in views]
+    assert told == [
+        {"type": "control", "holder": "keyboard", "isYou": False},
+        {"type": "control", "holder": "keyboard", "isYou": True},
+    ]
+
+
+def test_no_more_views_than_allowed_and_room_again_when_one_leaves(serve, connect):
+    served = serve(views=1)
+    first = connect(served)
+    number = first.join()["view"]
+    with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
+        connect(served)
+    first.leave()
+    served.wait_for_call("view_left", number)
+    assert connect(served).join()["view"] == number + 1
+
+
+def test_views_are_told_when_the_simulator_ends(serve, connect):
+    served = serve()
+    view = connect(served)
+    view.join()
+    served.close()
+    assert view.closing() == (1001, "The simulator has been stopped.")
+
+
+def test_a_scenarios_picture_is_served_to_views_by_its_name_and_nothing_else(served, tmp_path):
+    picture = tmp_path / "preview.png"
+    picture.write_bytes(png())
+    served.pictures["ball"] = picture
+    key = {"Authorization": f"Bearer {served.new_key()}"}
+    status, headers, body = request(served.url, "/scenarios/ball.png", headers=key)
+    assert (status, headers["Content-Type"], body) == (200, "image/png", png())
+    assert request(served.url, "/scenarios/ball.png")[0] == 401
+    for path in ("/scenarios/none.png", "/scenarios/..%2Fball.png", "/scenarios/Ball.png"):
+        assert request(served.url, path, headers=key)[0] == 404
+    picture.unlink()
+    assert request(served.url, "/scenarios/ball.png", headers=key)[0] == 404

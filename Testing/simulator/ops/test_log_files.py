@@ -1,0 +1,112 @@
+"""Logs are lines of JSON, never grow too big, and never stand in the way."""
+
+from __future__ import annotations
+
+import errno
+import io
+import json
+import logging
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.ops import log_files
+from rastrainer_simulator.ops.log_files import keep_logs
+from Testing.forked_child import in_child
+
+OURS = logging.getLogger("rastrainer_simulator.some_part")
+
+
+def lines(path):
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+def test_each_record_is_one_line_of_json_with_time_level_and_data(tmp_path):
+    with keep_logs(tmp_path / "logs", "simulator"):
+        OURS.info("The trial is %s.\nReally.", "über", extra={"data": {"points": 3}})
+        logging.getLogger("somebody.else").info("chatter")
+    (line,) = lines(tmp_path / "logs" / "simulator.log")
+    assert line["message"] == "The trial is über.\nReally."
+    assert (line["level"], line["logger"], line["data"]) == ("info", OURS.name, {"points": 3})
+    assert line["utc"].endswith("Z")
+
+
+def test_only_warnings_come_to_the_terminal(tmp_path, capsys):
+    with keep_logs(tmp_path, "simulator"):
+        OURS.info("quiet")
+        OURS.warning("loud")
+    error = capsys.readouterr().err
+    assert "loud" in error
+    assert "quiet" not in error
+
+
+def test_the_files_rotate_and_the_oldest_goes(tmp_path, monkeypatch):
+    monkeypatch.setattr(log_files, "LARGEST_FILE", 2000)
+    with keep_logs(tmp_path, "simulator"):
+        for number in range(1000):
+            OURS.info("line %d", number)
+    files = sorted(tmp_path.glob("*.log*"))
+    assert len(files) == 1 + log_files.OLDER_FILES
+    assert all(file.stat().st_size <= 2000 for file in files)
+    assert lines(tmp_path / "simulator.log")[-1]["message"] == "line 999"
+
+
+def log_one_line(folder):
+    with keep_logs(folder, "simulator"):
+        OURS.info("the second")
+    return True
+
+
+def test_two_programs_of_one_name_log_to_two_files_and_the_next_one_to_the_first(tmp_path):
+    with keep_logs(tmp_path, "simulator"):
+        OURS.info("the first")
+        assert in_child(log_one_line, tmp_path)
+    with keep_logs(tmp_path, "simulator"):
+        OURS.info("the third")
+    first, second = lines(tmp_path / "simulator.log"), lines(tmp_path / "simulator-2.log")
+    assert [line["message"] for line in first] == ["the first", "the third"]
+    assert [line["message"] for line in second] == ["the second"]
+
+
+def test_a_crash_is_logged_with_its_traceback_and_a_refusal_with_its_sentence(tmp_path):
+    with pytest.raises(ZeroDivisionError), keep_logs(tmp_path, "crashed"):
+        1 / 0  # noqa: B018
+    (line,) = lines(tmp_path / "crashed.log")
+    assert line["level"] == "critical"
+    assert "ZeroDivisionError" in line["traceback"]
+    with pytest.raises(InputError), keep_logs(tmp_path, "refused"):
+        raise InputError("The port is taken.")
+    assert [line["message"] for line in lines(tmp_path / "refused.log")] == ["The port is taken."]
+
+
+def test_a_folder_that_cannot_be_written_to_is_told_once_and_nothing_else_changes(tmp_path, capsys):
+    (tmp_path / "file").write_text("notes")
+    with keep_logs(tmp_path / "file" / "logs", "simulator"):
+        OURS.info("to nobody")
+    assert capsys.readouterr().err.count("There is no log") == 1
+
+
+class FullDisk(io.StringIO):
+    def write(self, _text):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def test_a_disk_that_fails_does_not_stop_the_program(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(log_files._LogFile, "_open", lambda _file: FullDisk())
+    with keep_logs(tmp_path, "simulator"):
+        OURS.info("lost")
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_a_message_from_outside_cannot_make_a_second_line_or_a_huge_one(tmp_path):
+    with keep_logs(tmp_path, "simulator"):
+        OURS.warning("%s", 'x\n{"level":"info"}' + "y" * 100_000)
+    (line,) = lines(tmp_path / "simulator.log")
+    assert len(line["message"]) == 8000
+
+
+def test_afterwards_logging_is_as_it_was(tmp_path):
+    before = list(logging.getLogger().handlers)
+    with keep_logs(tmp_path, "simulator"):
+        assert logging.getLogger().handlers != before
+    assert logging.getLogger().handlers == before

@@ -1,0 +1,87 @@
+"""Every sentence is there in every language, and can be said again in another."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from string import Formatter
+
+import pytest
+
+from rastrainer_simulator.flow.session.preferences import OPTIONS
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import GAMEPAD_INPUTS, InputDevice, SourceKind
+from rastrainer_simulator.ops.texts.english import ENGLISH
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, pair_label
+
+
+def fields(sentence):
+    return {(name, spec) for _, name, spec, _ in Formatter().parse(sentence) if name}
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_a_language_has_every_sentence_with_the_same_values(language):
+    table = LANGUAGES[language]
+    assert set(table) == set(ENGLISH)
+    assert [key for key in ENGLISH if fields(table[key]) != fields(ENGLISH[key])] == []
+    assert [key for key in table if not table[key].strip()] == []
+
+
+def test_every_key_that_the_code_makes_of_a_name_has_its_sentence():
+    made = [f"control.{control.value}" for control in ControlName]
+    made += [f"gamepad.{name}" for name in GAMEPAD_INPUTS]
+    made += [f"source.{kind.value}" for kind in SourceKind]
+    made += [f"device.{device.value}" for device in InputDevice]
+    made += [f"settings.{name}{end}" for name in OPTIONS for end in ("", " help")]
+    for name, options in OPTIONS.items():
+        made += [f"settings.{name}.{option}" for option in options if isinstance(option, str)]
+    keys = (
+        name for inputs in DEFAULT_BINDINGS.table(InputDevice.KEYBOARD).values() for name in inputs
+    )
+    made += [f"keyboard.{name}" for name in keys if not name.startswith(("Key", "F1"))]
+    assert [key for key in made if key not in ENGLISH] == []
+
+
+def test_a_sentence_of_the_simulation_is_said_again_in_another_language():
+    english, german = Texts(), Texts(LANGUAGES["de"])
+    said = english.say("too far", point="5", distance=12.34, radius=10.0)
+    assert said == "Too far from point 5: 12.3 mm; a touch counts within 10 mm."
+    assert german.again(said).startswith("Zu weit von Punkt 5: 12,3 mm")
+    assert german.again("what others say") == "what others say"
+
+
+def test_feedback_of_slicers_is_said_with_the_languages_words_and_decimal_sign():
+    german = Texts(LANGUAGES["de"])
+    assert german.say("feedback.touch above", depth=1.25).startswith(
+        ", vor allem in der Tiefe (1,2"
+    )
+    assert german.say("feedback.passed", mark=70.0) == "Bestanden: die Marke ist 70."
+
+
+def test_a_negative_number_has_a_true_minus_sign_and_a_text_keeps_its_hyphens():
+    assert Texts(LANGUAGES["de"]).say("result.points", points=-3.25) == "−3,2"
+    assert Texts().say("start", trainee="P-01", point="1") == "P-01, touch point 1."
+
+
+def test_a_value_with_braces_is_filled_in_as_it_is():
+    assert Texts().say("start", trainee="{point} {0}", point="1") == "{point} {0}, touch point 1."
+
+
+def test_a_sentence_can_be_copied_and_sent_to_another_process():
+    said = Texts().say("start", trainee="P01", point="1")
+    for copied in (copy.copy(said), copy.deepcopy(said), pickle.loads(pickle.dumps(said))):
+        assert (copied, copied.key, copied.values) == (said, said.key, said.values)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "together"),
+    [
+        ("Stick left", "Stick right", "Stick left / right"),
+        ("Arrow up", "Tab", "Arrow up / Tab"),
+        ("A", "D", "A / D"),
+        ("Page up", "Arrow down", "Page up / Arrow down"),
+    ],
+)
+def test_what_two_inputs_share_is_said_once(first, second, together):
+    assert pair_label(first, second) == together

@@ -1,0 +1,148 @@
+import numpy as np
+import pytest
+import trimesh
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.protocol import Proximity
+from rastrainer.scenario.scenario import Camera, Furniture
+from rastrainer.scenario.tasks import Task
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.rendering.lighting import Shadows
+from rastrainer_simulator.rendering.moment import SceneMoment
+from rastrainer_simulator.rendering.offscreen import write_png
+from rastrainer_simulator.rendering.picture import render_picture
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import load_robot
+from rastrainer_simulator.scene.robot_nodes import robot_nodes
+from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
+from rastrainer_simulator.scene.scene_glb import head_node
+from Testing.read_png import read_png
+
+RADIUS = 80.0
+SIZE = (480, 270)
+UP = np.array([0.0, 0.0, 1.0])
+FAR = Camera(np.array([660.0, -2350.0, 950.0]), np.array([420.0, 0.0, 330.0]), UP, 24.0)
+FURNITURE = Furniture(np.array([300.0, 0.0]), np.array([1300.0, 1000.0, 40.0]), 80.0)
+FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
+
+
+def close_up(target_mm: np.ndarray) -> Camera:
+    return Camera(target_mm + np.array([250.0, -750.0, 280.0]), target_mm, UP, 20.0)
+
+
+@pytest.fixture(scope="module")
+def ball() -> HeadMesh:
+    sphere = trimesh.creation.icosphere(subdivisions=5, radius=RADIUS)
+    return HeadMesh(np.array(sphere.vertices), np.array(sphere.faces))
+
+
+@pytest.fixture(scope="module")
+def head_to_world() -> np.ndarray:
+    """A ball beside the tool, its face to the camera."""
+    pose = np.diag([-1.0, -1.0, 1.0, 1.0])
+    pose[:3, 3] = 760.0, 0.0, 300.0
+    return pose
+
+
+@pytest.fixture(scope="module")
+def picture(tmp_path_factory, ball, head_to_world):
+    """Render the robot at home and return the pixels, (height, width, 3) int.
+
+    One point is done, one is next, one waits.
+    """
+    robot = load_robot()
+    links = make_kinematics(robot).links(np.array(robot.home))
+    base = (head_to_world @ np.append(ball.base, 1.0))[:3] / MM_PER_M
+    nodes = [
+        *robot_nodes(robot),
+        head_node(ball, Task("ball", "Ball", ("1", "2", "3"), FRONT, 1.0)),
+        stand_node(FURNITURE, base),
+        table_node(FURNITURE, base),
+        *room_nodes(),
+    ]
+
+    def render(proximity=Proximity.FREE, **arguments) -> np.ndarray:
+        path = tmp_path_factory.mktemp("pictures") / "robot.png"
+        done = frozenset({"1"})
+        moment = SceneMoment(links, head_to_world, ball.base, done, "2", proximity)
+        arguments.setdefault("shadows", Shadows.SMALL)
+        render_picture(path, nodes, robot, moment, size=SIZE, **arguments)
+        return read_png(path).astype(int)
+
+    return render
+
+
+def _share(pixels: np.ndarray, low, high) -> float:
+    return float(np.all((pixels >= low) & (pixels <= high), axis=2).mean())
+
+
+def _orange(pixels: np.ndarray) -> float:
+    red, _, blue = np.moveaxis(pixels, 2, 0)
+    return float(((red > 140) & (red - blue > 120)).mean())
+
+
+def _skin(pixels: np.ndarray) -> float:
+    red, green, blue = np.moveaxis(pixels, 2, 0)
+    return float(((red > 130) & (red - blue > 40) & (red - blue < 110) & (green > blue)).mean())
+
+
+@pytest.fixture(scope="module")
+def far(picture) -> np.ndarray:
+    return picture(camera=FAR, shadows=Shadows.FULL)
+
+
+def test_the_far_picture_shows_an_orange_and_grey_robot_beside_a_head(far):
+    assert far.shape == (SIZE[1], SIZE[0], 3)
+    assert 0.005 < _orange(far) < 0.1
+    assert 0.005 < _skin(far) < 0.1
+    left = far[:, : SIZE[0] // 2]
+    assert _orange(left) > 0.005, "the robot stands to the left of the head"
+
+
+def test_the_picture_is_neither_empty_nor_overexposed(far):
+    assert far.std() > 20
+    assert _share(far, 254, 255) < 0.02
+    assert _share(far, 0, 2) < 0.02
+
+
+@pytest.fixture(scope="module")
+def tip(picture):
+    """Return a close picture of the tool's tip for a proximity."""
+    robot = load_robot()
+    target = make_kinematics(robot).tip(np.array(robot.home))[:3, 3] * MM_PER_M
+    return lambda proximity: picture(camera=close_up(target), proximity=proximity)
+
+
+def test_the_tool_tip_is_blue_when_free_and_red_when_near_or_touching(tip):
+    blue, red = ((0, 40, 200), (60, 110, 255)), ((200, 0, 0), (255, 60, 60))
+    free = tip(Proximity.FREE)
+    assert _share(free, *blue) > 1e-4
+    assert _share(free, *red) == 0
+    for proximity in (Proximity.PROXIMITY, Proximity.CONTACT):
+        near = tip(proximity)
+        assert _share(near, *red) > 1e-4
+        assert _share(near, *blue) == 0
+
+
+def test_fiducials_are_colored_by_their_state_and_numbered(picture, head_to_world):
+    pixels = picture(camera=close_up(head_to_world[:3, 3]))
+    assert _share(pixels, (10, 130, 40), (60, 190, 90)) > 1e-4, "touched: green"
+    assert _share(pixels, (220, 180, 0), (255, 225, 60)) > 1e-4, "next: yellow"
+    assert _share(pixels, (10, 40, 130), (60, 90, 190)) > 1e-4, "waiting: blue"
+    assert _share(pixels, (0, 0, 20), (60, 60, 80)) > 1e-4, "numbers: nearly black"
+
+
+def test_an_inset_shows_a_second_view_in_a_white_frame(picture, far, head_to_world):
+    both = picture(camera=FAR, shadows=Shadows.FULL, inset=close_up(head_to_world[:3, 3]))
+    changed = np.argwhere(np.any(np.abs(both - far) > 60, axis=2))
+    (top, left), (bottom, right) = changed.min(axis=0), changed.max(axis=0)
+    assert left > SIZE[0] / 2
+    assert bottom < SIZE[1] / 2
+    assert np.all(both[top, left : right + 1] == 255)
+    assert _skin(both[top:bottom, left:right]) > 0.05
+
+
+def test_an_unwritable_picture_is_refused_in_one_sentence(tmp_path):
+    with pytest.raises(InputError, match=r"robot\.png cannot be written: No such file"):
+        write_png(np.zeros((2, 2, 3), np.uint8), tmp_path / "nowhere" / "robot.png")

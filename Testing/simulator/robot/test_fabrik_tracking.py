@@ -1,0 +1,156 @@
+"""FABRIK along paths of one-millimeter steps, as teleoperation asks for them."""
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.core.arm import limit_step
+from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import load_robot
+
+TICK = 0.004
+STEP = 0.001
+CLINICAL_BOX = ([0.35, -0.15, 0.15], [0.65, 0.15, 0.5])
+DOWN = [0.0, 0.0, -1.0]
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return load_robot()
+
+
+@pytest.fixture(scope="module")
+def fabrik(robot):
+    return Fabrik(robot)
+
+
+def wander(box, count, seed):
+    """Return a path (count, 3) in steps of 1 mm from one random point of a box to the next."""
+    random = np.random.default_rng(seed)
+    point, goal, path = random.uniform(*box), random.uniform(*box), []
+    while len(path) < count:
+        rest = goal - point
+        far = np.linalg.norm(rest)
+        if far < STEP:
+            goal = random.uniform(*box)
+            continue
+        point = point + rest * (STEP / far)
+        path.append(point)
+    return np.array(path)
+
+
+def straight(start, end):
+    start, end = np.array(start, float), np.array(end, float)
+    count = round(np.linalg.norm(end - start) / STEP)
+    return start + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - start)
+
+
+def track(fabrik, path, q, direction=None, rotation=None):
+    """Return each joint's step in degrees, and each solution, along a path."""
+    steps, solutions = [], []
+    for position in path:
+        solution = fabrik.solve(position, direction, rotation, q_start=q)
+        steps.append(np.degrees(np.abs(np.subtract(solution.q, q))))
+        solutions.append(solution)
+        q = solution.q
+    return np.array(steps), solutions
+
+
+def test_in_the_clinical_box_no_joint_turns_more_than_15_hundredths_of_a_degree_a_millimeter(
+    fabrik, robot
+):
+    path = wander(CLINICAL_BOX, 6000, seed=1)
+    start = fabrik.solve(path[0], DOWN, q_start=robot.home)
+    steps, solutions = track(fabrik, path, start.q)
+    assert all(solution.converged for solution in solutions)
+    assert steps.max() <= 0.15
+
+
+@pytest.mark.parametrize("mode", ["direction", "pose"])
+def test_with_the_tool_held_the_arm_follows_exactly_and_without_jumps(fabrik, robot, mode):
+    low, high = CLINICAL_BOX
+    path = wander((low, [high[0], high[1], 0.42]), 3000, seed=2)
+    start = fabrik.solve(path[0], DOWN, q_start=robot.home)
+    kinematics = make_kinematics(robot)
+    rotation = kinematics.tip(start.q)[:3, :3] if mode == "pose" else None
+    held = DOWN if mode == "direction" else None
+    steps, solutions = track(fabrik, path, start.q, held, rotation)
+    assert all(solution.converged for solution in solutions)
+    assert steps.max() <= 1.0
+    for solution in solutions[::100]:
+        np.testing.assert_allclose(kinematics.tip(solution.q)[:3, 2], DOWN, atol=1e-8)
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-4, 0.003])
+@pytest.mark.parametrize("mode", ["position", "direction", "pose"])
+def test_the_wrist_passes_over_the_shoulder_smoothly(fabrik, robot, mode, beside):
+    path = straight([0.326 + beside, -0.3, 0.9], [0.326 + beside, 0.3, 0.9])
+    forward = [1.0, 0.0, 0.0]
+    start = fabrik.solve(path[0], forward, q_start=robot.home)
+    rotation = make_kinematics(robot).tip(start.q)[:3, :3] if mode == "pose" else None
+    held = forward if mode == "direction" else None
+    steps, solutions = track(fabrik, path, start.q, held, rotation)
+    assert all(solution.converged for solution in solutions)
+    assert steps.max() <= 0.5
+
+
+@pytest.mark.parametrize("direction", [None, [1.0, 0.0, 0.0]])
+def test_the_arm_stretches_to_its_edge_stays_there_and_comes_back(fabrik, robot, direction):
+    out = straight([0.95, 0.05, 0.34], [1.2, 0.05, 0.34])
+    start = fabrik.solve(out[0], [1.0, 0.0, 0.0], q_start=robot.home)
+    steps, solutions = track(fabrik, np.vstack((out, out[::-1])), start.q, direction)
+    path = np.vstack((out, out[::-1]))
+    wrist = path - [0.326, 0.0, 0.34] if direction else path - [0.0, 0.0, 0.34]
+    beyond = np.linalg.norm(wrist, axis=1) > (0.8 if direction else 1.126)
+    assert [not solution.converged for solution in solutions] == beyond.tolist()
+    # At the edge itself angles go with the square root of the way: no solver can do less.
+    edge = np.abs(np.linalg.norm(wrist, axis=1) - (0.8 if direction else 1.126)) < 0.008
+    assert steps[edge].max() <= 45.0
+    assert steps[~edge].max() <= 2.0
+
+
+def test_joint_speeds_keep_their_limits_on_wide_paths_past_singularities_and_edges(fabrik, robot):
+    path = wander(([-0.9, -0.9, -0.1], [0.9, 0.9, 1.4]), 6000, seed=3)
+    q = fabrik.solve(path[0], q_start=robot.home).q
+    most = robot.velocity * TICK
+    waited = reached = 0
+    for position in path:
+        solution = fabrik.solve(position, q_start=q)
+        step = limit_step(q, solution.q, robot.velocity, TICK)
+        moved = np.abs(np.subtract(step.q, q))
+        assert np.all(moved <= most * (1.0 + 1e-9))
+        assert np.degrees(moved).max() <= 2.0
+        assert np.all(robot.lower <= step.q)
+        assert np.all(step.q <= robot.upper)
+        waited += step.limited
+        reached += solution.converged and not step.limited
+        q = step.q
+    assert waited < 0.2 * len(path)
+    assert reached > 0.6 * len(path)
+
+
+def test_hardly_any_step_of_a_wide_path_needs_the_limiter(fabrik, robot):
+    path = wander(([-0.8, -0.8, 0.0], [0.8, 0.8, 1.2]), 6000, seed=4)
+    start = fabrik.solve(path[0], q_start=robot.home)
+    steps, solutions = track(fabrik, path, start.q)
+    assert all(solution.reason or solution.position_error_m <= 1e-9 for solution in solutions)
+    assert (steps.max(axis=1) > 2.0).mean() <= 0.002
+
+
+def test_a_joint_at_its_limit_stops_there_and_the_others_go_on(fabrik, robot):
+    start = fabrik.solve([0.5, 0.0, 0.4], DOWN, q_start=robot.home)
+    q = (*start.q[:5], robot.upper[5], start.q[6])
+    tip = make_kinematics(robot).tip(q)[:3, 3]
+    for goal in np.eye(3):
+        steps, solutions = track(fabrik, straight(tip, tip + 0.05 * goal), q)
+        assert all(solution.converged for solution in solutions)
+        assert steps.max() <= 0.5
+
+
+def test_the_limiter_slows_all_joints_alike_and_lets_short_steps_pass():
+    q, goal, velocity = (0.0, 1.0), (0.1, 1.02), (1.0, 1.0)
+    slowed = limit_step(q, goal, velocity, 0.05)
+    assert slowed.limited
+    np.testing.assert_allclose(slowed.q, (0.05, 1.01))
+    assert limit_step(q, goal, velocity, 0.1) == (goal, False)
+    assert limit_step(goal, goal, velocity, 0.1) == (goal, False)

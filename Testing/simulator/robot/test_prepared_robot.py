@@ -1,0 +1,69 @@
+"""The robot that comes with RASTrainer starts from what its files come to, written beside them."""
+
+import shutil
+import subprocess
+import sys
+from dataclasses import fields, is_dataclass
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.core.prepared_robot import FILE_NAME, read_prepared
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.robot.model import DEFAULT_URDF, load_robot
+
+URDF = asset_path(*DEFAULT_URDF)
+
+
+@pytest.fixture
+def copied(tmp_path):
+    """Copy the robot's folder and return the path of its URDF."""
+    folder = tmp_path / "iiwa7"
+    shutil.copytree(URDF.parent, folder, ignore=shutil.ignore_patterns("visual"))
+    return folder / URDF.name
+
+
+def same(one, other) -> bool:
+    """Tell whether two values are equal to the last bit, arrays and nested dataclasses too."""
+    if is_dataclass(one):
+        names = [field.name for field in fields(one)]
+        return all(same(getattr(one, name), getattr(other, name)) for name in names)
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    return bool(np.array_equal(one, other)) and type(one) is type(other)
+
+
+def test_the_prepared_robot_is_what_its_files_say_to_the_last_bit():
+    setup, robot = load_setup(), load_robot()
+    assert same(setup.robot, robot)
+    assert same(setup.shape, robot_shape(robot))
+
+
+def test_a_simulator_starts_without_the_packages_that_read_meshes():
+    script = (
+        "import sys; from rastrainer_simulator.core.setup import load_setup; load_setup(); "
+        "print([name for name in ('trimesh', 'yourdfpy', 'scipy') if name in sys.modules])"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert found.stdout.strip() == "[]", found.stderr
+
+
+@pytest.mark.parametrize("changed", ["iiwa7.urdf", "meshes/collision/link_3.stl"])
+def test_what_is_prepared_is_not_used_once_a_file_has_changed(copied, changed):
+    assert read_prepared(copied) is not None
+    path = copied.parent / changed
+    path.write_bytes(path.read_bytes() + b"\n")
+    assert read_prepared(copied) is None
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", "nonsense", None])
+def test_a_robot_is_read_from_its_files_where_nothing_usable_is_prepared(copied, text):
+    prepared = copied.parent / FILE_NAME
+    if text is None:
+        prepared.unlink()
+    else:
+        prepared.write_text(text)
+    setup = load_setup(urdf_path=copied)
+    assert same(setup.shape, load_setup().shape)

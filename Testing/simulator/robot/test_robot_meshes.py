@@ -1,0 +1,258 @@
+import hashlib
+import itertools
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pinocchio
+import pytest
+import trimesh
+import yourdfpy
+
+from rastrainer.errors import InputError
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.robot.meshes import load_meshes
+from rastrainer_simulator.robot.model import load_robot
+
+ROBOT = asset_path("robots", "iiwa7")
+OFFICIAL_MESHES = os.environ.get("RASTRAINER_OFFICIAL_MESHES")
+FILES = sorted(ROBOT.glob("meshes/*/*.stl"))
+LINK_ORIGINS_M = {  # data sheet: sums of the lengths of the arm, at q = 0
+    "iiwa_link_0": (0, 0, 0),
+    "iiwa_link_1": (0, 0, 0.1475),
+    "iiwa_link_2": (0, -0.0105, 0.34),
+    "iiwa_link_3": (0, 0, 0.5475),
+    "iiwa_link_4": (0, 0.0105, 0.74),
+    "iiwa_link_5": (0, 0, 0.9475),
+    "iiwa_link_6": (0, -0.0707, 1.14),
+    "iiwa_link_7": (0, 0, 1.231),
+}
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return load_robot()
+
+
+@pytest.fixture(scope="module")
+def visuals(robot):
+    return load_meshes(robot)
+
+
+def whole(meshes) -> trimesh.Trimesh:
+    return trimesh.util.concatenate([mesh for mesh, _color in meshes])
+
+
+def outstretched(visuals, link: str) -> trimesh.Trimesh:
+    return whole(visuals[link]).apply_translation(LINK_ORIGINS_M[link])
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_every_mesh_is_a_closed_solid(path: Path):
+    mesh = trimesh.load_mesh(path)
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    assert mesh.volume > 0
+
+
+def test_all_meshes_together_have_at_most_25000_triangles():
+    assert sum(len(trimesh.load_mesh(path).faces) for path in FILES) <= 25_000
+
+
+def test_generating_the_robot_again_gives_the_same_bytes(tmp_path):
+    script = ROBOT.parent / "make_iiwa7.py"
+    subprocess.run([sys.executable, script, "--output", tmp_path], check=True)
+    assert _digests(tmp_path) == _digests(ROBOT)
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    return {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_the_comparison_finds_no_distance_between_equals_and_a_known_shift(tmp_path, visuals):
+    for number, link in enumerate(LINK_ORIGINS_M):
+        outstretched(visuals, link).export(tmp_path / f"link_{number}.stl")
+    assert _compared(tmp_path) == pytest.approx([0, 0], abs=0.005)
+    for number, link in enumerate(LINK_ORIGINS_M):
+        shifted = outstretched(visuals, link).apply_translation([0.002, 0, 0])
+        shifted.export(tmp_path / f"link_{number}.stl")
+    # 2 mm sideways moves a round wall by 2 |cos| mm along its normal: 4/π on average.
+    assert _compared(tmp_path) == pytest.approx([4 / np.pi, 4 / np.pi], abs=0.3)
+
+
+def _compared(official: Path) -> list[float]:
+    script = ROBOT.parent / "compare_meshes.py"
+    command = [sys.executable, script, "--official", official, "--samples", "800"]
+    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    means = re.findall(r"^\w+ to \w+: mean ([\d.]+) mm", output, re.MULTILINE)
+    assert len(means) == 2
+    return [float(mean) for mean in means]
+
+
+if OFFICIAL_MESHES:  # not in the repository: name their folder to measure against them
+
+    def test_the_visible_surface_is_within_3_5_mm_of_the_official_one():
+        assert max(_compared(Path(OFFICIAL_MESHES))) <= 3.5
+
+
+def test_yourdfpy_and_pinocchio_load_the_robot_with_its_meshes():
+    urdf = ROBOT / "iiwa7.urdf"
+    robot = yourdfpy.URDF.load(str(urdf), load_collision_meshes=True)
+    assert robot.validate()
+    visual_count = sum(len(link.visuals) for link in robot.robot.links)
+    assert len(robot.scene.geometry) == visual_count
+    model, collision, visual = pinocchio.buildModelsFromUrdf(str(urdf), package_dirs=[str(ROBOT)])
+    assert (model.nq, collision.ngeoms, visual.ngeoms) == (7, 9, visual_count)
+
+
+@pytest.mark.parametrize("q_deg", [(0,) * 7, (0, 30, 0, -90, 0, 60, 0)])
+def test_the_collision_meshes_are_apart_where_the_robot_is(q_deg):
+    model, collision, _ = pinocchio.buildModelsFromUrdf(
+        str(ROBOT / "iiwa7.urdf"), package_dirs=[str(ROBOT)]
+    )
+    collision.addAllCollisionPairs()
+    model_data, data = model.createData(), collision.createData()
+    pinocchio.computeCollisions(model, model_data, collision, data, np.radians(q_deg), False)
+    touching = [
+        (collision.geometryObjects[pair.first].name, collision.geometryObjects[pair.second].name)
+        for pair, result in zip(collision.collisionPairs, data.collisionResults, strict=True)
+        if result.isCollision()
+    ]
+    assert touching == []
+
+
+def test_the_arm_has_the_published_width_height_and_reach(visuals):
+    links = {link: outstretched(visuals, link) for link in LINK_ORIGINS_M}
+    robot = trimesh.util.concatenate(list(links.values()))
+    low, high = robot.bounds * MM_PER_M
+    assert high[2] == pytest.approx(1266, abs=0.5)  # flange at q = 0
+    assert low[2] == pytest.approx(0, abs=0.01)
+    for link in ("iiwa_link_1", "iiwa_link_2", "iiwa_link_3", "iiwa_link_4", "iiwa_link_5"):
+        assert links[link].extents[0] * MM_PER_M == pytest.approx(136, abs=1)
+    base = links["iiwa_link_0"].bounds * MM_PER_M
+    assert base[1, 1] - base[0, 1] == pytest.approx(207.5, abs=1)
+    assert links["iiwa_link_7"].bounds[1, 2] - 0.035 == pytest.approx(1.231, abs=1e-6)
+
+
+def test_neighboring_links_meet_without_a_gap_that_shows(visuals):
+    names = list(LINK_ORIGINS_M)
+    for inner, outer in itertools.pairwise(names):
+        one, other = outstretched(visuals, inner), outstretched(visuals, outer)
+        nearest = trimesh.proximity.closest_point(other, one.vertices[::5])[1].min()
+        assert nearest * MM_PER_M < 3
+
+
+def test_the_links_are_grey_with_orange_rings_and_covers(visuals):
+    for number in range(1, 7):
+        colors = [color for _mesh, color in visuals[f"iiwa_link_{number}"]]
+        assert any(_is_grey(color) for color in colors)
+        assert any(color[0] > 0.8 and color[2] < 0.2 for color in colors), "orange"
+
+
+def _is_grey(color) -> bool:
+    return max(color[:3]) - min(color[:3]) < 0.05 and min(color[:3]) > 0.5
+
+
+def test_each_of_the_four_mounting_lugs_is_open_to_the_outside(visuals):
+    base = whole(visuals["iiwa_link_0"])
+    angles = np.radians([45, 135, 225, 315])
+    outside = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(4)])
+    height = [0, 0, 0.04]
+    hits, rays, _ = base.ray.intersects_location(0.3 * outside + height, -outside)
+    for ray in range(4):
+        first = np.linalg.norm(hits[rays == ray][:, :2], axis=1).max()
+        assert first < 0.085, "the column's own radius at this height is 0.0926 m"
+
+
+def test_the_tool_is_a_slender_pointer_that_ends_at_the_tool_tip(visuals):
+    tool, tip = whole(visuals["iiwa_link_tool"]), whole(visuals["iiwa_tool_tip_ee"])
+    assert tip.bounds[1, 2] == pytest.approx(0, abs=1e-7)
+    low = tip.bounds[0, 2]
+    assert tool.bounds[1, 2] == pytest.approx(0.2 + low, abs=1e-7)
+    shaft = tool.vertices[tool.vertices[:, 2] > 0.1]
+    assert np.hypot(shaft[:, 0], shaft[:, 1]).max() <= 0.0031
+
+
+def test_masses_are_the_published_ones_and_inertias_are_possible():
+    model = pinocchio.buildModelFromUrdf(str(ROBOT / "iiwa7.urdf"))
+    masses = [3.394011, 4.031991, 3.394011, 4.031989, 1.529239, 2.403626, 0.259474 + 0.25]
+    assert [body.mass for body in list(model.inertias)[1:]] == pytest.approx(masses)
+    for body in list(model.inertias)[1:]:
+        smallest, middle, largest = np.linalg.eigvalsh(body.inertia)
+        assert smallest > 0
+        assert largest < smallest + middle
+
+
+@pytest.mark.parametrize("layout", ["", "visual", "collision"])
+@pytest.mark.parametrize("frame", ["link", "base"])
+def test_a_mesh_folder_may_hold_its_meshes_in_either_frame(tmp_path, visuals, layout, frame):
+    folder = tmp_path / layout
+    folder.mkdir(exist_ok=True)
+    for number, (link, origin) in enumerate(LINK_ORIGINS_M.items()):
+        mesh = whole(visuals[link])
+        if frame == "base":
+            mesh.apply_translation(origin)
+        mesh.export(folder / f"link_{number}.stl")
+    loaded = load_meshes(load_robot(mesh_folder=tmp_path))
+    for link in LINK_ORIGINS_M:
+        np.testing.assert_allclose(
+            whole(loaded[link]).bounds, whole(visuals[link]).bounds, atol=1e-6
+        )
+    assert len(loaded["iiwa_link_tool"]) == len(visuals["iiwa_link_tool"]), "the tool stays ours"
+
+
+@pytest.mark.parametrize("link", range(1, 8))
+def test_a_single_replaced_link_stays_where_it_is(tmp_path, visuals, link):
+    mesh = whole(visuals[f"iiwa_link_{link}"])
+    mesh.export(tmp_path / f"link_{link}.stl")
+    loaded = whole(load_meshes(load_robot(mesh_folder=tmp_path))[f"iiwa_link_{link}"])
+    np.testing.assert_allclose(loaded.bounds, mesh.bounds, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"solid nothing\nendsolid nothing\n",
+        bytes(84),
+        bytes(80) + b"\xff\xff\xff\xff",
+        b"not a mesh at all",
+    ],
+    ids=["empty", "no facets", "zero triangles", "false count", "text"],
+)
+def test_a_file_without_a_surface_is_refused_in_one_sentence(tmp_path, data):
+    (tmp_path / "link_2.stl").write_bytes(data)
+    words = r"cannot be read as a STL mesh|holds no triangles|is empty"
+    with pytest.raises(InputError, match=words):
+        load_meshes(load_robot(mesh_folder=tmp_path))
+
+
+def test_a_huge_mesh_file_is_refused_unread(tmp_path):
+    with (tmp_path / "link_2.stl").open("wb") as file:
+        file.truncate(1_000_000_000)
+    with pytest.raises(InputError, match="larger than 50 MiB"):
+        load_meshes(load_robot(mesh_folder=tmp_path))
+
+
+@pytest.mark.parametrize("scale", [1000.0, np.nan])
+def test_a_mesh_in_millimeters_or_without_numbers_is_refused(tmp_path, visuals, scale):
+    mesh = whole(visuals["iiwa_link_3"])
+    mesh.vertices *= scale
+    mesh.export(tmp_path / "link_3.stl")
+    with pytest.raises(InputError, match="in metres"):
+        load_meshes(load_robot(mesh_folder=tmp_path))
+
+
+def test_a_mesh_that_the_urdf_names_but_that_is_gone_is_named(tmp_path):
+    urdf = tmp_path / "iiwa7.urdf"
+    urdf.write_bytes((ROBOT / "iiwa7.urdf").read_bytes())
+    with pytest.raises(InputError, match=r"mesh of iiwa_link_0 cannot be used: There is no"):
+        load_meshes(load_robot(urdf))

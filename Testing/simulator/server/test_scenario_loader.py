@@ -1,0 +1,146 @@
+"""LoadScenario: which folders may be named, and what is said when one cannot be used."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from types import SimpleNamespace
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import Phase
+from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.loop.control_loop import TRIAL_IS_OPEN
+from rastrainer_simulator.server.scenario_loader import BUSY, ScenarioLoader
+from rastrainer_simulator.state import Answer
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
+
+
+class Loop:
+    """Stands in for the control loop."""
+
+    def __init__(self):
+        self.answer = Answer(0, True)
+        self.simulations = []
+        self.latest = SimpleNamespace(training=SimpleNamespace(phase=Phase.IDLE))
+
+    def replace_simulation(self, simulation):
+        self.simulations.append(simulation)
+        future = Future()
+        future.set_result(self.answer)
+        return future
+
+
+def simulation_of(folder):
+    if not folder.is_dir():
+        raise InputError(f"The scenario's folder {folder} does not exist.")
+    scenario = SimpleNamespace(name=folder.name, title=folder.name.title())
+    return SimpleNamespace(setup=SimpleNamespace(scenario=scenario), folder=folder)
+
+
+@pytest.fixture
+def library(tmp_path):
+    """A user's library with one scenario, and one that is broken."""
+    ball = tmp_path / "library" / "ball"
+    (tmp_path / "library" / "broken").mkdir(parents=True)
+    (tmp_path / "library" / "broken" / "scenario.json").write_text("{")
+    with new_folder(ball) as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+        (made / "preview.png").write_bytes(png())
+    return tmp_path / "library"
+
+
+@pytest.fixture
+def make(library):
+    """Makes loaders, and ends them."""
+    loaders = []
+
+    def make_one(loop, may_be_anywhere):
+        loaders.append(ScenarioLoader(loop, simulation_of, may_be_anywhere, library))
+        return loaders[-1]
+
+    yield make_one
+    for loader in loaders:
+        loader.close()
+
+
+@pytest.mark.parametrize("may_be_anywhere", [True, False])
+def test_scenario_that_comes_with_us_is_loaded_by_its_name(make, may_be_anywhere):
+    loop = Loop()
+    answer = make(loop, may_be_anywhere).load("colin27").result(10)
+    assert (answer.ok, answer.data) == (True, {"name": "colin27", "title": "Colin27"})
+    assert loop.simulations[0].folder == asset_path("scenarios", "colin27")
+
+
+@pytest.mark.parametrize("may_be_anywhere", [True, False])
+def test_scenario_of_the_library_is_loaded_by_its_name(make, library, may_be_anywhere):
+    loop = Loop()
+    assert make(loop, may_be_anywhere).load("ball").result(10).ok
+    assert loop.simulations[0].folder == library / "ball"
+
+
+def test_scenarios_are_listed_with_their_pictures_and_problems(make, library):
+    loader = make(Loop(), may_be_anywhere=False)
+    assert loader.picture("ball") is None
+    listed = {entry.name: entry for entry in loader.listed().result(10)}
+    assert set(listed) == {"ball", "broken", "colin27"}
+    assert "scenario.json" in listed["broken"].problem
+    assert loader.picture("ball") == library / "ball" / "preview.png"
+    assert loader.picture("colin27") == asset_path("scenarios", "colin27", "preview.png")
+    assert loader.picture("broken") is loader.picture("../ball") is None
+
+
+def test_any_folder_may_be_loaded_by_its_path_on_one_computer(make, tmp_path):
+    assert make(Loop(), may_be_anywhere=True).load(str(tmp_path)).result(10).ok
+
+
+@pytest.mark.parametrize("folder", ["/etc", "../colin27", "colin27/..", "."])
+def test_client_of_another_computer_reaches_no_other_folder(make, folder):
+    loop = Loop()
+    answer = make(loop, may_be_anywhere=False).load(folder).result(10)
+    assert not answer.ok
+    assert "LoadScenario takes one of ball, colin27;" in answer.message
+    assert loop.simulations == []
+
+
+def test_while_a_scenario_is_being_loaded_no_further_one_is(make):
+    loop = Loop()
+    handover = Future()
+    loop.replace_simulation = lambda _simulation: handover
+    loader = make(loop, may_be_anywhere=True)
+    first = loader.load("colin27")
+    assert [loader.load("colin27").result(10) for _ in range(3)] == [Answer(0, False, BUSY)] * 3
+    handover.set_result(loop.answer)
+    assert first.result(10).ok
+    assert loader.load("colin27").result(10).ok
+
+
+@pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE])
+def test_in_a_trial_nothing_is_read_of_a_scenario(make, phase):
+    loop = Loop()
+    loop.latest.training.phase = phase
+    loop.replace_simulation = None
+    loader = make(loop, may_be_anywhere=True)
+    assert loader.load("colin27").result(0) == Answer(0, False, TRIAL_IS_OPEN)
+    loop.latest.training.phase = Phase.REGISTERED
+    loop.replace_simulation = Loop().replace_simulation
+    assert loader.load("colin27").result(10).ok
+
+
+def test_folder_that_cannot_be_used_is_refused_in_one_sentence(make, tmp_path):
+    answer = make(Loop(), may_be_anywhere=True).load(str(tmp_path / "none")).result(10)
+    assert (answer.ok, "does not exist" in answer.message) == (False, True)
+
+
+def test_refusal_of_the_control_loop_is_passed_on(make):
+    loop = Loop()
+    loop.answer = Answer(0, False, "A trial is running.")
+    assert make(loop, may_be_anywhere=True).load("colin27").result(10) == loop.answer
+
+
+def test_the_present_scenario_is_made_anew_wherever_it_came_from(make, tmp_path):
+    loop = Loop()
+    loop.setup = SimpleNamespace(scenario=SimpleNamespace(folder=tmp_path))
+    assert make(loop, may_be_anywhere=False).reload().result(10).ok
+    assert loop.simulations[0].folder == tmp_path

@@ -1,0 +1,301 @@
+"""The sticks and commanded motions as the trainee feels them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
+from rastrainer_simulator.state import Motion
+from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, camera_axes
+from rastrainer_simulator.teleoperation.commanded_motion import (
+    ARRIVED,
+    JogCommand,
+    MotionOutcome,
+    MoveCommand,
+)
+from rastrainer_simulator.teleoperation.teleoperation import (
+    StickResponse,
+    Teleoperation,
+    TeleoperationSettings,
+    Tip,
+)
+from rastrainer_simulator.teleoperation.tool_steering import (
+    NearestSurface,
+    SteeringSettings,
+    ToolDirection,
+)
+from rastrainer_simulator.vectors import ZERO, add, angle, distance, dot, length, unit
+
+DT = 0.004
+DOWN = (0.0, 0.0, -1.0)
+RIGHT = (1.0, 0.0, 0.0)
+FRONT_CAMERA = camera_axes((0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+SETTINGS = TeleoperationSettings()
+
+
+class Hand:
+    """A tip that goes exactly where it is wished: teleoperation without a robot."""
+
+    def __init__(self, settings=SETTINGS, axes=FRONT_CAMERA, surface=None):
+        self.teleoperation = Teleoperation(settings)
+        self.axes = axes
+        self.surface = surface
+        self.tip = Tip((0.5, 0.0, 0.5), DOWN, RIGHT)
+        self.blocked = False
+
+    def step(self, operator_input=HANDS_OFF):
+        motion_request = self.teleoperation.step(
+            DT, operator_input, self.tip, self.axes, self.surface
+        )
+        if not self.blocked:
+            position = add(self.tip.position, motion_request.displacement)
+            direction = motion_request.direction or self.tip.direction
+            self.tip = Tip(position, direction, motion_request.across or self.tip.across)
+        return motion_request
+
+    def run_until_end(self, most_ticks=5000):
+        for _ in range(most_ticks):
+            motion_request = self.step()
+            if motion_request.ended:
+                return motion_request.ended
+        raise AssertionError("the motion never ended")
+
+
+def push(*translation, **others):
+    return OperatorInput(translation=translation, **others)
+
+
+def steered(choice):
+    return TeleoperationSettings(steering=SteeringSettings(choice=choice))
+
+
+def speed_after(hand, operator_input, ticks=100):
+    for _ in range(ticks):
+        motion_request = hand.step(operator_input)
+    return length(motion_request.displacement) / DT
+
+
+def test_a_stick_inside_the_round_dead_zone_moves_nothing():
+    response = StickResponse(dead_zone=0.12)
+    assert response((0.08, 0.08, 0.0)) == ZERO
+    assert response((0.1, 0.1, 0.0)) != ZERO
+
+
+def test_the_response_curve_starts_at_zero_rises_and_ends_at_full_speed():
+    response = StickResponse(dead_zone=0.1, exponent=2.0)
+    shares = [response((x, 0.0, 0.0))[0] for x in (0.1001, 0.3, 0.55, 0.8, 1.0)]
+    assert shares[0] == pytest.approx(0.0, abs=1e-6)
+    assert shares == sorted(shares)
+    assert shares[2] == pytest.approx(0.25)
+    assert shares[-1] == 1.0
+
+
+def test_a_diagonal_stick_keeps_its_direction_and_is_not_faster():
+    shares = StickResponse()((1.0, 1.0, 0.0))
+    assert shares[0] == pytest.approx(shares[1])
+    assert length(shares) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("broken", [math.nan, math.inf, -math.inf])
+def test_a_stick_that_reports_no_number_counts_as_released(broken):
+    assert StickResponse()((broken, 0.0, 0.0)) == ZERO
+
+
+def test_full_deflection_reaches_the_coarse_and_with_the_trigger_the_fine_speed():
+    assert speed_after(Hand(), push(1.0, 0.0, 0.0)) == pytest.approx(SETTINGS.coarse_speed)
+    assert speed_after(Hand(), push(1.0, 0.0, 0.0, fine=True)) == pytest.approx(SETTINGS.fine_speed)
+
+
+def test_speed_never_changes_faster_than_the_acceleration_limit_while_the_stick_is_held():
+    hand = Hand()
+    last = ZERO
+    for stick in [(1.0, 0.0, 0.0)] * 50 + [(-1.0, 0.5, 0.0)] * 80 + [(0.0, 0.0, 1.0)] * 50:
+        velocity = tuple(d / DT for d in hand.step(push(*stick)).displacement)
+        assert distance(velocity, last) <= SETTINGS.acceleration * DT * (1 + 1e-9)
+        last = velocity
+
+
+def test_the_arm_stops_in_the_tick_in_which_the_stick_is_released():
+    hand = Hand()
+    speed_after(hand, push(0.0, 1.0, 0.0))
+    motion_request = hand.step()
+    assert motion_request.motion is Motion.NONE
+    assert motion_request.displacement == ZERO
+
+
+def test_right_forward_and_up_are_those_of_the_camera_in_front_of_the_face():
+    for stick in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
+        assert unit(Hand().step(push(*stick)).displacement) == pytest.approx(stick)
+
+
+def test_right_forward_and_up_are_those_of_the_robot_where_chosen():
+    ahead = Hand(axes=ROBOT_AXES).step(push(0.0, 1.0, 0.0)).displacement
+    right = Hand(axes=ROBOT_AXES).step(push(1.0, 0.0, 0.0)).displacement
+    assert unit(ahead) == pytest.approx((1.0, 0.0, 0.0))
+    assert unit(right) == pytest.approx((0.0, -1.0, 0.0))
+
+
+def test_a_camera_that_looks_down_still_pushes_away_level_and_up_upward():
+    tilted = camera_axes((0.0, 0.8, -0.6), (0.0, 0.6, 0.8))
+    overhead = camera_axes((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+    assert tilted == overhead == FRONT_CAMERA
+
+
+def test_a_jog_moves_for_its_duration_and_then_stops():
+    hand = Hand(TeleoperationSettings(acceleration=1e6))
+    hand.teleoperation.start(JogCommand(velocity=(0.0, 0.1, 0.0), duration=0.1))
+    start = hand.tip.position
+    assert hand.run_until_end() is MotionOutcome.REACHED
+    assert hand.tip.position == pytest.approx(add(start, (0.0, 0.01, 0.0)), abs=1e-9)
+    assert hand.step().motion is Motion.NONE
+
+
+def test_a_jog_replaced_by_another_goes_on_without_a_stop():
+    hand = Hand()
+    for _ in range(20):
+        hand.teleoperation.start(JogCommand(velocity=(0.1, 0.0, 0.0), duration=0.1))
+        for _ in range(12):
+            motion_request = hand.step()
+    assert motion_request.motion is Motion.JOG
+    assert length(motion_request.displacement) == pytest.approx(0.1 * DT)
+
+
+def test_a_move_ends_on_its_target_and_never_exceeds_its_speed():
+    hand = Hand()
+    target = (0.42, 0.13, 0.41)
+    hand.teleoperation.start(MoveCommand(position=target, speed=0.1))
+    fastest = 0.0
+    while (motion_request := hand.step()).ended is None:
+        fastest = max(fastest, length(motion_request.displacement) / DT)
+    assert motion_request.ended is MotionOutcome.REACHED
+    assert distance(hand.tip.position, target) <= ARRIVED
+    assert fastest <= 0.1 * (1 + 1e-9)
+
+
+def test_a_move_turns_the_tool_as_told_even_where_its_direction_is_free():
+    hand = Hand()
+    goal = unit((0.0, 1.0, -1.0))
+    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.45), speed=0.1, direction=goal))
+    assert hand.run_until_end() is MotionOutcome.REACHED
+    assert angle(hand.tip.direction, goal) < 1e-9
+
+
+def test_a_move_that_gets_no_nearer_gives_up_and_says_that_it_was_blocked():
+    hand = Hand()
+    hand.blocked = True
+    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.3), speed=0.1))
+    assert hand.run_until_end(most_ticks=200) is MotionOutcome.BLOCKED
+
+
+def test_a_stick_overrides_a_commanded_motion():
+    hand = Hand()
+    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.3), speed=0.1))
+    hand.step()
+    motion_request = hand.step(push(1.0, 0.0, 0.0))
+    assert motion_request.ended is MotionOutcome.OVERRIDDEN
+    assert motion_request.motion is Motion.STICK
+    assert hand.step().motion is Motion.NONE
+
+
+@pytest.mark.parametrize("choice", [ToolDirection.FREE, ToolDirection.CLEAR])
+def test_in_position_mode_the_tool_direction_is_free_and_the_second_stick_does_nothing(choice):
+    hand = Hand(steered(choice))
+    assert hand.step(push(1.0, 0.0, 0.0)).direction is None
+    assert hand.step(OperatorInput(rotation=(1.0, 0.0))).motion is Motion.NONE
+
+
+def test_a_held_direction_stays_until_the_second_stick_turns_it():
+    hand = Hand(steered(ToolDirection.HELD))
+    for _ in range(50):
+        assert hand.step(push(1.0, 0.0, 0.0)).direction == DOWN
+    for _ in range(50):
+        motion_request = hand.step(OperatorInput(rotation=(1.0, 0.0)))
+    assert motion_request.displacement == ZERO
+    turned = hand.tip.direction
+    assert turned[0] > 0.1
+    assert turned[1] == pytest.approx(0.0)
+    assert angle(turned, DOWN) == pytest.approx(50 * DT * SteeringSettings().coarse_turn)
+
+
+@pytest.mark.parametrize("choice", [choice for choice in ToolDirection if choice != "pose"])
+def test_the_tool_may_roll_in_every_mode_but_the_full_pose(choice):
+    hand = Hand(steered(choice), surface=near_the_head(0.005, (0.0, -1.0, 0.5)))
+    assert hand.step(push(1.0, 0.0, 0.0)).across is None
+
+
+def test_in_pose_mode_the_tool_does_not_roll_while_it_is_moved_and_turned():
+    hand = Hand(steered(ToolDirection.POSE))
+    for _ in range(50):
+        motion_request = hand.step(push(1.0, 0.0, 0.0))
+        assert (motion_request.direction, motion_request.across) == (DOWN, RIGHT)
+    for _ in range(200):
+        motion_request = hand.step(OperatorInput(rotation=(0.0, 1.0)))
+    assert angle(motion_request.direction, DOWN) > 0.5
+    assert motion_request.across == pytest.approx(RIGHT)
+    for _ in range(200):
+        motion_request = hand.step(OperatorInput(rotation=(1.0, 0.0)))
+    assert dot(motion_request.across, motion_request.direction) == pytest.approx(0.0, abs=1e-12)
+    assert length(motion_request.across) == pytest.approx(1.0)
+
+
+def test_steering_up_pitches_a_tool_that_points_down_away_from_the_viewer():
+    hand = Hand(steered(ToolDirection.HELD))
+    for _ in range(50):
+        hand.step(OperatorInput(rotation=(0.0, 1.0)))
+    assert hand.tip.direction[1] > 0.1
+    assert hand.tip.direction[0] == pytest.approx(0.0)
+
+
+def near_the_head(clearance, normal, shaft_clearance=0.1, shaft_normal=(0.0, 0.0, 1.0)):
+    return NearestSurface(clearance, unit(normal), shaft_clearance, unit(shaft_normal))
+
+
+def test_near_the_head_the_tool_turns_along_the_surface_normal_where_chosen():
+    normal = (0.0, -1.0, 0.5)
+    near = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.005, normal))
+    far = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.2, normal))
+    for _ in range(600):
+        near.step(push(0.2, 0.0, 0.0))
+        far.step(push(0.2, 0.0, 0.0))
+    assert near.tip.direction == pytest.approx(tuple(-v for v in unit(normal)))
+    assert far.tip.direction == DOWN
+
+
+def test_in_position_mode_the_tool_leans_no_farther_than_its_shaft_can_stay_off_the_skin():
+    normal = (0.0, -1.0, 0.5)
+    leans = []
+    for clearance in (0.2, 0.12, 0.08, 0.04, 0.01, 0.0):
+        hand = Hand(steered(ToolDirection.CLEAR), surface=near_the_head(clearance, normal))
+        for _ in range(600):
+            hand.step(push(0.2, 0.0, 0.0))
+        leans.append(angle(hand.tip.direction, (0.0, 1.0, -0.5)))
+    assert leans == sorted(leans, reverse=True)
+    assert leans[:2] == pytest.approx([angle(DOWN, (0.0, 1.0, -0.5))] * 2)
+    assert leans[-2:] == pytest.approx([SteeringSettings().largest_lean] * 2)
+
+
+def test_the_tool_comes_from_above_even_where_the_skin_faces_down():
+    hand = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.0, (0.0, -1.0, -0.4)))
+    for _ in range(600):
+        hand.step(push(0.2, 0.0, 0.0))
+    assert hand.tip.direction[2] < -0.2
+
+
+def test_a_tool_that_leans_little_enough_is_left_alone():
+    hand = Hand(steered(ToolDirection.CLEAR), surface=near_the_head(0.0, (0.1, 0.0, 1.0)))
+    assert hand.step(push(0.2, 0.0, 0.0)).direction is None
+
+
+def test_a_shaft_that_almost_touches_turns_away_from_what_is_near_to_it():
+    ear = near_the_head(0.002, (0.0, 0.0, 1.0), 0.0002, (0.0, -1.0, 0.0))
+    hand = Hand(steered(ToolDirection.CLEAR), surface=ear)
+    hand.step(push(0.2, 0.0, 0.0))
+    assert hand.tip.direction[1] > 0.0
+
+
+def test_a_frozen_hand_turns_no_tool():
+    hand = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.005, (0.0, -1.0, 0.0)))
+    for _ in range(50):
+        assert hand.step().direction is None

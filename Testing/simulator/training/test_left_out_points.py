@@ -1,0 +1,124 @@
+"""A registration of some touches only is refused, or changes no score."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.registration.registration import register
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.units import MM_PER_M
+from Testing.domain.trial.trial_records import make_record
+from Testing.simulator.training.test_training import Trial
+
+TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
+BAD_MM = 4.0
+"""By which the five worst touches are off, along the skin or not."""
+MOTION = {
+    "unintended_contact_time_s": 0.0,
+    "unintended_contact_path_mm": 0.0,
+    "pressing_depth_mm": 0.2,
+}
+
+
+@dataclasses.dataclass
+class Submitted:
+    """A trial with five bad touches, and what a submitted registration led to."""
+
+    reply: object
+    record: TrialRecord
+    all_touches: np.ndarray
+    submitted: np.ndarray
+
+
+def submit(scenario, task, choose):
+    """Play a task whose last five touches are bad; submit the fit of the rows that are chosen."""
+    trial = Trial(scenario)
+    trial.start(task)
+    random = np.random.default_rng(8)
+    bad = np.repeat([0.0, BAD_MM], [10, 5])
+    for size in bad:
+        way = random.normal(size=3)
+        off = size * way / np.linalg.norm(way) / MM_PER_M
+        place = np.array(trial.fiducial(trial.state.next_point)) + off
+        reply = trial.do(CommandName.CAPTURE, tuple(place))
+        assert reply.ok, reply.message
+    assert trial.do(CommandName.REGISTER).ok
+    touches = trial.state.touches
+    record = make_record(task=task, motion=MOTION)
+    for point, touch in zip(record["points"], touches, strict=True):
+        point.update(label=touch.label, positionMm=[MM_PER_M * v for v in touch.position])
+    record = TrialRecord.from_json(record)
+    fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
+    rows = choose(fiducials)
+    fit = register(record.positions_mm[rows], fiducials[rows])
+    reply = trial.do(
+        CommandName.SUBMIT_REGISTRATION,
+        matrix=tuple(float(value) for value in fit.matrix.ravel()),
+        freMm=fit.fre_mm,
+        expectedTreMm=0.1,
+    )
+    assert reply.ok, reply.message
+    return Submitted(reply, record, register(record.positions_mm, fiducials).matrix, fit.matrix)
+
+
+def everything(fiducials):
+    return np.arange(len(fiducials))
+
+
+def without_the_worst_five(_fiducials):
+    return np.arange(10)
+
+
+def one_side(fiducials):
+    """Return the rows of the half of the fiducials that is farthest to one side."""
+    return np.argsort(fiducials[:, 0])[:8]
+
+
+@pytest.mark.parametrize("choose", [without_the_worst_five, one_side])
+@pytest.mark.parametrize("task", TASKS)
+def test_the_score_is_of_all_touches_whatever_registration_was_submitted(scenario, task, choose):
+    cheated, honest = (submit(scenario, task, rows) for rows in (choose, everything))
+    assert not np.allclose(cheated.submitted, cheated.all_touches, atol=1e-3)
+    scored = [
+        analyze_trial(
+            one.record,
+            scenario,
+            truth=RevealedTruth.from_json(json.loads(json.dumps(one.reply.data))),
+        )
+        for one in (cheated, honest)
+    ]
+    assert scored[0].score == scored[1].score
+    assert np.array_equal(scored[0].rigid.matrix, cheated.all_touches)
+
+
+@pytest.mark.parametrize("count", range(15))
+def test_a_registration_before_the_fifteenth_touch_is_refused(scenario, count):
+    trial = Trial(scenario)
+    trial.start()
+    if count:
+        trial.touch(count)
+    assert not trial.do(CommandName.REGISTER).ok
+    assert trial.state.phase is Phase.RUNNING
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_each_touch_has_to_be_at_its_own_fiducial(scenario, task):
+    trial = Trial(scenario)
+    trial.start(task)
+    first = trial.fiducial("1")
+    trial.touch()
+    assert not trial.do(CommandName.CAPTURE, first).ok
+    assert trial.state.next_point == "2"
+
+
+def test_a_record_of_fewer_touches_is_refused():
+    record = make_record()
+    with pytest.raises(InputError, match="a list of 15 points"):
+        TrialRecord.from_json({**record, "points": record["points"][:10]})

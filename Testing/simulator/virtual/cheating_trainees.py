@@ -1,0 +1,256 @@
+"""Whole trials through the real simulation, played honestly and by trainees who cheat.
+
+Each function plays one task from its start to `Register`, by the protocol's commands alone, and
+returns the trial's record with its motion metrics, and the truth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.surface_queries import outward_normal
+from rastrainer.journal.recording import Recording
+from rastrainer.motion.trajectory import Trajectory
+from rastrainer.protocol import CommandName, Proximity, TouchRule, check_arguments
+from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.trial.record import TrialRecord
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
+from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.state import Answer, Motion
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
+
+DT = 0.02
+FLE_MM = 1.0
+"""Of the honest trainee: RMS length of the error of one fiducial, along the skin."""
+HONEST = Skill(aim_sd_mm=FLE_MM / np.sqrt(2.0), slip_at=None)
+BIAS_MM = 2.0
+BRISK_MM_S, SLOW_MM_S = 300.0, 60.0
+LIFT_MM = 35.0
+DRAG_MM_S, DRAG_PUSH_MM_S = 60.0, 20.0
+MOST_DRAG_S = 20.0
+FOREVER = 5000
+"""Ticks after which a motion that has not ended is a fault of the test."""
+
+
+@dataclass(frozen=True)
+class PlayedTrial:
+    """What a trial left behind.
+
+    Attributes:
+        record: as the simulator delivers it.
+        trajectory: from which its motion was measured.
+        truth: where the head was.
+        entries: of the journal.
+    """
+
+    record: TrialRecord
+    trajectory: Trajectory
+    truth: Truth
+    entries: tuple[dict[str, Any], ...]
+
+
+def play_honestly(
+    setup: SimulationSetup, task: str, seed: int, skill: Skill = HONEST
+) -> PlayedTrial:
+    """Play as the scripted trainee does."""
+    simulation, notes = Simulation(setup, seed), _Notes()
+    play_virtual_trial(simulation, task, seed, skill, DT, notes.take)
+    return notes.played(simulation)
+
+
+def aim_beside(
+    setup: SimulationSetup,
+    task: str,
+    seed: int,
+    bias_mm: tuple[float, float, float] | None = None,
+) -> PlayedTrial:
+    """Play honestly, but aim beside every fiducial by the same vector of World, mm.
+
+    By default these are 2 mm in the direction that lies along the skin at as many fiducials as can
+    be: what of it leads into the skin or off it moves no touch.
+    """
+    bias = along_skin(setup, task, seed, BIAS_MM) if bias_mm is None else bias_mm
+    return play_honestly(setup, task, seed, replace(HONEST, aim_bias_mm=bias))
+
+
+def along_skin(
+    setup: SimulationSetup, task: str, seed: int, length_mm: float
+) -> tuple[float, float, float]:
+    """Return the vector of World with the greatest part along the skin of a task's fiducials."""
+    turn = setup.scenario.perturbed_head_to_world(seed)[:3, :3]
+    normals = fiducial_normals(setup.scenario, task) @ turn.T
+    direction = np.linalg.eigh(normals.T @ normals)[1][:, 0]
+    # An eigenvector has no sign of its own.
+    direction *= np.sign(direction[np.abs(direction).argmax()])
+    return tuple((length_mm * direction).tolist())
+
+
+def hover(setup: SimulationSetup, task: str, seed: int, by_mm: float = 9.0) -> PlayedTrial:
+    """Touch in the air, off every fiducial by the same vector; every height has to count.
+
+    The vector is the one that leads off the skin at as many fiducials as can be.
+    """
+    pilot = Pilot(within_radius(setup), task, seed)
+    offset = by_mm * _most_outward(pilot.normals)
+    for place, normal in zip(pilot.fiducials, pilot.normals, strict=True):
+        pilot.carry_to(place + offset, normal)
+        pilot.touch()
+    return pilot.register()
+
+
+def press(setup: SimulationSetup, task: str, seed: int, depth_mm: float = 2.0) -> PlayedTrial:
+    """Touch every fiducial on the skin and command the tip farther in before each touch."""
+    pilot = Pilot(setup, task, seed)
+    for place, normal in zip(pilot.fiducials, pilot.normals, strict=True):
+        pilot.carry_to(place, normal)
+        pilot.move(pilot.tip - depth_mm * normal, SLOW_MM_S)
+        pilot.touch()
+    return pilot.register()
+
+
+def drag(setup: SimulationSetup, task: str, seed: int) -> PlayedTrial:
+    """Slide over the skin from fiducial to fiducial; lift the tip only where it is stuck."""
+    pilot = Pilot(setup, task, seed)
+    pilot.carry_to(pilot.fiducials[0], pilot.normals[0])
+    pilot.touch()
+    for place, normal in zip(pilot.fiducials[1:], pilot.normals[1:], strict=True):
+        if not pilot.slide_to(place):
+            pilot.carry_to(place, normal)
+        pilot.move(place, SLOW_MM_S)
+        pilot.touch()
+    return pilot.register()
+
+
+CHEATS: dict[str, Callable[[SimulationSetup, str, int], PlayedTrial]] = {
+    "hover": hover,
+    "aim-beside": aim_beside,
+    "drag": drag,
+    "press": press,
+}
+
+
+def within_radius(setup: SimulationSetup) -> SimulationSetup:
+    """Return the setup under the paper's rule: a touch counts anywhere near the fiducial."""
+    training = replace(setup.settings.training, touch_rule=TouchRule.WITHIN_RADIUS)
+    return replace(setup, settings=replace(setup.settings, training=training))
+
+
+class _Notes:
+    """Forms a trial's journal in memory."""
+
+    def __init__(self) -> None:
+        self._entries: TrialEntries | None = None
+        self._unmeasured = None
+
+    def take(self, simulation, before, operator_input, result) -> None:
+        if self._entries is None:
+            self._entries = TrialEntries.begun(simulation, before, result, DT)
+        self._unmeasured = self._entries.add(simulation, operator_input, result)
+
+    def played(self, simulation: Simulation) -> PlayedTrial:
+        record = self._unmeasured.measured()
+        entries = tuple(self._entries.taken())
+        return PlayedTrial(record, Recording.of(entries).trajectory(), simulation.truth, entries)
+
+
+class Pilot:
+    """Steers one trial by commands: places and ways are (3,) float, World, mm."""
+
+    def __init__(self, setup: SimulationSetup, task: str, seed: int) -> None:
+        self._simulation, self._notes = Simulation(setup, seed), _Notes()
+        self._do(CommandName.START_TASK, task=task, trainee="cheat", seed=seed)
+        truth = self._simulation.truth
+        self.fiducials = truth.in_world(np.array(list(truth.fiducials.values())))
+        self.normals = fiducial_normals(setup.scenario, task) @ truth.head_to_world[:3, :3].T
+        self._center = truth.in_world(truth.target)
+        self._mesh = read_head_mesh(setup.scenario.head_mesh)
+
+    @property
+    def tip(self) -> np.ndarray:
+        return MM_PER_M * self._simulation.state.tool_tip_to_world[:3, 3]
+
+    def touch(self) -> None:
+        answer = self._do(CommandName.CAPTURE)
+        assert answer.ok, answer.message
+
+    def register(self) -> PlayedTrial:
+        answer = self._do(CommandName.REGISTER)
+        assert answer.ok, answer.message
+        return self._notes.played(self._simulation)
+
+    def move(self, place: np.ndarray, speed_mm_s: float) -> None:
+        """Go straight to a place, or as far as the skin lets the tip."""
+        self._do(CommandName.MOVE_TIP_TO, positionMm=place.tolist(), speedMmS=speed_mm_s)
+        self._rest()
+
+    def carry_to(self, place: np.ndarray, normal: np.ndarray) -> None:
+        """Lift the tip, carry it around the head and lower it along the skin's normal there."""
+        start, above = self.tip - self._center, place + LIFT_MM * normal
+        end = above - self._center
+        start = start * (1.0 + LIFT_MM / np.linalg.norm(start))
+        for share in np.linspace(0.0, 1.0, 9):
+            way = (1.0 - share) * start + share * end
+            radius = (1.0 - share) * np.linalg.norm(start) + share * np.linalg.norm(end)
+            self.move(self._center + radius * way / np.linalg.norm(way), BRISK_MM_S)
+        self.move(place, SLOW_MM_S)
+
+    def slide_to(self, place: np.ndarray) -> bool:
+        """Drag the tip over the skin; return whether it got within a millimeter."""
+        least, stuck = np.inf, 0
+        for _ in range(round(MOST_DRAG_S / DT)):
+            way = place - self.tip
+            away = float(np.linalg.norm(way))
+            if away < 1.0:
+                return True
+            least, stuck = (away, 0) if away < least - 0.05 else (least, stuck + 1)
+            if stuck * DT > 1.0:
+                return False
+            outward = self._outward_at_tip()
+            along = way - outward * float(way @ outward)
+            velocity = DRAG_MM_S * along / max(float(np.linalg.norm(along)), 1e-9)
+            if self._simulation.state.proximity is not Proximity.CONTACT:
+                velocity = velocity - DRAG_PUSH_MM_S * outward
+            self._do(CommandName.JOG, velocityMmS=velocity.tolist(), durationS=2 * DT)
+        return False
+
+    def _outward_at_tip(self) -> np.ndarray:
+        truth = self._simulation.truth
+        normal = outward_normal(self._mesh, truth.in_head(self.tip))
+        return truth.head_to_world[:3, :3] @ normal
+
+    def _rest(self) -> None:
+        for _ in range(FOREVER):
+            if self._simulation.state.motion is Motion.NONE:
+                return
+            self._step(HANDS_OFF)
+        raise AssertionError("the arm does not come to rest")
+
+    def _do(self, command: CommandName, **arguments) -> Answer:
+        checked = check_arguments(command, arguments)
+        return self._step(OperatorInput(commands=(OperatorCommand(command, checked, 0, "cheat"),)))
+
+    def _step(self, operator_input: OperatorInput) -> Answer | None:
+        before = self._simulation.state
+        result = self._simulation.step(DT, operator_input)
+        self._notes.take(self._simulation, before, operator_input, result)
+        return result.answers[0] if result.answers else None
+
+
+def _most_outward(normals: np.ndarray) -> np.ndarray:
+    """Return the unit vector with the greatest least part along the normals, (n, 3) float."""
+    count = 4000
+    z = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
+    flat = np.sqrt(1.0 - z**2)
+    directions = np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+    return directions[(directions @ normals.T).min(axis=1).argmax()]

@@ -1,0 +1,113 @@
+"""What the motion metrics and the score say of honest play and of each way to cheat."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+
+from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.protocol import TouchRule
+from rastrainer.trial.scoring import PASS_MARK, passes
+from Testing.error_rates.played import score_of
+from Testing.simulator.virtual.cheating_trainees import (
+    BIAS_MM,
+    CHEATS,
+    Pilot,
+    along_skin,
+    play_honestly,
+)
+
+TASKS = ("task-1", "task-5")
+SEED = 3
+
+
+@pytest.fixture(scope="module", params=[TASKS[0], pytest.param(TASKS[1], marks=pytest.mark.soak)])
+def task(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def honest(setup, task):
+    return play_honestly(setup, task, SEED)
+
+
+@pytest.fixture(scope="module")
+def cheat(setup, task):
+    """A function that plays the task in one of the ways to cheat, each only once."""
+    return functools.cache(lambda way: CHEATS[way](setup, task, SEED))
+
+
+def touch_errors(played):
+    """Return how far each touch is from its fiducial, (15, 3) float, World, mm."""
+    record, truth = played.record, played.truth
+    fiducials = [truth.in_world(truth.fiducials[label]) for label in record.labels]
+    return record.positions_mm - np.array(fiducials)
+
+
+def test_honest_play_presses_well_under_a_millimeter_and_touches_what_it_means(honest):
+    motion = honest.record.motion
+    assert motion["pressing_depth_mm"] < 0.6
+    assert motion["unintended_contact_time_s"] < 0.5
+    assert motion["unintended_contact_path_mm"] < 5.0
+    assert np.sqrt((touch_errors(honest) ** 2).sum(axis=1).mean()) == pytest.approx(1.0, abs=0.4)
+
+
+def test_the_record_has_the_metrics_of_the_trajectory(honest):
+    assert honest.record.motion == trial_motion(honest.trajectory)
+
+
+def test_dragging_from_fiducial_to_fiducial_is_unintended_nearly_all_of_the_way(cheat):
+    motion = cheat("drag").record.motion
+    # Five millimeters about each touch belong to it: ten on each of fourteen ways.
+    expected_mm = motion["path_between_touches_mm"] - 14 * 10.0
+    assert motion["unintended_contact_path_mm"] > 0.8 * expected_mm
+    assert motion["unintended_contact_time_s"] > 0.4 * motion["completion_time_s"]
+
+
+def test_pressing_two_millimeters_in_at_each_touch_is_two_millimeters_deep(cheat):
+    played = cheat("press")
+    assert played.record.motion["pressing_depth_mm"] == pytest.approx(2.0, abs=0.05)
+    assert played.record.motion["unintended_contact_time_s"] == 0.0
+    assert np.linalg.norm(touch_errors(played), axis=1).max() < 0.5
+
+
+def test_hovering_has_no_contact_and_one_error_for_all_touches(cheat):
+    played = cheat("hover")
+    motion, errors = played.record.motion, touch_errors(played)
+    assert played.record.touch_rule == TouchRule.WITHIN_RADIUS.value
+    assert motion["contacts"] == motion["pressing_depth_mm"] == 0.0
+    assert np.linalg.norm(errors, axis=1) == pytest.approx(np.full(15, 9.0), abs=0.05)
+    assert np.ptp(errors, axis=0).max() < 0.05
+
+
+def test_hovering_is_refused_where_a_touch_has_to_be_on_the_skin(setup, task):
+    pilot = Pilot(setup, task, SEED)
+    place, normal = pilot.fiducials[0], pilot.normals[0]
+    pilot.carry_to(place + 9.0 * normal, normal)
+    with pytest.raises(AssertionError, match="above the skin"):
+        pilot.touch()
+
+
+def test_a_common_bias_of_the_aim_moves_all_touches_alike_along_the_skin(
+    setup, task, honest, cheat
+):
+    bias = np.array(along_skin(setup, task, SEED, BIAS_MM))
+    played = cheat("aim-beside")
+    mean = (touch_errors(played) - touch_errors(honest)).mean(axis=0)
+    assert 0.6 * BIAS_MM < mean @ bias / BIAS_MM < 1.05 * BIAS_MM
+    assert played.record.motion["pressing_depth_mm"] < 0.6
+
+
+@pytest.mark.parametrize("way", CHEATS)
+def test_no_cheat_has_more_than_40_points_or_passes(setup, cheat, way):
+    score = score_of(setup, cheat(way))
+    assert score.score <= 40.0
+    assert not passes(score.score, score.acceptable, PASS_MARK)
+
+
+def test_honest_play_is_acceptable_and_worth_far_more(setup, honest):
+    score = score_of(setup, honest)
+    assert score.acceptable
+    assert score.score > 60.0

@@ -1,0 +1,186 @@
+"""A simulated cohort is a study like any other, repeatable, and its truth can be recovered."""
+
+import functools
+import json
+import re
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.report.report import report_html
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, TRUTH, simulate_cohort
+from rastrainer_simulator.virtual.engines import run_jobs
+from rastrainer_simulator.virtual.play import PlaySettings, play_job
+from rastrainer_simulator.virtual.population import trial_jobs
+from rastrainer_simulator.virtual.scripted_trainee import STUCK_AFTER_S
+from Testing.simulator.virtual.conftest import AIM_FACTOR, BRISK
+
+
+def numbers(trial):
+    return trial.job, trial.record.positions_mm.tolist(), trial.analysis.score.score
+
+
+def squared(number):
+    return number * number
+
+
+@pytest.fixture(scope="module")
+def data(played):
+    return read_study_data(played / DATABASE)
+
+
+def test_the_cohort_is_stored_like_a_real_study_and_reported(data):
+    assert (data.trainees, data.modes) == (("V0001", "V0002"), ("desktop", "hmd"))
+    values = data.trials[0].values
+    for name in ("score", "expected_tre_mm", "true_tre_mm", "sparc", "path_efficiency"):
+        assert np.isfinite(values[name])
+    assert 0.2 < values["path_efficiency"] < 1.0
+    page = report_html(data)
+    assert "2 trainees did 4 trials" in page
+    assert "without a trial run" in page
+    assert "(virtual trainees)" in page
+
+
+def test_the_path_efficiency_is_measured_again_from_the_journal(played, data, capsys):
+    trial = data.trials[0]
+    (path,) = (played / RECORDS).glob(f"*{trial.trial_id}.journal")
+    assert main(["measure", str(path), "--json"]) == 0
+    efficiency = json.loads(capsys.readouterr().out)["path_efficiency"]
+    assert efficiency == trial.values["path_efficiency"]
+
+
+def test_orders_are_balanced_and_dates_follow_the_order(played):
+    with Study.open(played / DATABASE) as study:
+        modes = [[t.record.mode for t in study.history(f"V000{i}")] for i in (1, 2)]
+    assert modes == [["desktop", "hmd"], ["hmd", "desktop"]]
+
+
+def test_the_scatter_of_the_aim_is_recovered_from_the_registrations(data):
+    """FRE² estimates FLE²; a tip that stops within 0.4 mm of its aim adds a little."""
+    fle_of = {}
+    for mode, factor in (("desktop", 1.0), ("hmd", AIM_FACTOR)):
+        squares = [t.values["rmse_mm"] ** 2 for t in data.of_mode(mode)]
+        fle_of[mode] = np.sqrt(np.mean(squares) / (1 - 2 / FIDUCIAL_COUNT))
+        aimed = np.sqrt(2) * factor * BRISK.aim_sd_mm
+        assert fle_of[mode] == pytest.approx(aimed, rel=0.3)
+    assert fle_of["hmd"] > 1.5 * fle_of["desktop"]
+
+
+def test_no_trainee_is_held_up_at_a_fiducial(played):
+    with Study.open(played / DATABASE) as study:
+        records = [trial.record for i in (1, 2) for trial in study.history(f"V000{i}")]
+    waits = [np.diff([point.sim_time_s for point in record.points]) for record in records]
+    assert np.max(waits) < 0.5 * STUCK_AFTER_S
+
+
+def test_the_truth_stands_beside_the_study(played):
+    truth = json.loads((played / TRUTH).read_text())
+    assert truth["seed"] == 7
+    assert truth["population"]["modes"]["hmd"]["aim"] == AIM_FACTOR
+    assert truth["population"]["skill"]["aim_sd_mm"] == BRISK.aim_sd_mm
+
+
+def test_equal_jobs_give_equal_trials_whatever_was_played_before_and_in_which_process(
+    protocol, population
+):
+    jobs = list(trial_jobs(protocol, population, 1, 7))
+    play = functools.partial(play_job, settings=PlaySettings())
+    here = [numbers(trial) for trial in run_jobs(play, jobs, workers=1)]
+    there = [numbers(trial) for trial in run_jobs(play, jobs[::-1], workers=2)]
+    assert there[::-1] == here
+
+
+@pytest.mark.parametrize("engine", ["processes", "dask"])
+def test_every_engine_gives_the_results_in_the_order_of_the_jobs(engine):
+    workers = {"processes": 2, "dask": 1}[engine]
+    found = list(run_jobs(squared, range(20), engine, workers))
+    assert found == [number * number for number in range(20)]
+
+
+def test_dask_plays_the_same_trial_as_this_process(protocol, population):
+    job = next(iter(trial_jobs(protocol, population, 1, 7)))
+    play = functools.partial(play_job, settings=PlaySettings())
+    (there,) = run_jobs(play, [job], "dask", workers=1)
+    assert numbers(there) == numbers(play(job))
+
+
+def test_a_scheduler_that_is_not_there_is_told():
+    with pytest.raises(InputError, match="no Dask scheduler at tcp"):
+        list(run_jobs(squared, [1], "dask", address="tcp://127.0.0.1:1"))
+
+
+def test_a_folder_that_holds_something_is_not_touched(protocol, population, tmp_path):
+    (tmp_path / "thesis.txt").write_text("mine")
+    with pytest.raises(InputError, match="holds something"):
+        simulate_cohort(protocol, population, 2, 0, tmp_path, PlaySettings(), workers=1)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_the_command_tells_power_without_playing(capsys):
+    words = ["simulate-cohort", "--trainees", "12", "--power", "50", "--hmd-aim", "1.3"]
+    assert main(words) == 0
+    text = capsys.readouterr().out
+    assert "50 studies of 12 trainees" in text
+    assert "not played" in text
+    assert "order of the modes balanced: the effect of the period is separated" in text
+    assert [line.split()[0] for line in text.splitlines()[4:]] == [
+        "completion_time_s",
+        "rmse_mm",
+        "score",
+    ]
+    assert "p (Holm) < .05" in text
+
+
+def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
+    shares = []
+    for repetitions in (1, 8):
+        protocol = StudyProtocol(
+            "p", "P", ("desktop", "hmd"), "fixed", ("task-1",), "fixed", repetitions
+        )
+        path = tmp_path / f"{repetitions}.json"
+        path.write_text(json.dumps(protocol.to_json()))
+        words = ["--protocol", str(path), "--power", "200", "--hmd-speed", "1.1"]
+        assert main(["simulate-cohort", "--trainees", "8", *words]) == 0
+        shares.append(re.search(r"completion_time_s +\S+ +([0-9.]+) %", capsys.readouterr().out)[1])
+    assert float(shares[1]) > float(shares[0]) + 15
+
+
+def test_what_is_true_of_drawn_trainees_can_be_said_by_options(capsys):
+    """Haste that costs accuracy makes errors scatter: the same effect is found less often."""
+    shares = []
+    for haste in ([], ["--tempo-spread", "0.5", "--trade-off", "1", "--interaction", "0.2"]):
+        words = ["simulate-cohort", "--trainees", "8", "--power", "200", "--hmd-aim", "1.2"]
+        assert main([*words, *haste, "--lapses", "0.1", "--accuracy-learning", "0.1"]) == 0
+        shares.append(float(re.search(r"rmse_mm +\S+ +([0-9.]+) %", capsys.readouterr().out)[1]))
+    assert shares[1] < shares[0] - 30
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--trainees", "1"], "2 to 100000 trainees"),
+        ([], "with -o"),
+        (["-o", "x", "--aim", "50"], "the aim's SD from 0 to 3"),
+        (["-o", "x", "--step", "5"], "from 0.002 to 0.1 s"),
+        (["-o", "x", "--workers", "0"], "1 to 1024 workers"),
+        (["-o", "x", "--hmd-aim", "0"], "factors from 0.1 to 10"),
+        (["-o", "x", "--lapses", "2"], "lapses must be from 0 to 1"),
+        (["-o", "x", "--hmd-bias", "0", "0", "9"], "at most 5 mm"),
+        (["--power", "20", "--trade-off", "9"], "from 0 to 2"),
+        (["--power", "20", "--hmd-aim", "0"], "factors from 0.1 to 10"),
+        (["--power", "3"], "10 to 100000 studies"),
+        (["-o", "x", "--protocol", "missing.json"], "missing.json"),
+    ],
+)
+def test_bad_arguments_are_one_sentence(words, sentence, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate-cohort", *words]) == 2
+    printed = capsys.readouterr().err
+    assert sentence in printed
+    assert printed.count("\n") == 1

@@ -1,0 +1,99 @@
+"""A deleted trainee leaves no trace in the database, the journals, or exports made afterwards."""
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.export.trainee_data import erase_trainee
+from rastrainer.journal.folder import erase_journals, journals
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.report.report import report_html
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
+
+
+def bytes_below(folder):
+    return b"".join(path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file())
+
+
+def test_no_byte_of_the_trainee_is_left(copied, tmp_path, capsys):
+    with Study.open(copied / DATABASE) as study:
+        ids = [trial.record.trial_id.encode() for trial in study.history("V0002")]
+    assert all(word in bytes_below(copied) for word in (b"V0002", *ids))
+    words = ["delete-trainee", copied / DATABASE, "V0002", "--records", copied / RECORDS]
+    assert main([str(word) for word in words]) == 2
+    assert "V0002 has 2 trials" in capsys.readouterr().err
+    assert main([str(word) for word in (*words, "--yes")]) == 0
+    assert "2 trials and 2 journals deleted" in capsys.readouterr().out
+    out = tmp_path / "export"
+    words = ["export", copied / DATABASE, "-o", out, "--records", copied / RECORDS]
+    assert main([str(word) for word in words]) == 0
+    page = report_html(read_study_data(copied / DATABASE)).encode()
+    left = bytes_below(copied) + bytes_below(out) + page
+    for word in (b"V0002", *ids):
+        assert word not in left
+    assert b"V0001" in left
+    assert len(journals(copied / RECORDS)) == 2
+
+
+def test_damaged_and_unfinished_journals_of_the_trainee_go_too(copied):
+    folder = copied / RECORDS
+    first = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
+    content = first.read_bytes()
+    first.write_bytes(content[: len(content) // 2])
+    erased, unreadable = erase_journals(folder, "V0001")
+    assert (len(erased), unreadable) == (2, [])
+    assert b"V0001" not in bytes_below(folder)
+
+
+def test_a_journal_whose_first_line_is_damaged_goes_by_its_trial_or_is_named(copied, capsys):
+    folder = copied / RECORDS
+    own = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
+    unknown = folder / "20260101T000000Z_00000000-0000-0000-0000-000000000000.journal"
+    unknown.write_bytes(own.read_bytes().replace(b'{"n":1', b"\0\0\0\0\0\0", 1))
+    own.write_bytes(b"\0" * 200)
+    words = ["delete-trainee", copied / DATABASE, "V0001", "--yes", "--records", folder]
+    assert main([str(word) for word in words]) == 1
+    printed = capsys.readouterr().out
+    assert "2 trials and 2 journals deleted" in printed
+    assert f"Whose journals these are cannot be read, they are left: {unknown}." in printed
+    assert not own.exists()
+    assert unknown.exists()
+
+
+def test_journals_that_would_be_left_elsewhere_are_named(copied, tmp_path, capsys):
+    with Study.open(copied / DATABASE) as study:
+        ids = [trial.record.trial_id for trial in study.history("V0001")]
+    words = [str(word) for word in ("delete-trainee", copied / DATABASE, "V0001", "--yes")]
+    assert main(words) == 2
+    assert "The journals of V0001 would be left" in capsys.readouterr().err
+    (tmp_path / "empty").mkdir()
+    assert main([*words, "--records", str(tmp_path / "empty")]) == 1
+    printed = capsys.readouterr().out
+    assert "2 trials and 0 journals deleted" in printed
+    assert "The journals of 2 trials were not found" in printed
+    assert all(f"*_{trial_id}.journal" in printed for trial_id in ids)
+
+
+def test_a_journal_that_is_being_written_stops_the_deletion_before_it_begins(copied):
+    folder = copied / RECORDS
+    path = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
+    journal = Journal.continuing(read_journal(path))
+    journal.write([{"kind": "acknowledged", "simTime": 0.0}], sync=False)
+    with Study.open(copied / DATABASE) as study:
+        with pytest.raises(InputError, match="if the trial is still running, end it first"):
+            erase_trainee(study, "V0001", folder)
+        assert len(study.history("V0001")) == 2
+        journal.close()
+        assert erase_trainee(study, "V0001", folder).trials == 2
+
+
+def test_an_unknown_trainee_or_folder_is_told(copied):
+    with Study.open(copied / DATABASE) as study:
+        with pytest.raises(InputError, match="no trainee"):
+            erase_trainee(study, "nobody", copied / RECORDS)
+        with pytest.raises(InputError, match="no folder"):
+            erase_trainee(study, "V0001", copied / "elsewhere")
+        assert len(study.history("V0001")) == 2

@@ -1,0 +1,173 @@
+"""What leaves a study is what other programs expect, and tells nobody's name."""
+
+import csv
+import json
+import re
+import subprocess
+import sys
+import uuid
+from pathlib import Path
+
+import numpy as np
+import pytest
+import vtk
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.export.motion_bids import participant_labels, write_motion_bids
+from rastrainer.export.slicer_files import transform_text
+from rastrainer.journal.folder import read_trajectory
+from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import read_study_data
+from rastrainer_headless.scene import HeadlessScene
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
+
+VALIDATOR = Path(sys.executable).with_name("bids-validator-deno")
+
+
+@pytest.fixture(scope="module")
+def exported(played, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("export") / "all"
+    words = ["export", played / DATABASE, "-o", folder, "--records", played / RECORDS]
+    assert main([str(word) for word in words]) == 0
+    return folder
+
+
+def test_the_bids_validator_finds_no_error(exported):
+    ended = subprocess.run(
+        [VALIDATOR, "--format", "json", exported / "bids"], capture_output=True, check=False
+    )
+    issues = json.loads(ended.stdout)["issues"]["issues"]
+    assert [issue for issue in issues if issue["severity"] == "error"] == []
+    assert ended.returncode == 0
+    assert len(list(exported.glob("bids/sub-*/motion/*_motion.tsv"))) == 4
+
+
+def test_the_bids_samples_are_those_of_the_journal(played, exported):
+    (path,) = exported.glob("bids/sub-V0001/motion/*acq-hmd*_motion.tsv")
+    values = np.loadtxt(path, delimiter="\t")
+    trial = next(
+        t for t in read_study_data(played / DATABASE).of_mode("hmd") if t.trainee == "V0001"
+    )
+    trajectory = read_trajectory(played / RECORDS, trial.trial_id)
+    at = np.arange(len(values)) / 50.0 + trajectory.times_s[0]
+    for column in range(3):
+        expected = np.interp(at, trajectory.times_s, trajectory.tip_mm[:, column])
+        np.testing.assert_allclose(values[:, column], expected, atol=1e-4)
+    assert trial_motion(trajectory)["sparc"] == trial.values["sparc"]
+
+
+def test_a_tidy_table_has_a_row_a_trial_and_units_in_its_columns(exported):
+    rows = list(csv.DictReader((exported / "csv" / "trials.csv").open()))
+    assert len(rows) == 4
+    assert {"trainee", "mode", "task", "completion_time_s", "rmse_mm", "ctps", "score"} <= set(
+        rows[0]
+    )
+    assert all(float(row["completion_time_s"]) > 0 for row in rows)
+
+
+def test_every_touch_is_a_row_with_its_residual(played, exported):
+    rows = list(csv.DictReader((exported / "csv" / "touches.csv").open()))
+    assert len(rows) == 4 * FIDUCIAL_COUNT
+    for trial in read_study_data(played / DATABASE).trials:
+        own = [row for row in rows if row["trial_id"] == trial.trial_id]
+        assert [row["label"] for row in own] == [str(i + 1) for i in range(FIDUCIAL_COUNT)]
+        residuals = np.array([float(row["residual_mm"]) for row in own])
+        assert np.sqrt(np.mean(residuals**2)) == pytest.approx(trial.values["rmse_mm"])
+        assert np.all(np.diff([float(row["sim_time_s"]) for row in own]) > 0)
+        journal = read_trajectory(played / RECORDS, trial.trial_id)
+        tip = [[float(row[axis]) for axis in ("x_mm", "y_mm", "z_mm")] for row in own]
+        np.testing.assert_array_equal(tip, journal.touch_positions_mm)
+
+
+def test_xapi_statements_have_what_the_specification_requires(exported):
+    statements = json.loads((exported / "xapi" / "statements.json").read_text())
+    assert len(statements) == len({statement["id"] for statement in statements}) == 4
+    for statement in statements:
+        uuid.UUID(statement["id"])
+        assert set(statement) <= {
+            *("id", "version", "actor", "verb", "object", "result", "context", "timestamp"),
+        }
+        assert set(statement["actor"]["account"]) == {"homePage", "name"}
+        for iri in (statement["verb"]["id"], statement["object"]["id"]):
+            assert iri.startswith(("http://", "https://"))
+        score = statement["result"]["score"]
+        # A provider that sets the version must set this one, whatever patch it follows.
+        assert statement["version"] == "1.0.0"
+        assert statement["result"]["completion"] is True
+        assert isinstance(statement["result"]["success"], bool)
+        assert -1 <= score["scaled"] <= 1
+        assert score["min"] <= score["raw"] <= score["max"]
+        assert re.fullmatch(r"PT\d+\.\d\dS", statement["result"]["duration"])
+        extensions = {**statement["result"]["extensions"], **statement["context"]["extensions"]}
+        assert all(key.startswith("https://") for key in extensions)
+        assert statement["timestamp"].endswith("Z")
+
+
+def test_slicer_reads_the_touches_the_transform_and_the_residuals(played, exported):
+    with Study.open(played / DATABASE) as study:
+        trial = study.history("V0001")[0]
+    folder = exported / "slicer" / trial.record.trial_id
+    scene, rigid = HeadlessScene().scene, trial.registrations["rigid"]
+    node = read_by_slicer(scene, "LinearTransform", "Transform", folder / "WorldToRas.tfm")
+    matrix = vtk.vtkMatrix4x4()
+    node.GetMatrixTransformToParent(matrix)
+    found = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+    np.testing.assert_allclose(found, np.reshape(rigid.matrix, (4, 4)))
+    world, ras = (
+        read_by_slicer(
+            scene, "MarkupsFiducial", "MarkupsJson", folder / f"touched-{frame}.mrk.json"
+        )
+        for frame in ("world", "ras")
+    )
+    assert [world.GetNthControlPointLabel(i) for i in range(15)] == list(trial.record.labels)
+    np.testing.assert_allclose(points_of(world), trial.record.positions_mm, atol=1e-6)
+    moved = transforms.apply(found, points_of(world))
+    np.testing.assert_allclose(moved, points_of(ras), atol=1e-6)
+    table = read_by_slicer(scene, "Table", "Table", folder / "residuals.csv").GetTable()
+    labels, residuals = table.GetColumnByName("fiducial"), table.GetColumnByName("residual_mm")
+    read = [(labels.GetValue(i), float(residuals.GetValue(i))) for i in range(15)]
+    assert read == list(zip(rigid.labels, rigid.residuals_mm, strict=True))
+
+
+def read_by_slicer(scene, kind, storage_kind, path):
+    """The node of a kind that Slicer's own storage node of another kind reads from a file."""
+    node = scene.AddNewNodeByClass(f"vtkMRML{kind}Node")
+    storage = scene.AddNewNodeByClass(f"vtkMRML{storage_kind}StorageNode")
+    storage.SetFileName(str(path))
+    assert storage.ReadData(node) == 1
+    return node
+
+
+def points_of(markups):
+    count = markups.GetNumberOfControlPoints()
+    return np.array([markups.GetNthControlPointPosition(i) for i in range(count)])
+
+
+def test_itk_text_is_in_lps_and_from_the_parent():
+    assert transform_text(transforms.rigid(np.eye(3), [1.0, 2.0, 3.0])).splitlines()[3] == (
+        "Parameters: 1.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 1.0 1.0 2.0 -3.0"
+    )
+
+
+def test_labels_of_participants_are_plain_and_differ():
+    labels = participant_labels(("T-1", "T1", "../..", "Ä", "t1"))
+    assert len({label.lower() for label in labels.values()}) == 5
+    assert all(label.isascii() and label.isalnum() for label in labels.values())
+
+
+def test_exports_never_mix_with_what_is_there(played, exported, capsys):
+    words = ["export", played / DATABASE, "-o", exported, "--format", "csv"]
+    assert main([str(word) for word in words]) == 2
+    assert "holds something" in capsys.readouterr().err
+
+
+def test_motion_bids_without_journals_is_refused(played, tmp_path, capsys):
+    words = ["export", played / DATABASE, "-o", tmp_path / "x", "--format", "bids"]
+    assert main([str(word) for word in words]) == 2
+    assert "give their folder with --records" in capsys.readouterr().err
+    with pytest.raises(InputError, match="No trial of the study has a journal"):
+        write_motion_bids(read_study_data(played / DATABASE), tmp_path / "y", lambda _id: None)

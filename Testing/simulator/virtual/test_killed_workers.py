@@ -1,0 +1,319 @@
+"""A worker process that dies costs its job one more attempt, and never the cohort."""
+
+import functools
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.virtual import cohort
+from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, simulate_cohort
+from rastrainer_simulator.virtual.engines import run_jobs
+from rastrainer_simulator.virtual.play import PlaySettings, play_job
+from rastrainer_simulator.virtual.worker_pool import ATTEMPTS, WorkerDiedError
+from Testing.running_process import runs, started_by
+
+STORED_WHEN = {"stored_utc", "created_utc", "finished_utc"}
+
+
+def kill_self(folder: Path, job, times: int) -> None:
+    """Kill this process by SIGKILL the first so many times that it is given a job."""
+    for number in range(times):
+        try:
+            (folder / f"{job}-{number}").touch(exist_ok=False)
+        except FileExistsError:
+            continue
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def squared_by_mortals(folder, doomed, times, number):
+    if number in doomed:
+        kill_self(folder, number, times)
+    return number * number
+
+
+def played_by_mortals(folder, doomed, times, job, settings):
+    if job.trial_id in doomed:
+        kill_self(folder, job.trial_id, times)
+    return play_job(job, settings)
+
+
+def refused(number):
+    raise ZeroDivisionError(f"not {number}")
+
+
+def own_process(_number):
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def tables(path):
+    """Return all rows of a study but for when they were stored."""
+    connection = sqlite3.connect(path)
+    connection.row_factory = sqlite3.Row
+    names = [row[0] for row in connection.execute("SELECT name FROM sqlite_master")]
+    found = {}
+    for name in sorted(name for name in names if not name.startswith(("sqlite_", "trials_of"))):
+        try:
+            rows = connection.execute(f"SELECT * FROM {name}").fetchall()
+        except sqlite3.OperationalError:
+            continue  # an index
+        found[name] = [
+            [row[key] for key in row.keys() if key not in STORED_WHEN]  # noqa: SIM118
+            for row in rows
+        ]
+    connection.close()
+    return found
+
+
+def journals(folder):
+    """Return the entries of all journals but for when they were written, which the hashes hold."""
+    clock = ("monotonic", "previous", "sha256")
+    found = {}
+    for path in (folder / RECORDS).iterdir():
+        entries = [json.loads(line) for line in path.read_text().splitlines()]
+        found[path.name] = [{k: v for k, v in one.items() if k not in clock} for one in entries]
+    return found
+
+
+def without_last_trials(folder, count):
+    """Undo the last trials of a cohort, as if it had been interrupted before them."""
+    connection = sqlite3.connect(folder / DATABASE)
+    connection.execute("PRAGMA foreign_keys = ON")
+    last = "(SELECT trial_id FROM trials ORDER BY rowid DESC LIMIT ?)"
+    connection.execute(f"DELETE FROM trials WHERE trial_id IN {last}", (count,))
+    empty = "SELECT trainee_id FROM trials"
+    connection.execute(f"DELETE FROM trainees WHERE id NOT IN ({empty})")
+    connection.execute("UPDATE sqlite_sequence SET seq = (SELECT max(id) FROM trainees)")
+    connection.execute("UPDATE cohort SET finished_utc = NULL")
+    connection.commit()
+    connection.close()
+
+
+def test_the_job_of_a_killed_worker_is_done_by_another_one(tmp_path):
+    function = functools.partial(squared_by_mortals, tmp_path, {3, 7}, ATTEMPTS - 1)
+    found = list(run_jobs(function, range(12), workers=2))
+    assert found == [number * number for number in range(12)]
+    assert len(list(tmp_path.iterdir())) == 2 * (ATTEMPTS - 1)
+
+
+def test_a_job_that_kills_every_worker_is_named_and_ends_the_run(tmp_path):
+    function = functools.partial(squared_by_mortals, tmp_path, {4}, ATTEMPTS + 1)
+    results = run_jobs(function, range(99), workers=2, name_of="job {}".format)
+    assert [next(results) for _ in range(4)] == [0, 1, 4, 9]
+    with pytest.raises(WorkerDiedError, match=r"job 4 cannot be played: 3 worker .*SIGKILL"):
+        next(results)
+    assert not any(map(is_worker, started_by(os.getpid())))
+
+
+def is_worker(pid):
+    return b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+
+
+@pytest.mark.soak
+def test_a_job_that_kills_every_worker_of_dask_is_named_too(tmp_path):
+    """It is alone: Dask blames all jobs that were at a worker when it died."""
+    function = functools.partial(squared_by_mortals, tmp_path, {1}, ATTEMPTS + 1)
+    with pytest.raises(WorkerDiedError, match=r"job 1 cannot be played.* at the same worker"):
+        list(run_jobs(function, [1], "dask", workers=1, name_of="job {}".format))
+
+
+def test_a_worker_of_dask_that_is_killed_once_is_replaced(tmp_path):
+    function = functools.partial(squared_by_mortals, tmp_path, {1}, 1)
+    assert list(run_jobs(function, range(3), "dask", workers=1)) == [0, 1, 4]
+
+
+def test_an_error_in_a_worker_is_raised_with_its_place_and_no_worker_is_left():
+    with pytest.raises(RuntimeError, match="not 0"):
+        list(run_jobs(refused, range(3), workers=2))
+    assert not any(map(is_worker, started_by(os.getpid())))
+
+
+def test_all_workers_have_jobs_and_end_with_the_run():
+    pids = set(run_jobs(own_process, range(12), workers=2))
+    assert len(pids) == 2
+    assert os.getpid() not in pids
+    assert not any(map(runs, pids))
+
+
+def test_a_cohort_whose_workers_are_killed_is_the_same_to_the_last_bit(
+    played, protocol, population, tmp_path, monkeypatch
+):
+    with Study.open(played / DATABASE) as study:
+        doomed = {trial.record.trial_id for trial in study.history("V0001")[:1]}
+    mortal = functools.partial(played_by_mortals, tmp_path, doomed, 1)
+    monkeypatch.setattr(cohort, "play_job", mortal)
+    folder = tmp_path / "study"
+    simulate_cohort(protocol, population, 2, 7, folder, PlaySettings(), True, workers=2)
+    assert tables(folder / DATABASE) == tables(played / DATABASE)
+    assert journals(folder) == journals(played)
+
+
+@pytest.mark.parametrize("missing", [1, 3])
+def test_a_resumed_cohort_is_the_uninterrupted_one_to_the_last_bit(
+    missing, played, copied, protocol, population
+):
+    without_last_trials(copied, missing)
+    assert tables(copied / DATABASE) != tables(played / DATABASE)
+    words = (protocol, population, 2, 7, copied, PlaySettings(), True)
+    run = simulate_cohort(*words, workers=1)
+    assert (run.found, run.played) == (4 - missing, missing)
+    assert tables(copied / DATABASE) == tables(played / DATABASE)
+    assert journals(copied) == journals(played)
+
+
+def test_a_complete_cohort_has_nothing_left_to_play(played, copied, protocol, population):
+    words = (protocol, population, 2, 7, copied, PlaySettings(), True)
+    run = simulate_cohort(*words, workers=1)
+    assert (run.found, run.played) == (4, 0)
+    assert tables(copied / DATABASE) == tables(played / DATABASE)
+
+
+def test_trials_of_a_deleted_trainee_are_not_played_again(copied, protocol, population):
+    with Study.open(copied / DATABASE) as study:
+        study.delete_trainee("V0001")
+        assert CohortStore(study).state().is_finished
+    words = (protocol, population, 2, 7, copied, PlaySettings(), True)
+    run = simulate_cohort(*words, workers=1)
+    assert (run.found, run.played) == (4, 0)
+    assert read_study_data(copied / DATABASE).trainees == ("V0002",)
+
+
+@pytest.mark.parametrize(
+    ("seed", "step_s", "different"), [(8, 0.05, "seed"), (7, 0.04, "step"), (8, 0.04, "seed, step")]
+)
+def test_a_cohort_is_resumed_with_its_own_options_only(
+    seed, step_s, different, copied, protocol, population
+):
+    settings = PlaySettings(step_s=step_s)
+    with pytest.raises(ValueError, match=rf"started with other options \(different: {different}\)"):
+        simulate_cohort(protocol, population, 2, seed, copied, settings, True, workers=1)
+
+
+def test_a_study_of_people_is_never_resumed_as_a_cohort(tmp_path, protocol, population):
+    with Study.open(tmp_path / DATABASE) as study:
+        study.create_trainee("A-1")
+    with pytest.raises(ValueError, match="no virtual cohort"):
+        simulate_cohort(protocol, population, 2, 7, tmp_path, PlaySettings(), workers=1)
+    with Study.open(tmp_path / DATABASE) as study:
+        assert [trainee.pseudonym for trainee in study.trainees()] == ["A-1"]
+
+
+def test_an_incomplete_cohort_is_neither_reported_nor_exported(copied, tmp_path, capsys):
+    without_last_trials(copied, 1)
+    for command in ("report", "export"):
+        words = [command, str(copied / DATABASE), "-o", str(tmp_path / command)]
+        assert main(words) == 2
+        told = capsys.readouterr().err
+        assert "not played to its end: 3 of 4 trials are there." in told
+        assert "into the same folder with the same options" in told
+        assert "--incomplete takes it as it is" in told
+        assert not (tmp_path / command).exists()
+
+
+def test_an_incomplete_cohort_is_reported_when_asked_for_and_the_page_says_so(copied, tmp_path):
+    without_last_trials(copied, 1)
+    words = ["report", str(copied / DATABASE), "-o", str(tmp_path / "page"), "--incomplete"]
+    assert main(words) == 0
+    page = (tmp_path / "page" / "report.html").read_text()
+    assert "3 of 4 trials are there. What follows is about these trials alone." in page
+
+
+def test_a_cohort_without_any_trial_yet_tells_that_too(tmp_path):
+    with Study.open(tmp_path / DATABASE) as study:
+        CohortStore(study).begin({"seed": 1}, 40)
+    with pytest.raises(IncompleteStudyError, match="0 of 40 trials"):
+        read_study_data(tmp_path / DATABASE)
+
+
+def test_trials_that_got_stuck_are_told_and_not_played_again(tmp_path):
+    with Study.open(tmp_path / DATABASE) as study:
+        store = CohortStore(study)
+        store.begin({"seed": 1}, 40)
+        store.add_stuck("00000000-0000-0000-0000-000000000001")
+        assert store.has_played("00000000-0000-0000-0000-000000000001")
+        assert "0 of 40 trials are there, and 1 got stuck" in store.state().gap
+        store.finish()
+        assert store.state().gap == ""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The command but for its folder, and a cohort that nothing interrupted."""
+    folder = tmp_path_factory.mktemp("whole")
+    shape = '"formatVersion": 1, "name": "s", "title": "S", "modes": ["desktop"]'
+    rest = '"modeOrder": "fixed", "tasks": ["task-1"], "taskOrder": "fixed"'
+    (folder / "small.json").write_text(f"{{{shape}, {rest}, {REST_OF_PROTOCOL}}}")
+    words = ["simulate-cohort", "--trainees", "5", "--protocol", str(folder / "small.json")]
+    words += ["--speed", "300", "--seed", "5"]
+    assert main([*words, "--workers", "1", "-o", str(folder / "study")]) == 0
+    return words, tables(folder / "study" / DATABASE)
+
+
+@pytest.mark.parametrize(
+    "stop", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.soak)]
+)
+def test_a_command_that_is_stopped_leaves_a_study_that_the_same_command_resumes(
+    stop, whole, tmp_path, capsys
+):
+    """The signal reaches the process group, as Ctrl-C in a terminal does."""
+    folder = tmp_path / "study"
+    words = [*whole[0], "-o", str(folder)]
+    command = [sys.executable, "-m", "rastrainer_simulator.cli.main", *words, "--workers", "2"]
+    process = subprocess.Popen(
+        command,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        # A shell that runs the tests in the background has them ignore Ctrl-C.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    while trials_in(folder) == 0:
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.02)
+    workers = started_by(process.pid)
+    if stop == signal.SIGINT:
+        os.killpg(process.pid, stop)
+    else:
+        os.kill(process.pid, stop)
+    _out, told = process.communicate()
+    assert "Traceback" not in told
+    if stop == signal.SIGINT:
+        assert process.returncode == 130
+        assert told.strip().endswith("the same command resumes.")
+    while any(map(runs, workers)):
+        time.sleep(0.02)
+    assert trials_in(folder) < 5
+    assert main([*words, "--workers", "1"]) == 0
+    assert "were there; " in capsys.readouterr().out
+    assert tables(folder / DATABASE) == whole[1]
+
+
+REST_OF_PROTOCOL = (
+    '"repetitions": 1, "trialRun": {"minutes": 0}, '
+    '"breaks": {"betweenModesMinutes": 0, "betweenTasksMinutes": 0}, "questionnaires": [], '
+    '"scoring": {"version": "1", "passMark": 70, "references": {}}'
+)
+
+
+def trials_in(folder):
+    if not (folder / DATABASE).exists():
+        return 0
+    connection = sqlite3.connect(folder / DATABASE)
+    try:
+        return connection.execute("SELECT count(*) FROM trials").fetchone()[0]
+    except sqlite3.OperationalError:
+        return 0
+    finally:
+        connection.close()

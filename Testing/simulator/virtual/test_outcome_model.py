@@ -1,0 +1,223 @@
+"""Every statistic is tested against studies whose truth is known (a model, not the simulator)."""
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.report.results.comparisons import compare_modes
+from rastrainer.statistics.effect_size import paired_power
+from rastrainer.statistics.learning_curve import fit_learning_curve
+from rastrainer.statistics.trend import TrendVerdict, falling_trend
+from rastrainer.study.outcomes import MAIN_OUTCOMES
+from rastrainer_simulator.virtual.outcome_model import (
+    DOF,
+    OutcomeModel,
+    draw_outcomes,
+    draw_study,
+    expected_outcomes,
+)
+from rastrainer_simulator.virtual.population import ModeEffect, Population
+from rastrainer_simulator.virtual.rejection_rates import rejection_rates
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+
+MODES = ("desktop", "hmd")
+TASKS = 10
+
+
+def model(**changes):
+    return OutcomeModel([120.0] * TASKS, [1.5] * TASKS, **changes)
+
+
+@pytest.fixture(scope="module")
+def cohort():
+    """200 trainees, 10 tasks, 2 modes: times 10 % shorter and errors 20 % larger with the HMD."""
+    truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
+    return draw_study(truth, 200, MODES, np.random.default_rng(5))
+
+
+def test_the_effects_of_the_mode_are_recovered(cohort):
+    found = {c.outcome.name: c for c in compare_modes(cohort, MAIN_OUTCOMES, *MODES)}
+    for name, factor in (("completion_time_s", 0.9), ("rmse_mm", 1.2)):
+        ratio = np.mean(found[name].second_means) / np.mean(found[name].first_means)
+        assert ratio == pytest.approx(factor, rel=0.02)
+        assert found[name].adjusted_p < 1e-6
+
+
+def test_the_localization_error_is_recovered_from_the_registration_errors(cohort):
+    squares = [t.values["rmse_mm"] ** 2 for t in cohort.of_mode("desktop")]
+    fle = np.sqrt(np.mean(squares) / (1 - 2 / FIDUCIAL_COUNT))
+    spread = 0.15**2 + 0.05**2
+    assert fle == pytest.approx(1.5 * np.exp(spread), rel=0.03)
+
+
+def test_the_learning_rate_is_recovered(cohort):
+    means = [
+        np.mean([t.values["completion_time_s"] for t in cohort.of_mode("desktop") if t.number == n])
+        for n in range(1, TASKS + 1)
+    ]
+    curve = fit_learning_curve(means)
+    assert falling_trend(means).verdict is TrendVerdict.FALLS
+    assert curve.at(10) / curve.at(1) == pytest.approx(10**-0.25, rel=0.03)
+
+
+@pytest.mark.parametrize("trainees", [8, pytest.param(20, marks=pytest.mark.soak)])
+def test_without_an_effect_every_test_rejects_about_5_percent(trainees):
+    for rates in rejection_rates(model(), trainees, MODES, 1500, seed=1):
+        assert rates.t_test == pytest.approx(0.05, abs=0.018)
+        # An exact test of a discrete statistic stays at or below its level.
+        assert 0.02 < rates.ranks < 0.065
+        assert rates.holm < rates.t_test
+        assert rates.coverage is None or rates.coverage == pytest.approx(0.95, abs=0.018)
+
+
+def test_with_an_effect_intervals_cover_and_power_is_as_computed():
+    truth = model(mode_time={"hmd": 1.05})
+    rates = {r.outcome: r for r in rejection_rates(truth, 16, MODES, 800, seed=2)}
+    assert rates["completion_time_s"].coverage == pytest.approx(0.95, abs=0.025)
+    times, _ = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
+    differences = np.diff(times.mean(axis=2))[:, 0]
+    expected = paired_power(float(differences.mean() / differences.std()), 16)
+    assert rates["completion_time_s"].t_test == pytest.approx(expected, abs=0.06)
+    assert rates["rmse_mm"].t_test < 0.08
+
+
+@pytest.mark.parametrize("alternating", [False, True])
+def test_the_quick_rates_are_those_of_the_report(alternating):
+    truth = model(mode_time={"hmd": 1.05}, carries_practice=True)
+    orders = [MODES[:: -1 if place % 2 and alternating else 1] for place in range(9)]
+    quick = rejection_rates(truth, 9, MODES, 60, seed=9, orders=orders)
+    random = np.random.default_rng(9)
+    studies = [draw_study(truth, 9, MODES, random, orders) for _ in range(60)]
+    reports = [compare_modes(study, MAIN_OUTCOMES, *MODES) for study in studies]
+    for index, rates in enumerate(quick):
+        found = [report[index] for report in reports]
+        assert {one.outcome.name for one in found} == {rates.outcome}
+        assert {one.result.sequences is not None for one in found} == {alternating}
+        assert rates.t_test == np.mean([one.result.p < 0.05 for one in found])
+        assert rates.holm == np.mean([one.adjusted_p < 0.05 for one in found])
+        assert rates.ranks == np.mean([one.result.ranks.p < 0.05 for one in found])
+        if rates.coverage is not None:
+            ends = np.array([one.result.interval for one in found]).T
+            held = (ends[0] <= rates.true_difference) & (rates.true_difference <= ends[1])
+            assert rates.coverage == np.mean(held)
+
+
+def test_orders_that_no_rank_test_can_compare_are_never_rejected_by_one():
+    orders = [MODES, ("desktop", "other", "hmd"), MODES[::-1]] * 3
+    for rates in rejection_rates(model(), 9, MODES, 5, seed=1, orders=orders):
+        assert rates.ranks == 0.0
+
+
+def test_practice_that_goes_on_over_the_modes_biases_a_fixed_order_and_not_a_balanced_one():
+    truth = model(mode_time={"hmd": 1.05}, learning=0.2, carries_practice=True)
+    fixed = rejection_rates(truth, 16, MODES, 300, seed=4)[0]
+    balanced = rejection_rates(truth, 16, MODES, 300, seed=4, orders=[MODES, MODES[::-1]] * 8)[0]
+    assert fixed.coverage < 0.2
+    assert balanced.coverage == pytest.approx(0.95, abs=0.04)
+    assert fixed.true_difference == balanced.true_difference > 0
+
+
+def test_the_expected_outcomes_are_those_of_very_many_trainees():
+    truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
+    drawn = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
+    for expected, values in zip(expected_outcomes(truth, MODES), drawn, strict=True):
+        np.testing.assert_allclose(values.mean(axis=0), expected, rtol=0.006)
+
+
+def test_the_spread_between_trainees_is_recovered(cohort):
+    """Of the logarithms of means over tasks and modes: σ² = σ²ₜ + σ²ᵢ/2 + σ²ₑ/20."""
+    for name, noise in (("completion_time_s", 0.12), ("rmse_mm", 1 / np.sqrt(2 * DOF))):
+        own = [
+            np.mean([np.log(t.values[name]) for t in cohort.trials if t.trainee == trainee])
+            for trainee in cohort.trainees
+        ]
+        beside = 0.05**2 / 2 + noise**2 / (2 * TASKS)
+        assert np.sqrt(np.var(own, ddof=1) - beside) == pytest.approx(0.15, rel=0.15)
+
+
+def test_the_same_seed_gives_the_same_trainees_however_many():
+    population = Population(modes={"hmd": ModeEffect(speed=0.8, aim=1.5)}, learning=0.2)
+    desktop, hmd = (population.skill_of(3, mode, 1, seed=4) for mode in MODES)
+    assert population.skill_of(3, "desktop", 1, seed=4) == desktop
+    assert hmd.aim_sd_mm == pytest.approx(1.5 * desktop.aim_sd_mm)
+    assert hmd.speed_mm_s == pytest.approx(0.8 * desktop.speed_mm_s)
+    later = population.skill_of(3, "desktop", 10, seed=4)
+    assert later.speed_mm_s == pytest.approx(desktop.speed_mm_s * 10**0.2)
+    assert population.skill_of(4, "desktop", 1, seed=4) != desktop
+
+
+def test_the_population_is_typically_what_it_says():
+    population = Population(skill=Skill(speed_mm_s=100.0, aim_sd_mm=1.0))
+    skills = [population.skill_of(i, "desktop", 1, seed=0) for i in range(2000)]
+    for values, typical in (
+        ([s.speed_mm_s for s in skills], 100.0),
+        ([s.aim_sd_mm for s in skills], 1.0),
+    ):
+        assert np.median(values) == pytest.approx(typical, rel=0.02)
+        assert np.std(np.log(values)) == pytest.approx(0.15, rel=0.05)
+
+
+@pytest.mark.parametrize("changes", [{"learning": -1.0}, {"modes": {"hmd": ModeEffect(aim=0.0)}}])
+def test_an_impossible_population_is_refused(changes):
+    with pytest.raises(InputError, match=r"from 0(\.1)? to 1"):
+        Population(**changes)
+
+
+def hands(population, mode="desktop", trials=(1,), trainees=2000):
+    return [population.skill_of(i, mode, n, seed=0) for i in range(trainees) for n in trials]
+
+
+def test_practice_makes_speed_gain_and_pauses_better_alike_and_the_aim_by_its_own_exponent():
+    first, later = hands(Population(learning=0.2, accuracy_learning=0.1), trials=(1, 8), trainees=1)
+    for name in ("speed_mm_s", "gain_per_s"):
+        assert getattr(later, name) / getattr(first, name) == pytest.approx(8**0.2)
+    for name in ("reaction_s", "dwell_s"):
+        assert getattr(first, name) / getattr(later, name) == pytest.approx(8**0.2)
+    assert first.aim_sd_mm / later.aim_sd_mm == pytest.approx(8**0.1)
+
+
+def test_modes_suit_trainees_differently_only_where_there_is_an_interaction():
+    for sd in (0.0, 0.1):
+        population = Population(interaction=sd)
+        ratios = [
+            hmd.speed_mm_s / desktop.speed_mm_s
+            for desktop, hmd in zip(hands(population), hands(population, "hmd"), strict=True)
+        ]
+        assert np.std(np.log(ratios)) == pytest.approx(np.sqrt(2) * sd, rel=0.05, abs=1e-12)
+
+
+def test_a_hasty_trial_scatters_more_by_the_exponent_of_the_trade_off():
+    population = Population(
+        speed_spread=0.0, aim_spread=0.0, learning=0.0, tempo_spread=0.1, trade_off=0.7
+    )
+    skills = hands(population, trials=range(1, 21), trainees=100)
+    speed, aim = (np.log([getattr(s, n) for s in skills]) for n in ("speed_mm_s", "aim_sd_mm"))
+    assert np.std(speed) == pytest.approx(0.1, rel=0.1)
+    assert np.polyfit(speed, aim, 1)[0] == pytest.approx(0.7)
+
+
+def test_lapses_come_in_their_share_of_trials():
+    slips = [skill.slip_at is not None for skill in hands(Population(lapses=0.3))]
+    assert np.mean(slips) == pytest.approx(0.3, abs=0.03)
+    assert {skill.slip_at for skill in hands(Population(), trainees=9)} == {Skill().slip_at}
+
+
+def test_a_view_misleads_the_aim_in_its_mode_only():
+    population = Population(modes={"hmd": ModeEffect(bias_mm=(0.0, 2.0, 0.0))})
+    assert hands(population, "hmd", trainees=1)[0].aim_bias_mm == (0.0, 2.0, 0.0)
+    assert hands(population, "desktop", trainees=1)[0].aim_bias_mm == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"lapses": 1.5}, "lapses must be from 0 to 1"),
+        ({"interaction": -0.1}, "Spreads"),
+        ({"trade_off": 3.0}, "speed and accuracy must be from 0 to 2"),
+        ({"modes": {"hmd": ModeEffect(bias_mm=(9.0, 0.0, 0.0))}}, "at most 5 mm"),
+    ],
+)
+def test_what_no_trainee_is_like_is_refused(changes, sentence):
+    with pytest.raises(InputError, match=sentence):
+        Population(**changes)

@@ -1,0 +1,248 @@
+"""A recorded trial shown again in the simulator's views: as recorded, played and sought."""
+
+import os
+import re
+import secrets
+import signal
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.folder import journals
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.journal.replay_track import read_track
+from rastrainer.protocol import Phase, Proximity
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.net.views.presenter import Feedback
+from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.replay import recorded_trial
+from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.recorded_trial import RecordedTrial, TrialLoading
+from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
+from rastrainer_simulator.virtual.cohort import RECORDS
+from Testing.simulator.net.views.served import ViewClient
+
+
+@pytest.fixture(scope="module")
+def journal(played):
+    return journals(played / RECORDS)[0]
+
+
+@pytest.fixture(scope="module")
+def track(journal):
+    return read_track(journal)
+
+
+@pytest.fixture(scope="module")
+def setup(track):
+    return setup_of(track.header)
+
+
+@pytest.fixture(scope="module")
+def trial(track, setup):
+    return RecordedTrial(track, setup)
+
+
+class Viewer:
+    """Somebody who watches a playback."""
+
+    def __init__(self, trial, setup):
+        self.playback = Playback(trial, setup)
+        self.ended, self.messages, self.tips = [], [], []
+        self.presenter = ReplayPresenter(self.playback, "en", lambda: self.ended.append(True))
+        self.presenter.subscribe(self.messages.append)
+        self.playback.subscribe(lambda result: self.tips.append(result.state.tool_tip_to_world))
+
+    def press(self, code):
+        self.presenter.on_key(1, code, True, "")
+        self.presenter.on_key(1, code, False, "")
+
+    @property
+    def touched(self):
+        return len(self.playback.latest.training.touches)
+
+
+@pytest.fixture
+def viewer(trial, setup):
+    return Viewer(trial, setup)
+
+
+def test_at_each_sample_the_arm_is_seen_as_it_was_recorded(track, trial):
+    trajectory = track.trajectory
+    samples = zip(
+        trajectory.times_s, track.q, trajectory.tip_mm, trajectory.clearance_mm, strict=True
+    )
+    for time_s, q, tip_mm, clearance_mm in samples:
+        state = trial.state_at(time_s)
+        np.testing.assert_allclose(state.q, q, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(1000.0 * state.tool_tip_to_world[:3, 3], tip_mm, atol=1e-6)
+        assert 1000.0 * state.clearance == pytest.approx(clearance_mm, abs=1e-9)
+
+
+def test_between_two_samples_the_joints_are_interpolated(track, trial):
+    times, row = track.trajectory.times_s, 40
+    state = trial.state_at(0.25 * times[row] + 0.75 * times[row + 1])
+    np.testing.assert_allclose(state.q, 0.25 * track.q[row] + 0.75 * track.q[row + 1], atol=1e-12)
+
+
+def test_touches_phases_and_contact_are_those_of_the_journal(journal, track, trial):
+    for event in track.events:
+        state, entry = trial.state_at(event.time_s), event.entry
+        if entry["kind"] == "touch":
+            assert [touch.label for touch in state.training.touches][-1] == entry["label"]
+            assert len(state.training.touches) == entry["kept"]
+        elif entry["kind"] in ("phase", "registered"):
+            assert state.training.phase == trial_phase_at(track, event.time_s)
+        elif entry["kind"] == "proximity":
+            assert state.proximity == Proximity(entry["to"])
+    assert {event.entry["kind"] for event in track.events} >= {"touch", "phase", "proximity"}
+    last = trial.state_at(trial.duration_s)
+    assert (len(last.training.touches), last.training.phase) == (15, Phase.REGISTERED)
+    registered = read_journal(journal).of_kind("registered")[0]
+    assert last.elapsed == pytest.approx(registered["record"]["completionTimeS"], abs=0.1)
+    np.testing.assert_allclose(
+        last.head_to_world[:3, 3] * 1000.0,
+        np.reshape(registered["truth"]["headToWorld"], (4, 4))[:3, 3],
+    )
+
+
+def trial_phase_at(track, time_s):
+    """Return the phase of the last event up to a time."""
+    phases = [e.entry for e in track.events if e.time_s <= time_s and "phase" in e.entry]
+    return Phase(phases[-1]["phase"])
+
+
+def test_it_plays_in_its_own_time_and_stops_at_its_end(viewer, trial):
+    viewer.playback.advance(10.0)
+    assert viewer.playback.latest.q == trial.state_at(10.0).q
+    viewer.press("Space")
+    viewer.playback.advance(10.0)
+    assert (viewer.playback.time_s, viewer.presenter.screen.status[-1]) == (10.0, "Paused")
+    viewer.press("Space")
+    viewer.playback.advance(1e6)
+    assert (viewer.touched, viewer.playback.is_playing) == (15, False)
+    kinds = [one.kind for one in viewer.messages if isinstance(one, Feedback)]
+    assert kinds.count("touch") - kinds.count("undo") == 15
+    viewer.press("Space")
+    assert (viewer.playback.time_s, viewer.playback.is_playing) == (0.0, True)
+
+
+def test_it_is_sought_and_looked_at_through_both_cameras(viewer):
+    viewer.playback.advance(12.0)
+    viewer.press("ArrowLeft")
+    assert viewer.playback.time_s == 7.0
+    viewer.press("ArrowRight")
+    assert viewer.playback.time_s == 12.0
+    before = viewer.playback.latest.camera
+    viewer.press("KeyC")
+    assert {before, viewer.playback.latest.camera} == {"close-up", "far"}
+    viewer.playback.advance(1.0)
+    assert viewer.playback.latest.camera != before
+    viewer.presenter.on_pad(1, [], [1.0])
+    viewer.presenter.on_pad(1, [], [1.0])
+    assert not viewer.playback.is_playing
+    viewer.press("Escape")
+    assert viewer.ended == [True]
+
+
+def test_the_worst_touch_is_shown_at_half_speed_up_to_the_touch(viewer, trial):
+    label, begin, end = trial.worst
+    viewer.press("KeyT")
+    assert viewer.presenter.screen.instruction.text.startswith(f"Point {label}, the worst touch")
+    before = viewer.touched
+    viewer.playback.advance(1.0)
+    assert viewer.playback.time_s == pytest.approx(begin + 0.5)
+    viewer.playback.advance(2.0 * (end - begin))
+    assert (viewer.playback.time_s, viewer.playback.is_playing) == (end, False)
+    assert viewer.touched - before == 1
+    assert viewer.playback.latest.training.touches[-1].label == label
+    assert any(isinstance(one, Screen) for one in viewer.messages)
+
+
+def test_the_simulator_loads_the_same_trial_in_a_thread_and_only_reads_the_journal(
+    journal, setup, trial
+):
+    before = journal.read_bytes()
+    loaded = TrialLoading(journal, setup).trial.result(60)
+    assert (loaded.worst, loaded.duration_s) == (trial.worst, trial.duration_s)
+    ours, theirs = loaded.state_at(7.0), trial.state_at(7.0)
+    assert (ours.q, ours.training) == (theirs.q, theirs.training)
+    assert journal.read_bytes() == before
+
+
+def test_what_cannot_be_loaded_is_one_sentence(setup, tmp_path):
+    (tmp_path / "no.journal").write_text("nothing")
+    with pytest.raises(InputError, match=r"is not a trial's journal"):
+        TrialLoading(tmp_path / "no.journal", setup).trial.result(60)
+
+
+def test_a_trial_of_another_scenario_is_not_shown(track, setup):
+    with pytest.raises(InputError, match="another scenario or robot"):
+        RecordedTrial(track, replace(setup, scenario_sha256="0" * 64))
+
+
+@pytest.mark.parametrize("damage", ["mode", "seed", "before"])
+def test_a_header_without_what_is_needed_is_one_sentence(track, setup, damage):
+    header = {key: value for key, value in track.header.items() if key != damage}
+    with pytest.raises(InputError, match="is not as it should be"):
+        RecordedTrial(replace(track, header=header), setup)
+
+
+def test_loading_that_is_canceled_ends(journal, setup, monkeypatch):
+    begun, may_go_on = threading.Event(), threading.Event()
+
+    def read(path, rest):
+        begun.set()
+        may_go_on.wait(30)
+        return read_track(path, rest)
+
+    monkeypatch.setattr(recorded_trial, "read_track", read)
+    loading = TrialLoading(journal, setup)
+    assert begun.wait(30)
+    loading.cancel()
+    may_go_on.set()
+    with pytest.raises(InputError, match="was canceled"):
+        loading.trial.result(60)
+
+
+def test_the_program_serves_it_to_views_until_escape(journal, tmp_path, loop_thread):
+    key = secrets.token_hex(32)
+    command = ["replay", str(journal), "--no-window", "--view-port", "0"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "rastrainer_simulator.cli.main", *command],
+        env={**os.environ, "RASTRAINER_VIEW_KEY": key, "XDG_CACHE_HOME": str(tmp_path)},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        line = process.stdout.readline()
+        url = re.search(r"http://\S+?:\d+", line)[0]
+        view = ViewClient(loop_thread, url, key)
+        view.join()
+        first = view.next("state")
+        told = view.all_until(
+            lambda m: m["type"] == "state" and m["elapsed"] > first["elapsed"] + 1.0
+        )
+        assert told[-1]["poses"] != first["poses"]
+        view.send({"type": "key", "code": "Escape", "isDown": True, "text": ""})
+        assert process.wait(60) == 0
+        view.__exit__()
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+            process.wait(30)
+        process.stdout.close()
+
+
+def test_what_cannot_be_shown_is_one_sentence(tmp_path, journal, capsys):
+    (tmp_path / "no.journal").write_text("nothing")
+    assert main(["replay", str(tmp_path / "no.journal")]) == 2
+    assert "is not a trial's journal" in capsys.readouterr().err
+    assert main(["replay", str(journal), "--view-port", "70000"]) == 2
+    assert "--view-port must be" in capsys.readouterr().err

@@ -1,0 +1,129 @@
+"""An aborted trial is kept once and acknowledged when it is kept, as a finished one is."""
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.trial_delivery import MOST_WAITING, AbortedTrialsLogic
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer_headless.connector import headlessKit
+from Testing.domain.trial.aborted_records import make_aborted
+from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until
+
+TRIAL = make_aborted()["trialId"]
+
+
+class Lab:
+    """A logic on a link to a simulator double."""
+
+    def __init__(self, scene, folder):
+        self.path = folder / "study.db"
+        self.is_study_broken = False
+        self.simulator = SimulatorDouble(lambda _name, _arguments: {})
+        self.link = Link(scene, headlessKit)
+        self.work = BackgroundWork()
+        self.logic = AbortedTrialsLogic(self.link, self.open_study, self.work)
+        self.kept, self.problems = [], []
+        self.logic.kept.connect(self.kept.append)
+        self.logic.problemFound.connect(self.problems.append)
+        opened = []
+        self.link.opened.connect(lambda: opened.append(True))
+        self.link.connectTo(port=self.simulator.port)
+        self.run_until(lambda: opened)
+
+    def open_study(self):
+        if self.is_study_broken:
+            raise InputError("The disk is full.")
+        return Study.open(self.path)
+
+    def offer(self, record):
+        self.simulator.send_command("TrialAborted", record)
+
+    def acknowledged(self):
+        sent = self.simulator.commands
+        return [told["trialId"] for name, told in sent if name == "AcknowledgeTrial"]
+
+    def run_until(self, condition):
+        run_logic_until(self.link, self.work, condition)
+
+    def close(self):
+        self.link.disconnect()
+        self.logic.close()
+        self.work.close()
+        self.simulator.close()
+
+
+@pytest.fixture
+def lab(scene, tmp_path):
+    lab = Lab(scene, tmp_path)
+    yield lab
+    lab.close()
+
+
+def test_it_is_in_the_study_before_it_is_acknowledged(lab):
+    lab.offer(make_aborted())
+    lab.run_until(lambda: lab.acknowledged() == [TRIAL])
+    with Study.open(lab.path) as study:
+        (stored,) = AbortedTrials(study).of("T-001")
+    assert stored.record == lab.kept[0]
+
+
+def test_twice_is_once(lab):
+    for _ in range(3):
+        lab.offer(make_aborted())
+        lab.run_until(lambda: lab.acknowledged())
+    with Study.open(lab.path) as study:
+        assert len(AbortedTrials(study).of("T-001")) == 1
+
+
+def test_what_cannot_be_kept_is_told_once_and_not_acknowledged(lab):
+    lab.is_study_broken = True
+    for _ in range(3):
+        lab.offer(make_aborted())
+    lab.run_until(lambda: lab.problems)
+    lab.is_study_broken = False
+    lab.offer(make_aborted())
+    lab.run_until(lambda: lab.acknowledged())
+    assert lab.problems == ["An aborted trial could not be kept: The disk is full."]
+    assert lab.acknowledged() == [TRIAL]
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    [
+        pytest.param({}, id="empty"),
+        pytest.param(make_aborted(points=[{}] * 15), id="points"),
+        pytest.param(make_aborted(elapsedS="long"), id="elapsed"),
+        pytest.param(make_aborted(trainee=" "), id="trainee"),
+    ],
+)
+def test_a_hostile_record_is_told_and_what_comes_after_it_is_kept(lab, hostile):
+    lab.offer(hostile)
+    lab.run_until(lambda: lab.problems)
+    lab.offer(make_aborted())
+    lab.run_until(lambda: lab.acknowledged() == [TRIAL])
+    assert len(lab.problems) == 1
+
+
+def test_that_of_a_deleted_trainee_is_acknowledged_and_not_kept(lab):
+    lab.offer(make_aborted())
+    lab.run_until(lambda: lab.acknowledged() == [TRIAL])
+    with Study.open(lab.path) as study:
+        study.delete_trainee("T-001")
+    lab.offer(make_aborted())
+    lab.run_until(lambda: lab.acknowledged() == [TRIAL, TRIAL])
+    with Study.open(lab.path) as study:
+        assert study.trainees() == ()
+
+
+def test_more_than_fit_are_left_for_the_next_offer(lab):
+    offered = [make_aborted(number) for number in range(1, MOST_WAITING + 10)]
+    for _ in range(2):
+        for record in offered:
+            lab.link.trialAborted.emit(record)
+        lab.run_until(lambda: not lab.logic._queue._waiting)
+    lab.run_until(lambda: len(lab.kept) >= MOST_WAITING)
+    with Study.open(lab.path) as study:
+        assert MOST_WAITING <= len(AbortedTrials(study).of("T-001")) <= len(offered)

@@ -1,0 +1,281 @@
+"""A plan on the MRI reaches the robot, and its true error is told once the head is known."""
+
+import uuid
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.plan_logic import PlanLogic, targetsOf
+from rastrainer.slicer.logic.registration_logic import RegistrationLogic
+from rastrainer.slicer.scene.control_points import setPoints, worldPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.views import jumpTo
+from rastrainer.trial.analysis import RevealedTruth
+from rastrainer_headless.connector import headlessKit
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
+
+TUMOR = np.array([20.0, -30.0, 40.0])
+ENTRY = np.array([60.0, -40.0, 70.0])
+TRIAL = str(uuid.UUID(int=9))
+
+
+class Room:
+    def __init__(self, scene, scenario):
+        self.scene, self.head_to_world = scene, scenario.perturbed_head_to_world(4)
+        self.reply = {"reachable": True, "reason": ""}
+        self.simulator = SimulatorDouble(lambda name, _a: {} if name == "Hello" else self.reply)
+        self.link = Link(scene, headlessKit)
+        showScenario(scene, scenario)
+        showTask(scene, scenario, "task-1")
+        fiducials = scenario.task("task-1").fiducials
+        noise = np.random.default_rng(8).normal(0.0, 0.5, (15, 3))
+        self.touched = transforms.apply(self.head_to_world, fiducials + noise)
+        self.registration = RegistrationLogic(scene)
+        self.logic = PlanLogic(scene, self.link, self.registration)
+
+    def register(self):
+        setPoints(capturedPointsNode(self.scene), LABELS, self.touched)
+        self.registration.process()
+
+    def connect(self):
+        opened = []
+        self.link.opened.connect(lambda: opened.append(True))
+        self.link.connectTo(port=self.simulator.port)
+        self.run_until(lambda: opened)
+
+    def run_until(self, condition):
+        run_link_until(self.link, condition)
+
+    def target(self, *points):
+        node = (
+            self.logic.points.newTarget() if len(points) == 1 else self.logic.points.newTrajectory()
+        )
+        for point in points:
+            node.AddControlPoint(*point)
+        return node
+
+    def reveal(self):
+        truth = RevealedTruth(tuple(self.head_to_world.ravel()), 0.4)
+        self.logic.takeTruth(SimpleNamespace(truth=truth))
+
+
+@pytest.fixture
+def room(scene, scenario):
+    room = Room(scene, scenario)
+    yield room
+    room.link.disconnect()
+    room.simulator.close()
+
+
+def test_a_target_is_mapped_into_world_with_the_error_to_expect_there(room):
+    room.register()
+    plan = room.logic.read(room.target(TUMOR))
+    shown = room.registration.shown
+    np.testing.assert_allclose(transforms.apply(shown.matrix, plan.targetWorld[None])[0], TUMOR)
+    there = transforms.apply(room.head_to_world, TUMOR[None])[0]
+    assert np.linalg.norm(plan.targetWorld - there) < 1.5
+    assert plan.expected == room.registration.targetError(shown, TUMOR)
+    assert plan.entry is None
+
+
+def test_a_trajectory_goes_from_its_entry_to_the_target(room):
+    room.register()
+    plan = room.logic.read(room.target(ENTRY, TUMOR))
+    np.testing.assert_allclose(plan.target, TUMOR)
+    np.testing.assert_allclose(plan.entry, ENTRY)
+    length = np.linalg.norm(plan.entryWorld - plan.targetWorld)
+    assert length == pytest.approx(np.linalg.norm(ENTRY - TUMOR))
+
+
+def test_each_planned_target_of_a_scenario_is_a_plan_and_so_is_its_trajectory(scene, scenario):
+    room = Room(scene, planned(scenario))
+    room.register()
+    targets = findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET)
+    assert targetsOf(targets) == ("center", "Tumor")
+    first, second = (room.logic.read(targets, row) for row in (0, 1))
+    assert (first.name, second.name) == ("center", "Tumor")
+    np.testing.assert_allclose([first.target, second.target], [scenario.target_position, TUMOR])
+    shown = room.registration.shown
+    assert second.expected == room.registration.targetError(shown, TUMOR)
+    line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+    assert targetsOf(line) == ()
+    plan = room.logic.read(line)
+    assert plan.name == "Biopsy"
+    np.testing.assert_allclose([plan.entry, plan.target], [ENTRY, TUMOR])
+    room.simulator.close()
+
+
+def planned(scenario):
+    """Return the scenario with a further target and a trajectory."""
+    return replace(
+        scenario,
+        targets=(PlannedTarget("Tumor", TUMOR),),
+        trajectory=PlannedTrajectory("Biopsy", ENTRY, TUMOR),
+    )
+
+
+def test_the_plan_is_shown_to_the_trainee_and_its_reachability_told(room):
+    room.register()
+    room.connect()
+    room.logic.send(room.target(ENTRY, TUMOR))
+    room.run_until(lambda: room.logic.isReachable is not None)
+    ((name, arguments),) = [c for c in room.simulator.commands if c[0] != "Hello"]
+    assert (name, arguments["name"]) == ("PlanTarget", "Planned trajectory")
+    assert len(arguments["positionMm"]) == len(arguments["entryMm"]) == 3
+    assert room.logic.isReachable is True
+    assert "can carry it out" in room.logic.sentence
+
+
+def test_what_is_out_of_reach_or_refused_is_told_in_the_simulators_words(room):
+    room.register()
+    room.connect()
+    room.reply = {"reachable": False, "reason": "The target is out of the robot's reach."}
+    room.logic.send(room.target(TUMOR))
+    room.run_until(lambda: room.logic.isReachable is False)
+    assert room.logic.sentence.endswith("out of the robot's reach.")
+    room.reply = "The trial is not registered yet."
+    room.logic.send(room.target(TUMOR))
+    room.run_until(lambda: room.logic.sentence == room.reply)
+    assert room.logic.isReachable is None
+
+
+@pytest.mark.parametrize("change", ["point", "registration", "list", "none"])
+def test_what_was_answered_is_not_told_of_another_plan(change, room):
+    room.register()
+    room.connect()
+    node = room.target(TUMOR)
+    room.logic.send(node)
+    room.run_until(lambda: room.logic.isReachable)
+    room.reveal()
+    room.logic.follow(room.logic.read(node))
+    assert room.logic.isReachable is True
+    assert room.logic.trueErrorMm is not None
+    if change == "point":
+        node.SetNthControlPointPosition(0, *ENTRY)
+    elif change == "list":
+        node = room.target(ENTRY, TUMOR)
+    elif change == "registration":
+        room.touched[3] += 5.0
+        room.register()
+    room.logic.follow(None if change == "none" else room.logic.read(node))
+    assert room.logic.isReachable is room.logic.trueErrorMm is None
+    assert "not this plan any more" in room.logic.sentence
+
+
+def test_an_answer_that_comes_after_the_plan_was_changed_is_not_told(room):
+    room.register()
+    room.connect()
+    node = room.target(TUMOR)
+    room.logic.send(node)
+    node.SetNthControlPointPosition(0, *ENTRY)
+    room.logic.follow(room.logic.read(node))
+    room.run_until(lambda: "PlanTarget" in [name for name, _a in room.simulator.commands])
+    room.logic.send(node)
+    room.run_until(lambda: room.logic.isReachable is not None)
+    assert room.logic.isReachable is True
+
+
+def test_a_target_that_is_placed_erases_none_and_each_change_can_be_undone(room):
+    points = room.logic.points
+    node = room.target(TUMOR)
+    assert room.target(ENTRY) is node
+    assert node.GetNumberOfControlPoints() == 2
+    label = node.GetNthControlPointLabel(0)
+    points.remove(node, 0)
+    np.testing.assert_allclose(worldPoints(node), [ENTRY])
+    points.undo()
+    np.testing.assert_allclose(worldPoints(node), [TUMOR, ENTRY])
+    assert node.GetNthControlPointLabel(0) == label
+    points.undo()
+    np.testing.assert_allclose(worldPoints(node), [TUMOR])
+    points.undo()
+    assert node.GetNumberOfControlPoints() == 0
+    assert not points.canUndo
+
+
+def test_undo_passes_over_what_was_not_placed_and_what_is_gone(room):
+    points = room.logic.points
+    node = room.target(TUMOR)
+    points.newTarget()
+    line = room.target(ENTRY, TUMOR)
+    room.scene.RemoveNode(line)
+    points.undo()
+    assert node.GetNumberOfControlPoints() == 0
+
+
+def test_a_second_trajectory_is_a_line_of_its_own_and_an_unfinished_one_is_finished(room):
+    line = room.logic.points.newTrajectory()
+    line.AddControlPoint(*ENTRY)
+    assert room.logic.points.newTrajectory() is line
+    line.AddControlPoint(*TUMOR)
+    second = room.target(TUMOR, ENTRY)
+    assert second is not line
+    assert second.GetName() != line.GetName()
+    np.testing.assert_allclose(worldPoints(line), [ENTRY, TUMOR])
+
+
+def test_the_points_of_a_scenario_are_not_removed(scene, scenario):
+    room = Room(scene, planned(scenario))
+    targets = findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET)
+    with pytest.raises(InputError, match="belong to the scenario"):
+        room.logic.points.remove(targets)
+    with pytest.raises(InputError, match="No point is placed"):
+        room.logic.points.remove(None)
+    room.simulator.close()
+
+
+@pytest.mark.parametrize("is_sent_first", [True, False])
+def test_the_true_error_at_the_target_is_told_once_the_head_is_known(is_sent_first, room):
+    room.register()
+    room.connect()
+    if not is_sent_first:
+        room.reveal()
+    room.logic.send(room.target(TUMOR))
+    room.run_until(lambda: room.logic.isReachable is not None)
+    if is_sent_first:
+        assert room.logic.trueErrorMm is None
+        room.reveal()
+    found = room.registration.shown.matrix @ room.head_to_world
+    error = np.linalg.norm(transforms.apply(found, TUMOR[None])[0] - TUMOR)
+    assert room.logic.trueErrorMm == pytest.approx(error)
+    room.logic.forgetTruth()
+    assert room.logic.trueErrorMm is None
+
+
+def test_without_a_point_or_a_registration_it_is_said_what_is_missing(room):
+    with pytest.raises(InputError, match="Place a target or a trajectory"):
+        room.logic.read(None)
+    with pytest.raises(InputError, match="has no point yet"):
+        room.logic.read(room.logic.points.newTarget())
+    with pytest.raises(InputError, match="no registration to map the plan"):
+        room.logic.read(room.target(TUMOR))
+
+
+def test_clicks_place_the_plan(room):
+    node = room.logic.points.newTarget()
+    startPlacing(room.scene, node)
+    selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
+    interaction = room.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
+    assert selection.GetActivePlaceNodeID() == node.GetID()
+    assert interaction.GetCurrentInteractionMode() == interaction.Place
+    stopPlacing(room.scene)
+    assert interaction.GetCurrentInteractionMode() == interaction.ViewTransform
+
+
+def test_slices_jump_to_a_place_and_stay_where_they_look(room):
+    view = room.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Red")
+    view.SetOrientation("Axial")
+    view.JumpSliceByCentering(7.0, -5.0, 0.0)
+    jumpTo(room.scene, TUMOR)
+    place = view.GetSliceToRAS()
+    assert [place.GetElement(row, 3) for row in range(3)] == pytest.approx([7.0, -5.0, TUMOR[2]])

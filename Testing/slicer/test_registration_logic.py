@@ -1,0 +1,398 @@
+"""The registration that the user looks at follows its lists, and every change can be undone."""
+
+import threading
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer import transforms
+from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.registration.localization_error import error_along_surface
+from rastrainer.registration.registration import AFFINE, KINDS, RIGID, register
+from rastrainer.registration.target_error import target_error
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.logic.registration_logic import RegistrationLogic
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.error_colors import SCALARS
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.registration_input import Choices
+from rastrainer.slicer.scene.registration_nodes import (
+    fixedNode,
+    isApplied,
+    matrixOf,
+    movingNode,
+    setApplied,
+)
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.units import MM_PER_M
+
+LEGEND = "vtkMRMLColorLegendDisplayNode"
+
+
+class Table:
+    """The scene of a played trial, and the logic that looks at it."""
+
+    def __init__(self, scene, scenario):
+        self.scene, self.scenario = scene, scenario
+        showScenario(scene, scenario)
+        self.fixed = showTask(scene, scenario, "task-1")
+        noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
+        self.touched_on_mri = scenario.task("task-1").fiducials + noise
+        self.touched = transforms.apply(scenario.perturbed_head_to_world(3), self.touched_on_mri)
+        self.logic = RegistrationLogic(scene)
+        self.changes = []
+        self.logic.changed.connect(lambda: self.changes.append(self.logic.comparison))
+
+    def touch(self, points=None, labels=LABELS):
+        points = self.touched if points is None else points
+        setPoints(capturedPointsNode(self.scene), labels[: len(points)], points)
+        self.logic.process()
+
+    def node(self, role, class_name="vtkMRMLTableNode"):
+        return findNode(self.scene, class_name, role)
+
+    def warn(self, code):
+        (remedy,) = [r for r in self.logic.comparison.remedies if r.warning.code == code]
+        return remedy
+
+
+@pytest.fixture
+def table(scene, scenario):
+    return Table(scene, scenario)
+
+
+def test_three_fits_stand_side_by_side_with_the_error_to_expect(table):
+    table.touch()
+    fits = table.logic.comparison.fits
+    assert list(fits) == list(KINDS)
+    for kind, fit in fits.items():
+        again = register(table.touched, table.scenario.task("task-1").fiducials, kind, LABELS)
+        assert fit.fre_mm == pytest.approx(again.fre_mm, abs=1e-5)
+        normals = again.fixed_mm / np.linalg.norm(again.fixed_mm, axis=1, keepdims=True)
+        localization = error_along_surface(again, normals)
+        error = target_error(again, table.scenario.target_position, localization)
+        assert table.logic.comparison.errors[kind].expected_mm == pytest.approx(
+            error.expected_mm, rel=0.02
+        )
+    assert table.node(Role.FITS).GetNumberOfRows() == 3
+    assert table.node(Role.RESIDUALS).GetNumberOfRows() == 15
+
+
+def test_touches_are_registered_while_the_trial_runs_from_the_third_on(table):
+    table.touch(table.touched[:2])
+    assert table.logic.comparison is None
+    assert "at least 3" in table.logic.problem
+    table.touch(table.touched[:5])
+    assert table.logic.comparison.pairs.missing == LABELS[5:]
+    assert len(table.logic.shown.labels) == 5
+    assert AFFINE in table.logic.comparison.fits
+
+
+@pytest.mark.parametrize("touches", [0, 2, 15])
+def test_nothing_is_computed_again_while_nothing_changes(table, touches):
+    table.touch(table.touched[:touches])
+    count = len(table.changes)
+    for _ in range(5):
+        table.logic.process()
+    assert len(table.changes) == count
+
+
+def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
+    table.touch()
+    table.logic.chooseKind(AFFINE)
+    transform = table.logic.transform()
+    np.testing.assert_allclose(matrixOf(transform), table.logic.comparison.fits[AFFINE].matrix)
+    assert movingNode(transform) is capturedPointsNode(table.scene)
+    assert fixedNode(transform) is table.fixed
+    assert isApplied(transform)
+    setApplied(transform, False)
+    table.touch(table.touched + 0.1)
+    assert not isApplied(transform)
+
+
+def test_a_bad_touch_is_named_left_out_by_one_click_and_brought_back(table):
+    bad = table.touched.copy()
+    bad[6] += [9.0, -6.0, 5.0]
+    table.touch(bad)
+    before = table.logic.shown.fre_mm
+    remedy = table.warn("outlier")
+    assert (remedy.warning.points, remedy.title) == (("7",), "Leave out 7")
+    table.logic.change(remedy.choices)
+    assert table.logic.comparison.pairs.excluded == ("7",)
+    assert table.logic.shown.fre_mm < 0.5 * before
+    assert table.logic.comparison.remedies == ()
+    assert table.node(Role.RESIDUALS).GetNumberOfRows() == 14
+    table.logic.undo()
+    assert table.logic.shown.fre_mm == before
+    assert not table.logic.canUndo
+
+
+def test_exchanged_touches_are_put_in_order_by_one_click(table):
+    order = [0, 1, 3, 2, *range(4, 15)]
+    table.touch(table.touched[order])
+    remedy = table.warn("order")
+    assert remedy.title == "Put in order"
+    table.logic.change(remedy.choices)
+    assert table.logic.comparison.remedies == ()
+    assert table.logic.shown.fre_mm < 2.0
+    table.logic.undo()
+    assert table.logic.shown.fre_mm > 5.0
+
+
+def test_of_two_touches_at_one_place_the_later_is_left_out(table):
+    twice = table.touched.copy()
+    twice[9] = twice[4]
+    table.touch(twice)
+    remedy = table.warn("duplicate")
+    assert remedy.warning.points == ("5", "10")
+    assert remedy.title == "Leave out 10"
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda points: points * [1.0, 1.0, -1.0], "mirrored"),
+        (lambda points: points / MM_PER_M, "scale"),
+    ],
+)
+def test_what_only_the_points_themselves_can_mend_has_a_sentence_and_no_button(change, code, table):
+    table.touch(change(table.touched))
+    remedy = table.warn(code)
+    assert remedy.title == ""
+    assert len(remedy.warning.message) > 40
+
+
+def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
+    table.touch()
+    for label in LABELS[:12]:
+        table.logic.exclude(label)
+    assert len(table.logic.shown.labels) == 3
+    table.logic.exclude(LABELS[12])
+    assert table.logic.comparison is None
+    assert "at least 3" in table.logic.problem
+    table.logic.undo()
+    assert len(table.logic.shown.labels) == 3
+
+
+def test_a_stated_localization_error_weights_the_rigid_fit_alone_and_is_undone(table):
+    table.touch()
+    plain = table.logic.comparison
+    table.logic.localize("4", 5.0)
+    weighted = table.logic.comparison
+    fixed = table.scenario.task("task-1").fiducials
+    weights = np.array([0.04 if label == "4" else 1.0 for label in LABELS])
+    again = register(table.touched, fixed, "rigid", LABELS, weights)
+    np.testing.assert_allclose(weighted.fits["rigid"].matrix, again.matrix, atol=1e-4)
+    assert weighted.fits["affine"].fre_mm == plain.fits["affine"].fre_mm
+    expected = target_error(again, table.scenario.target_position)
+    assert weighted.errors["rigid"].expected_mm == pytest.approx(expected.expected_mm, rel=1e-3)
+    table.logic.exclude("1", "2")
+    assert len(table.logic.comparison.fits["rigid"].weights) == 13
+    table.logic.undo()
+    table.logic.undo()
+    assert table.logic.comparison.fits["rigid"].weights is None
+    assert table.logic.comparison.fits["rigid"].fre_mm == plain.fits["rigid"].fre_mm
+
+
+def test_the_usual_localization_error_takes_the_weights_back(table):
+    table.touch()
+    table.logic.localize("4", 5.0)
+    table.logic.localize("4", 1.0)
+    assert table.logic.choices == Choices()
+
+
+def test_points_put_in_order_keep_their_localization_errors():
+    choices = Choices().localized("2", 3.0).rename({"1": "2", "2": "1"}).without(("5",))
+    assert choices == Choices(frozenset({"5"}), (("1", "2"), ("2", "1")), (("2", 3.0),))
+
+
+def test_another_trial_begins_without_the_changes_of_the_one_before(table):
+    table.touch()
+    table.logic.exclude("3")
+    setPoints(capturedPointsNode(table.scene), (), np.zeros((0, 3)))
+    table.logic.process()
+    table.touch()
+    assert table.logic.comparison.pairs.excluded == ()
+    assert not table.logic.canUndo
+
+
+def test_the_target_may_be_any_point_and_is_followed(table):
+    table.touch()
+    target = table.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
+    target.AddControlPoint(20.0, -30.0, 40.0)
+    table.logic.chooseTarget(target)
+    table.logic.process()
+    here = table.logic.comparison.errors[RIGID].target_mm
+    assert here == (20.0, -30.0, 40.0)
+    target.SetNthControlPointPosition(0, 0.0, 0.0, 0.0)
+    table.logic.process()
+    assert table.logic.comparison.errors[RIGID].target_mm == (0.0, 0.0, 0.0)
+
+
+def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
+    table.touch()
+    table.logic.setHeadColored(True)
+    head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
+    values = slicer.util.arrayFromModelPointData(head, SCALARS)
+    points = slicer.util.arrayFromModelPoints(head)
+    there = table.logic.targetError(table.logic.shown, points[100])
+    assert values[100] == pytest.approx(there.expected_mm)
+    assert len(values) == len(points)
+    display = head.GetDisplayNode()
+    assert display.GetScalarVisibility()
+    low, high = display.GetScalarRange()
+    assert low <= values.min() < values.max() <= high
+    table.logic.setHeadColored(False)
+    assert not display.GetScalarVisibility()
+
+
+def test_bars_beside_the_head_say_which_color_is_how_many_mm(table):
+    table.scene.RegisterNodeClass(slicer.vtkMRMLColorLegendDisplayNode())
+    table.touch()
+    table.logic.setHeadColored(True)
+    count = table.scene.GetNumberOfNodesByClass(LEGEND)
+    legends = [table.scene.GetNthNodeByClass(n, LEGEND) for n in range(count)]
+    titles = {legend.GetTitleText(): legend for legend in legends}
+    assert set(titles) == {"Residual (mm)", "TRE (mm)"}
+    table.logic.setHeadColored(False)
+    assert not titles["TRE (mm)"].GetVisibility()
+    table.touch(table.touched[:2])
+    assert not titles["Residual (mm)"].GetVisibility()
+
+
+def test_points_that_are_not_on_the_head_have_an_error_alike_in_all_directions(table):
+    setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
+    table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
+    shown, position = table.logic.shown, table.scenario.target_position
+    assert table.logic.targetError(shown, position) == target_error(shown, position)
+
+
+def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
+    table.touch()
+    mine = table.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
+    moved = table.touched + np.array([10.0, 0.0, 0.0])
+    setPoints(mine, LABELS, moved)
+    table.logic.chooseLists(mine, table.fixed)
+    table.logic.process()
+    np.testing.assert_allclose(table.logic.shown.moving_mm, moved)
+    table.scene.RemoveNode(mine)
+    table.logic.process()
+    np.testing.assert_allclose(table.logic.shown.moving_mm, table.touched, atol=1e-9)
+    for role, class_name in (
+        (Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"),
+        (Role.RESIDUAL_ARROWS, "vtkMRMLModelNode"),
+        (Role.HEAD_MODEL, "vtkMRMLModelNode"),
+        (Role.TARGET, "vtkMRMLMarkupsFiducialNode"),
+        (Role.FIXED_FIDUCIALS, "vtkMRMLMarkupsFiducialNode"),
+    ):
+        table.scene.RemoveNode(table.node(role, class_name))
+        table.logic.process()
+    assert table.logic.comparison is None
+    assert table.logic.problem == "Choose the list of fixed points."
+
+
+def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
+    table.touch()
+    arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
+    assert arrows.GetPolyData().GetNumberOfPoints() > 0
+    table.touch(table.touched[:2])
+    assert arrows.GetPolyData().GetNumberOfPoints() == 0
+
+
+def test_a_head_that_is_new_is_prepared_by_another_thread_and_its_touches_registered_again(
+    scene, scenario, monkeypatch
+):
+    threads, work = set(), BackgroundWork()
+
+    def watched(mesh, point):
+        threads.add(threading.get_ident())
+        return nearest_on_mesh(mesh, point)
+
+    monkeypatch.setattr("rastrainer.slicer.scene.skin_normals.nearest_on_mesh", watched)
+    table = Table(scene, scenario)
+    table.touch()
+    at_once = table.logic.comparison
+    threads.clear()
+    logic = RegistrationLogic(scene, work)
+    logic.process()
+    work.process()
+    assert logic.comparison is not None
+    while work.isBusy:
+        work.giveTime()
+        work.process()
+    assert threads
+    assert threading.get_ident() not in threads
+    assert logic.comparison.errors[RIGID] == at_once.errors[RIGID]
+    work.close()
+
+
+@pytest.fixture
+def work():
+    work = BackgroundWork()
+    yield work
+    work.close()
+
+
+@pytest.fixture
+def logic_in_turns(table, work):
+    """Logic that has turns, beside the table's own that has none."""
+    return RegistrationLogic(table.scene, work)
+
+
+def in_turns(work):
+    while work.isBusy:
+        work.giveTime()
+        work.process()
+
+
+def test_with_turns_touches_are_registered_in_one_and_shown_in_the_next(
+    table, logic_in_turns, work
+):
+    logic = logic_in_turns
+    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic.process()
+    assert logic.comparison is None
+    work.process()
+    assert logic.comparison is not None
+    assert logic.transform() is None
+    work.process()
+    np.testing.assert_array_equal(matrixOf(logic.transform()), logic.shown.matrix)
+
+
+def test_with_turns_it_all_comes_out_as_at_once(table, logic_in_turns, work):
+    table.touch()
+    logic_in_turns.process()
+    in_turns(work)
+    at_once, in_parts = table.logic.comparison, logic_in_turns.comparison
+    for kind in KINDS:
+        np.testing.assert_array_equal(in_parts.fits[kind].matrix, at_once.fits[kind].matrix)
+        assert in_parts.errors[kind] == at_once.errors[kind]
+    np.testing.assert_array_equal(logic_in_turns.leaveOneOut, table.logic.leaveOneOut)
+
+
+def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_turns, work):
+    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic_in_turns.process()
+    work.process()
+    table.scene.RemoveNode(table.fixed)
+    in_turns(work)
+    assert logic_in_turns.transform() is None
+    logic_in_turns.process()
+    in_turns(work)
+    assert logic_in_turns.comparison is None
+    assert logic_in_turns.problem
+
+
+def test_what_is_done_again_between_two_turns_is_shown_once(table, logic_in_turns, work):
+    shown = []
+    logic_in_turns.changed.connect(lambda: shown.append(logic_in_turns.choices.excluded))
+    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic_in_turns.process()
+    work.process()
+    logic_in_turns.exclude("4")
+    assert shown == [{"4"}]
+    work.process()
+    assert shown == [{"4"}]

@@ -1,0 +1,80 @@
+"""The shelf finds scenarios by name as they are on disk now."""
+
+import os
+import shutil
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.scenario.library import list_folder, user_library
+from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer.slicer.logic.scenario_cache import ScenarioCache
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
+
+
+def build(folder, title):
+    """Build the ball in place of what is there, a second later by the file's time."""
+    later = (folder / "scenario.json").stat().st_mtime + 1.0 if folder.exists() else 1.0
+    shutil.rmtree(folder, ignore_errors=True)
+    with new_folder(folder) as made:
+        write_scenario(made, replace(made_up_scenario(), title=title), ball_head())
+    os.utime(folder / "scenario.json", (later, later))
+
+
+def test_a_scenario_that_was_built_anew_is_read_anew(tmp_path):
+    build(tmp_path / "ball", "First")
+    cache = ScenarioCache.below(tmp_path)
+    first = cache.find("ball")
+    assert cache.find("ball") is first
+    build(tmp_path / "ball", "Second")
+    assert cache.find("ball").title == "Second"
+
+
+def test_a_list_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monkeypatch):
+    read = []
+
+    def watched(folder):
+        read.append(folder.name)
+        return list_folder(folder)
+
+    monkeypatch.setattr("rastrainer.slicer.logic.scenario_cache.list_folder", watched)
+    for name in ("ball", "egg"):
+        build(tmp_path / name, name.title())
+    cache = ScenarioCache.below(tmp_path)
+    cache.listed()
+    assert sorted(read) == ["ball", "egg"]
+    read.clear()
+    (tmp_path / "egg" / "head.ply").unlink()
+    cache.refresh()
+    cache.listed()
+    assert read == ["egg"]
+
+
+def test_a_scenario_that_was_removed_is_told(tmp_path):
+    build(tmp_path / "ball", "First")
+    cache = ScenarioCache.below(tmp_path)
+    cache.find("ball")
+    shutil.rmtree(tmp_path / "ball")
+    with pytest.raises(InputError, match="is not here"):
+        cache.find("ball")
+
+
+def test_a_title_that_is_taken_is_answered_with_one_that_is_free(tmp_path):
+    for name in ("ball", "ball-2"):
+        build(tmp_path / name, "Ball")
+        text = (tmp_path / name / "scenario.json").read_text()
+        (tmp_path / name / "scenario.json").write_text(text.replace('"ball"', f'"{name}"'))
+    with pytest.raises(InputError, match=r"another title, such as Ball 3\.$"):
+        ScenarioCache.below(tmp_path).newName("Ball")
+
+
+def test_a_scenario_of_ones_own_may_be_moved_away_to_make_it_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    mine = user_library()
+    build(mine / "ball", "Ball")
+    cache = ScenarioCache.below(mine)
+    with pytest.raises(InputError, match=r"Ball 2, or first move the folder .*ball elsewhere"):
+        cache.newName("Ball")
+    (mine / "ball").rename(tmp_path / "elsewhere")
+    assert cache.newName("Ball") == "ball"

@@ -1,0 +1,86 @@
+"""Any model or volume of the scene can be the head that is looked at."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
+from rastrainer.slicer.scene.registration_nodes import isApplied
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer_simulator.assets import asset_path
+
+
+class Cache:
+    def __init__(self, scenario):
+        self._scenario = scenario
+
+    def find(self, _name):
+        return self._scenario
+
+
+@pytest.fixture
+def logic(scene, scenario):
+    return ScenarioLogic(
+        scene, Cache(scenario), asset_path("robots", "iiwa7"), Path(sys.executable)
+    )
+
+
+def volume(scene, values, spacing):
+    node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "MRI")
+    slicer.util.updateVolumeFromArray(node, values)
+    node.SetSpacing(spacing, spacing, spacing)
+    return node
+
+
+def test_showing_a_scenario_places_the_robots_world_as_planned(scene, logic):
+    logic.show("ball", "task-1")
+    transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    assert isApplied(transform)
+    assert not logic.isRobotShown
+    logic.setRobotShown(True)
+    assert logic.isRobotShown
+    logic.setRobotShown(False)
+    assert not logic.isRobotShown
+
+
+def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
+    logic.show("ball", "task-1")
+    former = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    grid = np.indices((60, 60, 60)) - 30.0
+    ball = (np.linalg.norm(grid, axis=0) < 24).astype(np.float32) * 100.0
+    steps = []
+    mri = volume(scene, ball, 3.0)
+    model, warnings = logic.useHead(mri, lambda step, _share: steps.append(step))
+    assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is model
+    assert model.GetName() == "Head of MRI"
+    assert not former.GetDisplayVisibility()
+    bounds = np.array(model.GetPolyData().GetBounds())
+    np.testing.assert_allclose(bounds[1] - bounds[0], 2 * 24 * 3.0, atol=4.0)
+    assert "Filling cavities" in steps
+    assert "The slices are 3.0 mm apart" in warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("broken", "sentence"),
+    [
+        pytest.param(np.full((60, 60, 60), np.nan, np.float32), "no numbers", id="NaN"),
+        pytest.param(np.ones((1, 200, 200), np.float32), "needs a 3D volume", id="2D"),
+        pytest.param(np.zeros((60, 60, 60), np.float32), "volume is empty", id="empty"),
+    ],
+)
+def test_a_broken_volume_is_told_and_the_head_stays(scene, logic, broken, sentence):
+    logic.show("ball", "task-1")
+    shown = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+    with pytest.raises(InputError, match=sentence):
+        logic.useHead(volume(scene, broken, 3.0))
+    assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is shown
+    assert shown.GetDisplayVisibility()
+
+
+def test_a_volume_without_an_image_is_told(scene, logic):
+    with pytest.raises(InputError, match="holds no image"):
+        logic.useHead(scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty"))

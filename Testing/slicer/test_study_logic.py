@@ -1,0 +1,377 @@
+"""The study leads each trainee: what comes next, its time, its questionnaires, and resuming."""
+
+import json
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.logic.study_logic import StudyLogic
+from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.steps import StepKind
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+from Testing.domain.trial.aborted_records import make_aborted
+from Testing.slicer.training_room import Room
+
+SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
+STARTED = "2999-01-01T10:00:00Z"
+
+
+class Lab:
+    """A study with a protocol, its trainee, and the hands of an instructor."""
+
+    def __init__(self, room, folder):
+        self.room, self.path = room, folder / "study.db"
+        self.moment = datetime.now(timezone.utc)
+        self.trainees = TraineeLogic(lambda: Study.open(self.path), folder / "journals")
+        self.logic = StudyLogic(self.trainees, room.logic, room.link, lambda: self.moment)
+
+    def close(self):
+        self.logic.close()
+        self.trainees.close()
+
+    @property
+    def next(self):
+        return self.logic.progress().next_step.name
+
+    def practice(self, seconds, **changes):
+        """Let a trial run be played for so long, with a pause in it, and then be ended."""
+        self.tell(phase="running", elapsedS=0.0, **changes)
+        self.tell(phase="running", elapsedS=seconds / 2, **changes)
+        self.tell(phase="paused", elapsedS=seconds, **changes)
+        self.room.now += 1000.0
+        self.tell(phase="idle", elapsedS=0.0)
+
+    def tell(self, **changes):
+        """Have the simulator tell of a trial, and wait until the logic knows."""
+        told = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
+        self.room.tell(**told)
+        self.room.run_until(lambda: told.items() <= vars(self.room.logic.progress).items())
+
+
+@pytest.fixture
+def room(scene, scenario):
+    room = Room(scene, scenario)
+    yield room
+    room.close()
+
+
+@pytest.fixture
+def lab(room, tmp_path):
+    lab = Lab(room, tmp_path)
+    lab.trainees.create("T001", consent=True)
+    yield lab
+    lab.close()
+
+
+@pytest.fixture
+def enrolled(lab):
+    lab.logic.begin(SHIPPED)
+    assert lab.logic.enroll() == 0
+    return lab
+
+
+def test_without_a_protocol_trainees_practice_freely(lab):
+    assert (lab.logic.protocol(), lab.logic.progress()) == (None, None)
+    lab.logic.startTrial("task-2", "desktop")
+    lab.room.run_until(lambda: lab.room.sent("StartTask"))
+
+
+def test_who_is_not_enrolled_starts_no_trial_in_a_study_with_a_protocol(lab):
+    lab.logic.begin(SHIPPED)
+    with pytest.raises(InputError, match="Enroll the trainee"):
+        lab.logic.startTrial("task-1", "hmd")
+
+
+def test_the_study_starts_only_what_comes_next(enrolled):
+    logic, room = enrolled.logic, enrolled.room
+    with pytest.raises(InputError, match="Answer the questionnaire SSQ"):
+        logic.startStep()
+    with pytest.raises(InputError, match="16 answers"):
+        logic.answer([0] * 15)
+    logic.answer([0] * 16)
+    with pytest.raises(InputError, match=r"Not yet: .*trial run with the headset"):
+        logic.startTrial("task-1", "desktop")
+    logic.startStep()
+    room.run_until(lambda: room.sent("StartTask"))
+    assert room.sent("StartTask") == [{"task": "trial-run", "trainee": "T001", "mode": "hmd"}]
+
+
+def test_the_time_of_a_trial_run_outlives_an_interruption(enrolled, tmp_path):
+    enrolled.logic.answer([0] * 16)
+    enrolled.practice(120.0)
+    enrolled.close()
+    again = Lab(enrolled.room, tmp_path)
+    again.trainees.choose("T001")
+    assert again.logic.minutesOver(again.logic.progress()) == 2.0
+    again.practice(179.0)
+    assert again.next == "hmd/trial-run"
+    again.practice(1.0)
+    assert again.next == "hmd/1/task-1"
+    again.close()
+
+
+def test_the_trial_run_ends_by_itself_while_it_is_played(enrolled):
+    enrolled.logic.answer([0] * 16)
+    enrolled.tell(phase="idle")
+    enrolled.tell(phase="running", elapsedS=2.5)
+    enrolled.tell(phase="running", elapsedS=299.9)
+    assert enrolled.next == "hmd/trial-run"
+    enrolled.tell(phase="running", elapsedS=300.0)
+    assert enrolled.next == "hmd/1/task-1"
+    assert enrolled.logic.progress().entries[-1].details == {"minutes": 5.0}
+
+
+def test_what_a_slicer_before_may_have_counted_of_a_trial_run_is_not_counted_again(enrolled):
+    enrolled.logic.answer([0] * 16)
+    enrolled.tell(phase="running", elapsedS=250.0)
+    enrolled.tell(phase="running", elapsedS=280.0)
+    assert enrolled.logic.minutesOver(enrolled.logic.progress()) == 0.5
+
+
+def test_practice_of_another_trainee_or_task_does_not_count(enrolled):
+    enrolled.logic.answer([0] * 16)
+    for other in ({"trainee": "T002"}, {"task": "task-1"}, {"mode": "desktop"}):
+        enrolled.practice(600.0, **other)
+    enrolled.practice(6.0)
+    assert enrolled.logic.minutesOver(enrolled.logic.progress()) == pytest.approx(0.1)
+
+
+def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
+    enrolled, make_record, tmp_path
+):
+    enrolled.logic.answer([0] * 16)
+    enrolled.logic.skipStep("has practiced in the pilot")
+    enrolled.close()
+    with Study.open(tmp_path / "study.db") as study:
+        study.add_trial(
+            make_record(
+                "00000000-0000-0000-0000-000000000001",
+                trainee="T001",
+                mode="hmd",
+                startedUtc=STARTED,
+                completedUtc=STARTED,
+            )
+        )
+    again = Lab(enrolled.room, tmp_path)
+    again.trainees.choose("T001")
+    assert again.next == "hmd/1/task-2"
+    again.close()
+
+
+def test_a_break_ends_by_itself_and_whoever_is_chosen_when_the_protocols_minutes_are_over(
+    lab, tmp_path
+):
+    short = json.loads(SHIPPED.read_text()) | {
+        "tasks": ["task-1"],
+        "questionnaires": [],
+        "trialRun": {"minutes": 0},
+    }
+    path = tmp_path / "short.json"
+    path.write_text(json.dumps(short))
+    lab.logic.begin(path)
+    lab.logic.enroll()
+    lab.logic.skipStep("the headset's battery was empty")
+    assert lab.next == "desktop/break"
+    lab.trainees.choose("")
+    lab.moment = datetime.now(timezone.utc) + timedelta(minutes=9.9)
+    lab.logic.process()
+    lab.trainees.choose("T001")
+    assert lab.next == "desktop/break"
+    lab.moment += timedelta(minutes=0.2)
+    lab.logic.process()
+    entry = lab.logic.progress().entries[-1]
+    assert (entry.outcome, round(entry.details["minutes"], 1)) == ("done", 10.1)
+    assert lab.next == "desktop/1/task-1"
+
+
+def test_a_trial_that_will_not_count_is_told_while_it_is_played(enrolled):
+    enrolled.logic.answer([0] * 16)
+    enrolled.tell(phase="running", task="task-3")
+    assert (
+        "plays task-3 in the mode hmd, which the study does not ask for"
+        in enrolled.logic.offProtocolSentence()
+    )
+    enrolled.tell(phase="running", task="trial-run")
+    assert enrolled.logic.offProtocolSentence() == ""
+    enrolled.tell(phase="running", trainee="somebody", task="task-3")
+    assert enrolled.logic.offProtocolSentence() == ""
+
+
+def test_the_next_step_is_not_skipped_without_a_reason(enrolled):
+    with pytest.raises(InputError, match="only with a reason"):
+        enrolled.logic.skipStep("no")
+    assert enrolled.next == "hmd/before/ssq"
+
+
+def told(lab):
+    """What the simulator was told last, once it has been."""
+    steps = lab.room.sent("StudyStep")
+    return steps[-1] if steps else {}
+
+
+def test_the_simulator_is_told_what_comes_next_whenever_that_changes(enrolled):
+    room = enrolled.room
+    room.run_until(lambda: told(enrolled).get("questionnaire") == "ssq")
+    enrolled.logic.answer([0] * 16)
+    room.run_until(lambda: told(enrolled)["kind"] == "trial-run")
+    assert told(enrolled) == {
+        "trainee": "T001",
+        "kind": "trial-run",
+        "number": 2,
+        "count": 19,
+        "task": "trial-run",
+        "mode": "hmd",
+        "minutes": 5.0,
+    }
+    count = len(room.sent("StudyStep"))
+    enrolled.trainees.changed.emit()
+    enrolled.logic.skipStep("has practiced in the pilot")
+    room.run_until(lambda: told(enrolled)["kind"] == "trial")
+    assert len(room.sent("StudyStep")) == count + 1
+
+
+def test_a_simulator_that_is_connected_again_is_told_of_everybody(enrolled):
+    room = enrolled.room
+    enrolled.trainees.create("T002", consent=True)
+    enrolled.logic.enroll()
+    room.run_until(lambda: told(enrolled).get("trainee") == "T002")
+    before = len(room.sent("StudyStep"))
+    room.link.disconnect()
+    room.link.connectTo(port=room.simulator.port)
+    room.run_until(lambda: len(room.sent("StudyStep")) == before + 2)
+    assert {step["trainee"] for step in room.sent("StudyStep")[before:]} == {"T001", "T002"}
+
+
+def test_who_is_deleted_is_led_no_more(enrolled):
+    enrolled.room.run_until(lambda: told(enrolled))
+    enrolled.trainees.delete()
+    enrolled.room.run_until(lambda: told(enrolled) == {"trainee": "T001", "kind": "free"})
+
+
+def test_a_trial_of_somebody_who_is_not_chosen_counts_and_the_simulator_is_told(
+    enrolled, make_record
+):
+    enrolled.logic.answer([0] * 16)
+    enrolled.logic.skipStep("has practiced in the pilot")
+    enrolled.trainees.create("T002", consent=True)
+    record = make_record(
+        "00000000-0000-0000-0000-000000000001",
+        trainee="T001",
+        mode="hmd",
+        startedUtc=STARTED,
+        completedUtc=STARTED,
+    )
+    enrolled.trainees.study.add_trial(record)
+    enrolled.logic.countTrial(TrialRecord.from_json(record))
+    enrolled.room.run_until(lambda: told(enrolled).get("task") == "task-2")
+    assert told(enrolled)["trainee"] == "T001"
+
+
+def test_a_late_trial_counts_before_a_simulator_is_told_what_comes_next(
+    enrolled, make_record, tmp_path
+):
+    enrolled.logic.answer([0] * 16)
+    enrolled.logic.skipStep("has practiced in the pilot")
+    enrolled.trainees.choose("")
+    enrolled.room.run_until(lambda: told(enrolled).get("task") == "task-1")
+    with Study.open(tmp_path / "study.db") as elsewhere:
+        elsewhere.add_trial(
+            make_record(
+                "00000000-0000-0000-0000-000000000001",
+                trainee="T001",
+                mode="hmd",
+                startedUtc=STARTED,
+                completedUtc=STARTED,
+            )
+        )
+    enrolled.room.link.disconnect()
+    before = len(enrolled.room.sent("StudyStep"))
+    enrolled.room.link.connectTo(port=enrolled.room.simulator.port)
+    enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) > before)
+    assert [step["task"] for step in enrolled.room.sent("StudyStep")[before:]] == ["task-2"]
+
+
+def answered(lab, **changes):
+    """Have the simulator tell of answers."""
+    told = {"trainee": "T001", "number": 1, "questionnaire": "ssq", "answers": [1] * 16}
+    lab.room.simulator.send_command("StepAnswered", {**told, **changes})
+
+
+def test_what_is_answered_at_the_simulator_is_kept_once_whoever_is_chosen(enrolled):
+    enrolled.trainees.choose("")
+    answered(enrolled)
+    answered(enrolled, answers=[3] * 16)
+    enrolled.room.run_until(lambda: told(enrolled).get("kind") == "trial-run")
+    answered(enrolled, answers=[3] * 16)
+    sent = len(enrolled.room.sent("StudyStep"))
+    enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) > sent)
+    (kept,) = StudyProgress(enrolled.trainees.study).answers()
+    assert (kept.trainee, kept.step.name, kept.answers) == ("T001", "hmd/before/ssq", (1,) * 16)
+    assert told(enrolled)["kind"] == "trial-run"
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"answers": [1] * 15},
+        {"answers": [4] * 16},
+        {"answers": 7},
+        {"trainee": ["T001"]},
+        {"number": 2},
+        {"questionnaire": "sus", "answers": [1] * 10},
+        {"questionnaire": "dance"},
+    ],
+)
+def test_answers_that_do_not_belong_to_the_step_are_not_kept(enrolled, wrong):
+    answered(enrolled, **wrong)
+    enrolled.tell(phase="running")
+    assert enrolled.next == "hmd/before/ssq"
+
+
+def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab, tmp_path):
+    path = tmp_path / "short.json"
+    changed = {"tasks": ["task-1"], "questionnaires": [], "trialRun": {"minutes": 0}}
+    path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
+    lab.logic.begin(path)
+    lab.logic.enroll()
+    lab.logic.skipStep("the headset's battery was empty")
+    lab.room.run_until(lambda: told(lab).get("minutes") == 10.0)
+    lab.moment = datetime.now(timezone.utc) + timedelta(minutes=4)
+    lab.room.link.disconnect()
+    before = len(lab.room.sent("StudyStep"))
+    lab.room.link.connectTo(port=lab.room.simulator.port)
+    lab.room.run_until(lambda: len(lab.room.sent("StudyStep")) > before)
+    assert told(lab)["minutes"] == 10.0
+    assert told(lab)["over"] == pytest.approx(4.0, abs=0.5)
+
+
+def test_the_simulator_is_told_to_wait_until_an_aborted_trial_has_its_reason(enrolled):
+    while enrolled.logic.progress().next_step.kind is not StepKind.TRIAL:
+        enrolled.logic.skipStep("this is not what is tested")
+    step = enrolled.logic.progress().next_step
+    started = datetime.now(timezone.utc).isoformat()
+    aborted = make_aborted(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)
+    AbortedTrials(enrolled.trainees.study).add(aborted)
+    enrolled.logic.countAborted(AbortedTrial.from_json(aborted))
+    room = enrolled.room
+    room.run_until(lambda: room.sent("StudyStep")[-1]["kind"] == "repeat")
+    assert room.sent("StudyStep")[-1]["task"] == step.task
+    for start in (
+        enrolled.logic.startStep,
+        lambda: enrolled.logic.startTrial(step.task, step.mode),
+    ):
+        with pytest.raises(InputError, match="only with a reason"):
+            start()
+    enrolled.tell(phase="running", mode=step.mode, task=step.task)
+    assert "once there is a reason" in enrolled.logic.offProtocolSentence()
+    with pytest.raises(InputError, match="10 to 500"):
+        enrolled.logic.explainRepeat("because")
+    enrolled.logic.explainRepeat("the fire alarm went off")
+    room.run_until(lambda: room.sent("StudyStep")[-1]["kind"] == "trial")
+    assert enrolled.logic.offProtocolSentence() == ""

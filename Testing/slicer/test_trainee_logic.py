@@ -1,0 +1,263 @@
+"""Trainees are created, archived, exported and deleted; their history is a table and a plot."""
+
+import csv
+import json
+import uuid
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.score_board import (
+    Row,
+    ctpsRows,
+    motionRows,
+    scoreRows,
+    showMotion,
+    showScore,
+    showStandings,
+    standings,
+)
+from rastrainer.slicer.scene.study_plots import showCalibration, showHistory, showLearningCurve
+from rastrainer.study.database.study import Study
+from rastrainer.trial.ctps import CTPS_WARNING, Trial
+from Testing.domain.trial.made_up_scores import first_score, gentle_score
+from Testing.slicer.scored_trials import scored_analysis
+
+COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
+
+
+@pytest.fixture
+def logic(tmp_path):
+    logic = TraineeLogic(lambda: Study.open(tmp_path / "study.db"), tmp_path / "journals")
+    yield logic
+    logic.close()
+
+
+@pytest.fixture
+def add_trial(logic, make_record, scenario):
+    """Returns a function that stores a scored trial."""
+
+    def add(number, **changes):
+        record = make_record(
+            str(uuid.UUID(int=number)),
+            seed=number,
+            startedUtc=f"2026-03-02T09:{number:02d}:00Z",
+            **changes,
+        )
+        analysis = scored_analysis(record, scenario)
+        fits, errors = analysis.fits.values(), analysis.target_errors
+        logic.study.add_trial(record, fits, errors, analysis.score)
+        logic.study.set_truth(record["trialId"], 0.2 * number, [0.0] * 16)
+        return logic.study.trial(record["trialId"])
+
+    return add
+
+
+def test_negative_results_are_shown_with_a_true_minus_sign():
+    assert [Row("SPARC", value, unit).text for value, unit in ((-2.456, ""), (-0.001, "mm"))] == [
+        "−2.46",
+        "0.00 mm",
+    ]
+
+
+def test_a_new_trainee_is_chosen_and_everyone_is_told(logic):
+    told = []
+    logic.changed.connect(lambda: told.append(logic.chosen))
+    assert logic.create("", consent=True).pseudonym == "T001"
+    assert logic.create(" Blue ", consent=False).pseudonym == "Blue"
+    assert (told, logic.chosen) == (["T001", "Blue"], "Blue")
+    with pytest.raises(InputError, match="taken"):
+        logic.create("Blue", consent=False)
+
+
+def test_an_archived_trainee_is_listed_only_when_asked_for(logic):
+    logic.create("a", consent=False)
+    logic.setArchived(True)
+    assert logic.trainees() == ()
+    assert [t.pseudonym for t in logic.trainees(archived=True)] == ["a"]
+    logic.setConsent(True)
+    assert logic.chosenTrainee().consent
+
+
+def test_a_deleted_trainee_is_gone_and_journals_that_are_elsewhere_are_named(logic, add_trial):
+    add_trial(1, trainee="gone")
+    logic.choose("gone")
+    erased = logic.delete()
+    assert (erased.trials, erased.journals) == (1, 0)
+    assert "The journals of 1 trials were not found" in erased.warnings[0]
+    assert (logic.chosen, logic.history(), logic.chosenTrainee()) == ("", (), None)
+
+
+def test_a_trainee_that_another_slicer_has_deleted_is_chosen_no_more(logic, tmp_path):
+    logic.create("a", consent=False)
+    with Study.open(tmp_path / "study.db") as other:
+        other.delete_trainee("a")
+    assert logic.chosenTrainee() is None
+    assert logic.history() == ()
+
+
+def test_one_trainee_is_exported_as_json_and_as_a_table(logic, add_trial, tmp_path):
+    add_trial(1, trainee="a")
+    logic.choose("a")
+    assert logic.export(tmp_path / "a.json") == 1
+    assert json.loads((tmp_path / "a.json").read_text())["trainee"]["pseudonym"] == "a"
+    assert logic.exportHistory(tmp_path / "a.csv") == 1
+
+
+def test_a_table_of_everyone_has_those_only_who_agreed_to_research(logic, add_trial, tmp_path):
+    add_trial(1, trainee="a")
+    add_trial(2, trainee="b")
+    with pytest.raises(InputError, match=r"No trainee of this study agreed .* \(2 did not\)"):
+        logic.exportHistories(tmp_path / "all.csv")
+    assert not (tmp_path / "all.csv").exists()
+    logic.choose("b")
+    logic.setConsent(True)
+    logic.setArchived(True)
+    assert logic.exportHistories(tmp_path / "all.csv") == (1, 1)
+    with (tmp_path / "all.csv").open(newline="") as file:
+        assert [row["trainee"] for row in csv.DictReader(file)] == ["b"]
+
+
+def test_the_history_is_a_table_and_two_learning_curves(scene, add_trial):
+    trials = [add_trial(number, trainee="a") for number in (1, 2, 3)]
+    chart = showLearningCurve(scene, "a", trials)
+    assert showLearningCurve(scene, "a", trials) is chart
+    assert chart.GetNumberOfPlotSeriesNodes() == 2
+    table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
+    scores = slicer.util.arrayFromTableColumn(table, "score")
+    assert scores.tolist() == [trial.score.score for trial in trials]
+    for index in range(2):
+        series = chart.GetNthPlotSeriesNode(index)
+        assert series.GetTableNodeID() == table.GetID()
+        assert table.GetColumnIndex(series.GetYColumnName()) >= 0
+
+
+def test_the_plot_of_the_learning_curves_begins_at_nought_and_holds_every_trial(scene, add_trial):
+    trials = [add_trial(number, trainee="a") for number in range(1, 8)]
+    assert showLearningCurve(scene, "a", trials[:1]).GetXAxisRange() == (0.0, 5.0)
+    chart = showLearningCurve(scene, "a", trials)
+    assert chart.GetXAxisRange() == (0.0, 8.0)
+    low, high = chart.GetYAxisRange()
+    assert (low, high > max(trial.record.completion_time_s for trial in trials)) == (0.0, True)
+    assert not chart.GetXAxisRangeAuto()
+
+
+def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, logic, add_trial):
+    trials = [add_trial(number, trainee=name) for number, name in ((1, "a"), (2, "b"), (30, "a"))]
+    logic.study.set_archived("b", True)
+    found = logic.calibration()
+    assert [point.true_mm for point in found.points if not point.is_inside] == [6.0]
+    chart = showCalibration(scene, found)
+    assert showCalibration(scene, found) is chart
+    assert chart.GetTitle().startswith("True against expected TRE: 2 of 3 inside, 67 % [21, 94]")
+    table = findNode(scene, "vtkMRMLTableNode", Role.CALIBRATION)
+    expected = slicer.util.arrayFromTableColumn(table, "expected TRE (mm)")
+    assert sorted(expected) == sorted(t.registrations["rigid"].expected_tre_mm for t in trials)
+    outside = slicer.util.arrayFromTableColumn(table, "true TRE, outside (mm)")
+    assert np.isnan(outside).sum() == 2
+    assert np.nanmax(outside) == 6.0
+    series = [chart.GetNthPlotSeriesNode(i) for i in range(chart.GetNumberOfPlotSeriesNodes())]
+    assert {one.GetXColumnName() for one in series} == {"expected TRE (mm)"}
+    for one in series:
+        assert one.GetTableNode().GetColumnIndex(one.GetYColumnName()) >= 0
+    assert sum(one.GetMarkerStyle() == one.MarkerStyleNone for one in series) == 3
+    (_, right), (_, top) = chart.GetXAxisRange(), chart.GetYAxisRange()
+    assert (right > expected.max(), top > 6.0) == (True, True)
+
+
+def test_a_study_without_a_told_truth_has_an_empty_plot_and_a_sentence(scene, logic, make_record):
+    logic.study.add_trial(make_record(str(uuid.UUID(int=7))))
+    found = logic.calibration()
+    assert showCalibration(scene, found).GetTitle() == "True against expected TRE"
+    assert found.sentences() == [
+        "No trial has both an expected and a true target error.",
+        "1 trial has no expected target error and cannot be shown.",
+    ]
+
+
+def test_a_learning_curve_over_two_versions_of_the_score_says_so(scene, logic, add_trial):
+    first, second = add_trial(1), add_trial(2)
+    assert (
+        showLearningCurve(scene, "T-001", [first, second]).GetTitle() == "Learning curve of T-001"
+    )
+    logic.study.add_results(first.record.trial_id, score=first_score(60.0, 0.1))
+    trials = logic.study.history(first.record.trainee)
+    chart = showLearningCurve(scene, "T-001", trials)
+    assert chart.GetTitle().endswith("(scores of versions 1 and 2 do not compare)")
+    table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
+    column = table.GetColumnIndex("score version")
+    assert [table.GetCellText(row, column) for row in range(2)] == ["1", "2"]
+
+
+def test_a_trial_without_results_has_empty_cells(scene, logic, make_record):
+    logic.study.add_trial(make_record(str(uuid.UUID(int=1))))
+    table = showHistory(scene, "T-001", logic.study.history("T-001"))
+    assert table.GetCellText(0, table.GetColumnIndex("score")) == "nan"
+
+
+def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(add_trial):
+    trial = add_trial(1)
+    rows = {row.title: row for row in [*scoreRows(trial), *ctpsRows(trial, COHORT)]}
+    assert rows["Score"].value == trial.score.score
+    assert rows["… its part for time"].value == 100 * trial.score.time_desirability
+    assert rows["CTPS as published"].note == CTPS_WARNING
+    assert rows["CTPS by equation 3"].value == rows["CTPS as published"].value / 2
+    assert rows["True TRE at the target"].text == "0.20 mm"
+    assert rows["True TRE in the brain"].value == trial.score.measures.tre_mm
+    assert rows["… its part for safety"].value == 100 * trial.score.safety_desirability
+    assert rows["Unintended contact"].note == "at most 8 s"
+    assert ctpsRows(trial, []) == []
+
+
+def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(logic, add_trial):
+    add_trial(1, trainee="a", completionTimeS=120.0)
+    add_trial(2, trainee="b", completionTimeS=60.0)
+    add_trial(3, trainee="b", task="task-2", completionTimeS=10.0)
+    trial = add_trial(4, trainee="a", completionTimeS=90.0)
+    found = {(s.group, s.title): s for s in standings(logic.study, trial, COHORT)}
+    own = found["own", "Completion time"]
+    assert (own.count, own.median, own.betterThan) == (1, 120.0, 1.0)
+    others = found["others", "Completion time"]
+    assert (others.count, others.median, others.betterThan) == (1, 60.0, 0.0)
+    reference = found["reference", "Completion time"]
+    assert (reference.count, reference.median, reference.betterThan) == (4, 95.0, 0.5)
+
+
+def test_the_score_of_a_trial_beyond_a_limit_is_called_not_acceptable(logic, add_trial):
+    trial = add_trial(1)
+    assert {row.title: row.note for row in scoreRows(trial)}["Score"] == "Version 2"
+    logic.study.add_results(trial.record.trial_id, score=gentle_score(60.0, 9.0))
+    beyond = logic.study.trial(trial.record.trial_id)
+    notes = {row.title: row.note for row in scoreRows(beyond)}
+    assert notes["Score"] == "not acceptable; version 2"
+    assert notes["… its part for accuracy"] == "beyond the limit of 1.5 mm"
+
+
+def test_a_score_stands_beside_those_of_its_own_version_only(logic, add_trial):
+    other = add_trial(1, trainee="b")
+    logic.study.add_results(other.record.trial_id, score=first_score(60.0, 0.1))
+    trial = add_trial(2, trainee="a")
+    groups = {(s.group, s.title) for s in standings(logic.study, trial)}
+    assert ("others", "Score") not in groups
+    assert ("others", "Completion time") in groups
+
+
+def test_motion_metrics_come_with_their_definitions(add_trial):
+    trial = add_trial(1, motion={"path_length_mm": 2500.0, "sparc": -1.9})
+    rows = motionRows(trial)
+    assert [row.title for row in rows] == ["Path length", "Smoothness, SPARC"]
+    assert rows[0].text == "2500.00 mm"
+    assert all(len(row.note) > 20 for row in rows)
+
+
+def test_score_comparison_and_motion_become_tables_of_the_scene(scene, logic, add_trial):
+    trial = add_trial(1, motion={"sparc": -1.9})
+    showScore(scene, [*scoreRows(trial), *ctpsRows(trial, COHORT)])
+    showStandings(scene, standings(logic.study, trial, COHORT))
+    showMotion(scene, motionRows(trial))
+    for role, rows in ((Role.SCORE, 14), (Role.COMPARISON, 2), (Role.MOTION, 1)):
+        assert findNode(scene, "vtkMRMLTableNode", role).GetNumberOfRows() == rows

@@ -1,0 +1,111 @@
+"""Trials are started and steered from Slicer, and shown while they are played."""
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.igtl.points import Point, Points
+from rastrainer.protocol import DeviceName
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.registration_nodes import isApplied, isPlanned, matrixOf
+from rastrainer.slicer.scene.scene import Role
+from Testing.slicer.training_room import Room
+
+
+@pytest.fixture
+def room(scene, scenario):
+    room = Room(scene, scenario)
+    yield room
+    room.close()
+
+
+def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
+    room.logic.start("T001", "task-2", "hmd")
+    room.run_until(lambda: room.answers)
+    assert room.sent("StartTask") == [{"task": "task-2", "trainee": "T001", "mode": "hmd"}]
+    assert room.answers == [""]
+    with pytest.raises(InputError, match="Choose a trainee"):
+        room.logic.start("", "task-2", "hmd")
+    with pytest.raises(InputError, match="Choose a task"):
+        room.logic.start("T001", "", "hmd")
+
+
+def test_the_fiducials_of_a_running_task_are_shown_before_the_first_touch(room, scenario):
+    room.tell()
+    room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
+    fixed = room.node(Role.FIXED_FIDUCIALS)
+    assert fixed.GetNumberOfControlPoints() == 15
+    np.testing.assert_allclose(
+        fixed.GetNthControlPointPosition(0), scenario.task("task-1").fiducials[0], atol=1e-4
+    )
+    assert room.node(Role.HEAD_MODEL, "vtkMRMLModelNode") is not None
+
+
+def test_touches_appear_on_the_head_as_it_is_planned_while_the_trial_runs(room, scenario):
+    room.tell()
+    room.run_until(lambda: room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"))
+    fiducial = scenario.task("task-1").fiducials[0]
+    touched = transforms.apply(scenario.head_to_world, fiducial[None])[0]
+    points = Points((Point("1", tuple(touched)),))
+    room.simulator.send(DeviceName.CAPTURED_POINTS, points, {"count": "1"})
+    room.run_until(lambda: capturedPointsNode(room.scene).GetNumberOfControlPoints() == 1)
+    transform = room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode")
+    assert isPlanned(transform)
+    assert isApplied(transform)
+    np.testing.assert_allclose(matrixOf(transform) @ scenario.head_to_world, np.eye(4), atol=1e-9)
+    shown = capturedPointsNode(room.scene).GetNthControlPointPositionWorld(0)
+    np.testing.assert_allclose(shown, fiducial, atol=1e-3)
+    assert room.logic.progress.touched == 1
+
+
+def test_progress_tells_the_next_point_the_clearance_and_the_time_that_goes_on(room):
+    room.tell(nextPoint="4", clearanceMm=12.5, proximity="proximity", elapsedS=30.0)
+    room.run_until(lambda: room.logic.progress.nextPoint == "4")
+    room.now += 5.0
+    progress = room.logic.progress
+    assert (progress.clearanceMm, progress.proximity, progress.isOpen) == (12.5, "proximity", True)
+    assert progress.elapsedS == 35.0
+    room.tell(phase="paused", elapsedS=36.0)
+    room.run_until(lambda: room.logic.progress.phase == "paused")
+    room.now += 5.0
+    assert room.logic.progress.elapsedS == 36.0
+
+
+def test_one_button_pauses_and_resumes(room):
+    room.tell()
+    room.run_until(lambda: room.logic.progress.phase == "running")
+    room.logic.pauseOrResume()
+    room.run_until(lambda: room.sent("Pause"))
+    room.tell(phase="paused")
+    room.run_until(lambda: room.logic.progress.phase == "paused")
+    room.logic.pauseOrResume()
+    room.run_until(lambda: room.sent("Resume"))
+    room.logic.abort()
+    room.run_until(lambda: room.sent("Abort"))
+
+
+def test_a_refusal_is_told_in_the_simulators_words(room):
+    room.refusal = "A trial is open: Register or Abort it first."
+    room.logic.start("T001", "task-1", "desktop")
+    room.run_until(lambda: room.answers)
+    assert room.answers == [room.refusal]
+
+
+def test_a_cleared_scene_gets_the_running_trial_back(room):
+    room.tell()
+    room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
+    room.scene.Clear(False)
+    assert room.node(Role.FIXED_FIDUCIALS) is None
+    room.logic.forgetScene()
+    room.run_until(lambda: len(room.sent("Hello")) == 2)
+    room.tell(elapsedS=2.0)  # The simulator tells its state to everyone who connects.
+    room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
+    assert room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode") is not None
+
+
+def test_numbers_that_are_none_are_not_believed(room):
+    room.tell(clearanceMm="near", elapsedS=None, nextPoint=None)
+    room.run_until(lambda: room.logic.progress.phase == "running")
+    progress = room.logic.progress
+    assert (progress.clearanceMm, progress.nextPoint) == (None, "")

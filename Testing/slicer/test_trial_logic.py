@@ -1,0 +1,406 @@
+"""A finished trial is kept once, acknowledged when kept, scored, and shown."""
+
+import sqlite3
+import threading
+import uuid
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.igtl.content import String
+from rastrainer.protocol import DeviceName
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.trial_delivery import MOST_WAITING
+from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.scene.registration_nodes import isApplied
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.study.database.database import Patience
+from rastrainer.study.database.study import Study
+from rastrainer.study.trial_review import review
+from rastrainer.trial.analysis import analyze_trial
+from rastrainer_headless.connector import headlessKit
+from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until
+
+TRIAL = str(uuid.UUID(int=1))
+OTHER = str(uuid.UUID(int=2))
+SEED = 1
+
+
+class Lab:
+    """A logic on a link to a simulator whose answers the test may change."""
+
+    def __init__(self, scene, scenario, folder):
+        self.scene = scene
+        self.scenario = scenario
+        self.path = folder / "study.db"
+        self.refusal = None
+        self.is_study_broken = False
+        self.threads = set()
+        self.simulator = SimulatorDouble(self.answer)
+        self.link = Link(scene, headlessKit)
+        self.work = BackgroundWork()
+        self.logic = self.new_logic()
+        self.scored = []
+        self.problems = []
+        self.logic.trialScored.connect(self.scored.append)
+        self.logic.problemFound.connect(self.problems.append)
+
+    def new_logic(self):
+        return TrialLogic(self.scene, self.link, self.find_scenario, self.open_study, self.work)
+
+    def connect(self):
+        opened = []
+        self.link.opened.connect(lambda: opened.append(True))
+        self.link.connectTo(port=self.simulator.port)
+        self.run_until(lambda: opened)
+
+    def answer(self, name, arguments):
+        if name != "SubmitRegistration":
+            return {}
+        if self.refusal is not None:
+            return self.refusal
+        head_to_world = self.scenario.perturbed_head_to_world(SEED)
+        target = self.scenario.target_position
+        found = np.reshape(arguments["matrix"], (4, 4)) @ head_to_world
+        return {
+            "headToWorld": head_to_world.ravel().tolist(),
+            "trueTreMm": float(np.linalg.norm(transforms.apply(found, target) - target)),
+        }
+
+    def find_scenario(self, name):
+        if name != self.scenario.name:
+            raise InputError(f"The scenario {name} is not here.")
+        return self.scenario
+
+    def open_study(self):
+        self.threads.add(threading.get_ident())
+        if self.is_study_broken:
+            raise InputError("The disk is full.")
+        return Study.open(self.path, Patience(0.01))
+
+    def stored(self, trial_id=TRIAL):
+        with Study.open(self.path) as study:
+            return study.trial(trial_id)
+
+    def sent(self, name):
+        return [arguments for sent, arguments in self.simulator.commands if sent == name]
+
+    def run_until(self, condition):
+        run_logic_until(self.link, self.work, condition)
+
+    def close(self):
+        self.link.disconnect()
+        self.logic.close()
+        self.work.close()
+        self.simulator.close()
+
+
+@pytest.fixture
+def lab(scene, scenario, tmp_path):
+    lab = Lab(scene, scenario, tmp_path)
+    lab.connect()
+    yield lab
+    lab.close()
+
+
+def test_a_finished_trial_is_kept_acknowledged_scored_and_its_truth_kept(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL, seed=SEED))
+    lab.run_until(lambda: lab.scored)
+    stored = lab.stored()
+    assert [name for name, _ in lab.simulator.commands] == [
+        "Hello",
+        "AcknowledgeTrial",
+        "SubmitRegistration",
+        "TrialScored",
+    ]
+    assert stored.record.trial_id == TRIAL
+    assert set(stored.registrations) == {"rigid", "similarity", "affine"}
+    assert stored.score.score == lab.sent("TrialScored")[0]["score"]
+    assert stored.true_tre_mm == lab.scored[0].truth.true_tre_mm
+    expected = lab.scenario.perturbed_head_to_world(SEED)
+    np.testing.assert_allclose(np.reshape(stored.head_to_world, (4, 4)), expected)
+
+
+def test_the_trial_stands_in_the_scene(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    transform = findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    assert isApplied(transform)
+    for class_name, role in (
+        ("vtkMRMLTableNode", Role.RESIDUALS),
+        ("vtkMRMLTableNode", Role.FITS),
+        ("vtkMRMLModelNode", Role.RESIDUAL_ARROWS),
+        ("vtkMRMLModelNode", Role.HEAD_MODEL),
+    ):
+        assert findNode(lab.scene, class_name, role) is not None
+
+
+def test_twice_is_once(lab, make_record):
+    for _ in range(3):
+        lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    acknowledged = len(lab.sent("AcknowledgeTrial"))
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) > acknowledged)
+    assert len(lab.scored) == 1
+    assert len(lab.sent("TrialScored")) == 1
+    with Study.open(lab.path) as study:
+        assert len(study.history("T-001")) == 1
+
+
+def test_a_trial_is_not_acknowledged_before_it_is_kept(lab, make_record):
+    lab.is_study_broken = True
+    lab.logic.close()
+    lab.logic = lab.new_logic()
+    lab.logic.problemFound.connect(lab.problems.append)
+    for _ in range(3):
+        lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    assert lab.problems == ["A trial could not be kept: The disk is full."]
+    assert not lab.sent("AcknowledgeTrial")
+    lab.is_study_broken = False
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.sent("AcknowledgeTrial"))
+    assert lab.stored().record.trial_id == TRIAL
+
+
+def test_a_record_that_is_none_is_told_and_not_acknowledged(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL, mode="cinema"))
+    lab.run_until(lambda: lab.problems)
+    assert "mode must be one of desktop, hmd" in lab.problems[0]
+    assert not lab.sent("AcknowledgeTrial")
+
+
+def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
+    record = make_record(TRIAL, scenario="elsewhere")
+    lab.simulator.send_command("TrialCompleted", record)
+    lab.run_until(lambda: lab.sent("AcknowledgeTrial"))
+    assert lab.problems == [
+        "A trial is kept but cannot be scored: The scenario elsewhere is not here."
+    ]
+    assert lab.stored().score is None
+    assert not lab.sent("TrialScored")
+
+
+def test_a_refused_score_is_told_and_the_trial_kept(lab, make_record):
+    lab.refusal = "There is no such trial."
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    assert lab.problems == ["The trial was not scored: There is no such trial."]
+    assert lab.stored().true_tre_mm is None
+    assert lab.stored().score is None
+
+
+def test_a_trial_whose_contacts_were_not_measured_is_kept_with_its_truth_and_not_scored(
+    lab, make_record
+):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL, motion={}))
+    lab.run_until(lambda: lab.problems)
+    assert "contacts were not measured" in lab.problems[0]
+    assert lab.stored().true_tre_mm is not None
+    assert lab.stored().score is None
+    assert not lab.sent("TrialScored")
+
+
+def test_a_score_that_nobody_heard_is_told_over_the_next_connection(lab, make_record):
+    lab.refusal = "Not now."
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    lab.link.disconnect()
+    lab.refusal = None
+    lab.link.connectTo(port=lab.simulator.port)
+    lab.run_until(lambda: lab.scored)
+    assert lab.stored().true_tre_mm is not None
+
+
+def test_scores_that_nobody_heard_are_told_one_after_the_other(lab, make_record):
+    trials = [str(uuid.UUID(int=number)) for number in (11, 12, 13)]
+    lab.refusal = "Not now."
+    for trial in trials:
+        lab.simulator.send_command("TrialCompleted", make_record(trial))
+        lab.run_until(lambda trial=trial: {"trialId": trial} in lab.sent("AcknowledgeTrial"))
+    lab.run_until(lambda: len(lab.sent("SubmitRegistration")) == 3)
+    lab.link.disconnect()
+    lab.refusal = None
+    kept = []
+    answer = lab.answer
+
+    def watch(name, arguments):
+        if name == "TrialScored":
+            with Study.open(lab.path) as study:
+                kept.append(len(trials) - len(study.unrevealed()))
+        return answer(name, arguments)
+
+    lab.simulator.responder = watch
+    lab.link.connectTo(port=lab.simulator.port)
+    lab.run_until(lambda: len(lab.scored) == 3)
+    assert kept == [0, 1, 2]
+
+
+def test_each_score_is_told_once_though_the_link_opens_again_while_they_are_told(lab, make_record):
+    trials = [str(uuid.UUID(int=number)) for number in range(1, 5)]
+    lab.refusal = "Not now."
+    for trial in trials:
+        lab.simulator.send_command("TrialCompleted", make_record(trial, seed=SEED))
+    lab.run_until(lambda: len(lab.sent("SubmitRegistration")) == 4 and not lab.work.isBusy)
+    lab.run_until(lambda: not lab.logic.isScoring)
+    lab.refusal = None
+    lab.simulator.commands.clear()
+    lab.link.opened.emit()
+    lab.link.opened.emit()
+    lab.run_until(lambda: len(lab.scored) >= 4 and not lab.work.isBusy)
+    lab.run_until(lambda: not lab.logic.isScoring)
+    told = [arguments["trialId"] for arguments in lab.sent("TrialScored")]
+    assert sorted(told) == trials
+    assert sorted(trial.record.trial_id for trial in lab.scored) == trials
+
+
+def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
+    state = f'{{"trialId": "{OTHER}", "phase": "running"}}'
+    lab.simulator.send(DeviceName.SIM_STATE, String(state))
+    states = []
+    lab.link.stateChanged.connect(states.append)
+    lab.run_until(lambda: states)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    assert findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD) is None
+    assert lab.stored().true_tre_mm is not None
+
+
+def test_a_trial_deleted_with_its_trainee_is_acknowledged_and_not_stored_again(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    with Study.open(lab.path) as study:
+        study.delete_trainee("T-001")
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) == 2)
+    with Study.open(lab.path) as study:
+        assert study.trainees() == ()
+    assert lab.problems == []
+    assert len(lab.scored) == 1
+
+
+def test_trials_of_a_break_in_the_connection_all_arrive(lab, make_record):
+    trials = [str(uuid.UUID(int=number)) for number in range(1, 5)]
+    lab.link.disconnect()
+    lab.connect()
+    for number, trial in enumerate(trials):
+        lab.simulator.send_command("TrialCompleted", make_record(trial, seed=number))
+    lab.run_until(lambda: len(lab.scored) == 4)
+    assert lab.logic.received == trials
+
+
+@pytest.fixture
+def reviews(monkeypatch):
+    """UUID and thread of each registration and each scoring."""
+    done = []
+
+    def registered(record, *arguments, **options):
+        done.append((record.trial_id, threading.get_ident()))
+        return analyze_trial(record, *arguments, **options)
+
+    def scored(analysis, *arguments):
+        done.append((analysis.record.trial_id, threading.get_ident()))
+        return review(analysis, *arguments)
+
+    monkeypatch.setattr("rastrainer.slicer.logic.trial_logic.analyze_trial", registered)
+    monkeypatch.setattr("rastrainer.slicer.logic.trial_logic.review", scored)
+    return done
+
+
+def test_the_main_thread_neither_scores_nor_opens_the_study(lab, make_record, reviews):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    assert len(reviews) == 2
+    main = threading.get_ident()
+    assert main not in lab.threads | {thread for _trial, thread in reviews}
+
+
+def test_what_is_known_is_acknowledged_and_not_scored_again(lab, make_record, reviews):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    for count in range(2, 5):
+        lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+        lab.run_until(lambda count=count: len(lab.sent("AcknowledgeTrial")) == count)
+    assert len(reviews) == 2
+
+
+def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, reviews):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    for changes, told in (
+        ({"trial_id": OTHER, "points": []}, "points must be"),
+        ({"trial_id": OTHER, "trainee": "T-001 "}, "A pseudonym must be printable text"),
+        ({"trial_id": TRIAL, "task": "task-2"}, "Another trial is stored under the UUID"),
+    ):
+        lab.simulator.send_command("TrialCompleted", make_record(**changes))
+        lab.run_until(lambda told=told: lab.problems and told in lab.problems[-1])
+    assert len(lab.sent("AcknowledgeTrial")) == 1
+    # Once to register it, once with its truth.
+    assert len(reviews) == 2
+    with Study.open(lab.path) as study:
+        assert [trainee.pseudonym for trainee in study.trainees()] == ["T-001"]
+
+
+def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_told(lab, make_record):
+    lab.logic.trialKept.connect(lambda _record: kept.append(True))
+    kept = []
+    for number in range(10 * MOST_WAITING):
+        lab.link.trialCompleted.emit(make_record(str(uuid.UUID(int=100 + number))))
+    assert lab.problems == [
+        "Trials arrive faster than they can be scored; they are offered again later."
+    ]
+    before = 0
+    while len(kept) < MOST_WAITING:
+        lab.work.process()
+        assert len(kept) - before <= 1
+        before = len(kept)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: {"trialId": TRIAL} in lab.sent("AcknowledgeTrial"))
+    with Study.open(lab.path) as study:
+        assert len(study.history("T-001")) == MOST_WAITING + 1
+
+
+def test_a_trial_waits_while_another_program_has_the_study_locked(lab, make_record):
+    lab.simulator.send_command("TrialCompleted", make_record(OTHER))
+    lab.run_until(lambda: lab.scored)
+    other = sqlite3.connect(lab.path, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    assert "Another program has the study" in lab.problems[0]
+    assert {"trialId": TRIAL} not in lab.sent("AcknowledgeTrial")
+    other.execute("ROLLBACK")
+    other.close()
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: len(lab.scored) == 2)
+    assert lab.stored().true_tre_mm is not None
+
+
+def test_a_trial_kept_when_slicer_ends_is_acknowledged_and_counted_once_by_the_next(
+    lab, make_record
+):
+    lab.link.trialCompleted.emit(make_record(TRIAL))
+    lab.logic.close()
+    lab.work.close()
+    assert not lab.sent("AcknowledgeTrial")
+    lab.work = BackgroundWork()
+    lab.logic = lab.new_logic()
+    lab.logic.trialScored.connect(lab.scored.append)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    with Study.open(lab.path) as study:
+        assert len(study.history("T-001")) == 1
+
+
+def test_after_the_study_is_changed_trials_go_into_the_new_one(lab, make_record, tmp_path):
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.scored)
+    lab.path = tmp_path / "another.db"
+    lab.logic.forgetWaiting()
+    lab.simulator.send_command("TrialCompleted", make_record(OTHER))
+    lab.run_until(lambda: len(lab.scored) == 2)
+    assert lab.stored(OTHER).record.trial_id == OTHER

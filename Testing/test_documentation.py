@@ -1,0 +1,190 @@
+"""Every link, path and module that the documentation names exists."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TRACKED = [
+    name
+    for name in subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.splitlines()
+    if (ROOT / name).exists()
+]
+PAGES = [name for name in TRACKED if name.endswith(".md") and name != "CHANGELOG.md"]
+"""The changelog tells of what there once was."""
+TOP = {name.split("/")[0] for name in TRACKED if "/" in name}
+PLACES = {"/" + place for name in TRACKED for place in (name, *map(str, Path(name).parents))}
+"""Every file and folder of the repository."""
+SOURCES = ("RASTrainer/Logic/", "RASTrainerSimulatorServer/")
+MODULES = {
+    name[len(source) :].removesuffix("/__init__.py").removesuffix(".py").replace("/", ".")
+    for name in TRACKED
+    for source in SOURCES
+    if name.startswith(source) and name.endswith(".py")
+}
+IN_USERS_FOLDERS = {
+    f"RASTrainer/{name}" for name in ("scenarios", "simulator", "study.db", "trials")
+}
+BUILT = ("RASTrainerSimulatorServer/web/node_modules",)
+
+CODE = re.compile(r"`([^`\n]+)`")
+LINK = re.compile(r"\]\(([^)#\s]*)(?:#([^)\s]*))?\)")
+FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+SHELL = re.compile(r"^(?:```sh\n.*?^```| {4,8}\S.*?)$", re.MULTILINE | re.DOTALL)
+RUN = re.compile(r"python3? -m ((?:rastrainer|Testing)[\w.]*)")
+HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+SOURCE_FILE = re.compile(r"^[\w./-]+/[\w.-]+\.(?:py|ts|ui|md|json|cmake|toml|txt|lock|png|csv)$")
+MODULE = re.compile(r"^(rastrainer(?:_simulator|_headless)?(?:\.[A-Za-z_]\w*)+)$")
+
+
+def text_of(page: str) -> str:
+    """Return a page without its blocks of code."""
+    return FENCE.sub("", (ROOT / page).read_text(encoding="utf-8"))
+
+
+def anchors(page: str) -> set[str]:
+    """Return the anchors that GitHub gives the headings of a page."""
+    plain = (re.sub(r"[`*]|\]\([^)]*\)|\[", "", text) for text in HEADING.findall(text_of(page)))
+    return {re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", "-") for text in plain}
+
+
+def paths_in(page: str) -> set[str]:
+    """Return the paths of the repository that stand as code in a page."""
+    words = {word for span in CODE.findall(text_of(page)) for word in span.split()}
+    paths = {word.split("::")[0].split("#")[0].rstrip("/,;:") for word in words}
+    return {path for path in paths if is_path(path)} - IN_USERS_FOLDERS
+
+
+def is_path(word: str) -> bool:
+    """Tell whether a word names a file or folder of the repository, and no pattern of names."""
+    if any(sign in word for sign in "*…<>{}") or word.startswith(("~", "/", "http", "build/")):
+        return False
+    return ("/" in word and word.split("/")[0] in TOP) or bool(SOURCE_FILE.match(word))
+
+
+def is_there(path: str) -> bool:
+    """Tell whether a path, or the end of one such as `flow/screen.py`, is in the repository."""
+    return path.startswith(BUILT) or any(place.endswith("/" + path) for place in PLACES)
+
+
+def names_in(page: str) -> set[tuple[str, str]]:
+    """Return what a page names within files, as by `training/training.py::Training._undo`."""
+    words = {word for span in CODE.findall(text_of(page)) for word in span.split()}
+    return {tuple(word.split("::")) for word in words if ".py::" in word}
+
+
+def is_named(path: str, name: str) -> bool:
+    """Tell whether a file, told by the end of its path, defines a name; `A.b` is b within A."""
+    files = [tracked for tracked in TRACKED if f"/{tracked}".endswith(f"/{path}")]
+    sources = [(ROOT / file).read_text(encoding="utf-8") for file in files]
+    parts = name.split(".")
+    patterns = [rf"\b(?:def|class) {part}\b|^[\w, ]*\b{part}\b.*=" for part in parts]
+    return any(
+        all(re.search(pattern, source, re.MULTILINE) for pattern in patterns) for source in sources
+    )
+
+
+def is_module(name: str) -> bool:
+    """Tell whether a dotted name is a module, or a name that is defined in one."""
+    parts = name.split(".")
+    for length in range(len(parts), 0, -1):
+        module = ".".join(parts[:length])
+        if module in MODULES:
+            return length == len(parts) or defines(module, parts[length])
+    return False
+
+
+def defines(module: str, name: str) -> bool:
+    """Tell whether a module's source defines a name at its top level."""
+    place = module.replace(".", "/")
+    for source in SOURCES:
+        for file in (ROOT / source / f"{place}.py", ROOT / source / place / "__init__.py"):
+            if file.is_file():
+                pattern = rf"^(?:async def|def|class) {name}\b|^{name}\b.*="
+                return bool(re.search(pattern, file.read_text(encoding="utf-8"), re.MULTILINE))
+    return False
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_of_a_page_leads_somewhere(page):
+    folder = (ROOT / page).parent
+    for target, anchor in LINK.findall(text_of(page)):
+        if target.startswith(("http:", "https:", "mailto:")):
+            continue
+        place = (folder / target).resolve() if target else ROOT / page
+        assert place.exists(), target
+        if anchor and place.suffix == ".md":
+            assert anchor in anchors(place.relative_to(ROOT).as_posix()), f"{target}#{anchor}"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_path_that_a_page_names_is_in_the_repository(page):
+    assert {path for path in paths_in(page) if not is_there(path)} == set()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_path_and_module_in_a_command_is_in_the_repository(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    words = {word for block in SHELL.findall(text) for word in block.split()}
+    paths = {word for word in words if "/" in word and word.split("/")[0] in TOP}
+    assert {path for path in paths if not is_there(path)} == set()
+    run = {name.replace(".", "/") for name in RUN.findall(text)}
+    assert {path for path in run if not (is_there(path) or is_there(f"{path}.py"))} == set()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_module_that_a_page_names_is_in_a_package(page):
+    spans = CODE.findall(text_of(page))
+    named = {match[1] for span in spans if (match := MODULE.match(span))}
+    assert {name for name in named if not is_module(name)} == set()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_name_in_a_file_that_a_page_names_is_defined_there(page):
+    assert {named for named in names_in(page) if not is_named(*named)} == set()
+
+
+def test_ten_questions_of_a_newcomer_are_answered_by_files():
+    rows = [line for line in text_of("CONTRIBUTING.md").splitlines() if line.startswith("| **")]
+    assert len(rows) >= 10
+    for row in rows:
+        paths = [span for span in CODE.findall(row) if is_path(span.split("::")[0])]
+        assert paths, row
+
+
+def test_the_architecture_tells_of_every_room():
+    told = set(CODE.findall(text_of("docs/architecture.md")))
+    packages = [place for source in SOURCES for place in (ROOT / source).glob("rastrainer*")]
+    folders = [
+        folder.name
+        for package in packages
+        for folder in package.iterdir()
+        if list(folder.glob("*.py"))
+    ]
+    assert len(folders) > 20
+    # `slicer` is told by its own rooms.
+    assert {name for name in folders if name not in told} <= {"slicer"}
+
+
+def test_a_path_that_is_not_there_would_be_found():
+    assert is_path("docs/nothing.md")
+    assert not is_there("docs/nothing.md")
+    assert is_there("docs/tutorial.md")
+    assert is_there("tutorial.md")
+    assert not is_there("torial.md")
+    assert not is_module("rastrainer.nothing")
+    assert is_named("test_documentation.py", "is_named")
+    assert not is_named("test_documentation.py", "is_not_named")
+    assert is_module("rastrainer")
+    assert not is_module("rastrainer.nothing_there")
+    assert is_module("rastrainer.__version__")

@@ -1,0 +1,67 @@
+"""What is run where the project is hosted is what a contributor runs, and by fixed programs."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[1]
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
+PHONY = set(re.search(r"^\.PHONY: (.*)$", MAKEFILE, re.MULTILINE).group(1).split())
+
+
+def steps(workflow: Path) -> list[dict]:
+    """Return the steps of all jobs of a workflow."""
+    jobs = yaml.safe_load(workflow.read_text(encoding="utf-8"))["jobs"].values()
+    return [step for job in jobs for step in job["steps"]]
+
+
+def make_targets(lines: str) -> set[str]:
+    """Return the targets of all calls of make in some lines."""
+    return set(re.findall(r"\bmake ([a-z]+)", lines))
+
+
+@pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
+def test_every_action_is_fixed_by_the_hash_of_a_commit(workflow):
+    actions = [step["uses"] for step in steps(workflow) if "uses" in step]
+    assert actions
+    assert [action for action in actions if not re.fullmatch(r"[^@]+@[0-9a-f]{40}", action)] == []
+
+
+@pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
+def test_every_make_target_of_a_workflow_exists(workflow):
+    called = {
+        target
+        for step in steps(workflow)
+        if step.get("run", "").startswith("make ")
+        for target in make_targets(step["run"])
+    }
+    assert called
+    assert called <= PHONY
+
+
+@pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
+def test_a_workflow_may_read_the_repository_and_nothing_else(workflow):
+    content = yaml.safe_load(workflow.read_text(encoding="utf-8"))
+    assert content["permissions"] == {"contents": "read"}
+    assert all("timeout-minutes" in job for job in content["jobs"].values())
+
+
+def test_windows_is_tested_by_the_kinematics_that_it_has():
+    text = (ROOT / ".github" / "workflows" / "test.yml").read_text(encoding="utf-8")
+    jobs = yaml.safe_load(text)["jobs"]
+    systems = {entry["system"]: entry for entry in jobs["desktop"]["strategy"]["matrix"]["include"]}
+    assert systems["windows-latest"]["kinematics"] == "numpy"
+    assert "macos-latest" in systems
+
+
+def test_the_hooks_of_pre_commit_are_make_targets_of_this_repository():
+    text = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
+    (repository,) = yaml.safe_load(text)["repos"]
+    assert repository["repo"] == "local"
+    entries = {hook["entry"] for hook in repository["hooks"]}
+    assert entries == {"make lint", "make test"}
