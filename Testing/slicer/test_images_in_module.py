@@ -117,6 +117,23 @@ def test_a_cleared_scene_gets_the_mri_again_by_the_button(host):
     wait_for_images(host)
 
 
+def test_a_scene_cleared_as_soon_as_the_mri_is_there_gets_it_again(host):
+    host.open()
+    host.unfold("showScenarioButton")
+    session, cleared = host.widget.logic.session, []
+
+    def clear_and_show_again(_node):
+        if not cleared:
+            cleared.append(True)
+            host.scene.Clear(0)
+            session.scenario.show("colin27", session.task)
+
+    session.images.shown.connect(clear_and_show_again)
+    host.press("showScenarioButton")
+    host.wait_until(lambda: cleared, "the images are there")
+    wait_for_images(host)
+
+
 def test_the_scenario_s_own_mri_is_not_taken_for_a_scan_to_make_a_scenario_of(host):
     show_scenario(host)
     host.unfold("scanComboBox")

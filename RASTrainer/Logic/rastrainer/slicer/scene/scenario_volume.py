@@ -98,6 +98,8 @@ class VolumeLoader:
         )
 
     def _take(self, asked: tuple[str, ...], values: np.ndarray, ijkToRas: np.ndarray) -> None:
+        # In a cleared scene the next node has the same ID, and may ask for the same at once.
+        self._asked = ()
         node = self._scene.GetNodeByID(asked[0])
         if _asked(node) == asked:
             node.RemoveAttribute(FILE_ATTRIBUTE)
@@ -106,6 +108,7 @@ class VolumeLoader:
             self.shown.emit(node)
 
     def _refuse(self, asked: tuple[str, ...], error: Exception) -> None:
+        self._asked = ()
         node = self._scene.GetNodeByID(asked[0])
         if _asked(node) == asked:
             self._scene.RemoveNode(node)
