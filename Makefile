@@ -24,7 +24,7 @@ ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exi
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ENDING) -q
+	PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ENDING) -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page

@@ -438,9 +438,17 @@ class Host:
 
     def _click(self, widget: Any) -> None:
         self.clicks.append(widget.objectName())
+        clicks: list[bool] = []
+        if isinstance(widget, QtWidgets.QAbstractButton):
+            widget.clicked.connect(clicks.append)
         QtTest.QTest.mouseClick(
             widget, QtCore.Qt.MouseButton.LeftButton, pos=_where_to_press(widget)
         )
+        if isinstance(widget, QtWidgets.QAbstractButton) and not clicks:
+            raise AssertionError(
+                f"The click on {widget.objectName()}, {widget.rect()}, was lost: enabled "
+                f"{widget.isEnabled()}, visible {widget.isVisible()}, down {widget.isDown()}."
+            )
         self.process_events()
 
     def _usable(self, name: str) -> Any:
