@@ -440,7 +440,7 @@ class Host:
         self.clicks.append(widget.objectName())
         clicks: list[bool] = []
         if isinstance(widget, QtWidgets.QAbstractButton):
-            widget.clicked.connect(clicks.append)
+            widget.clicked.connect(lambda *_checked: clicks.append(True))
         QtTest.QTest.mouseClick(
             widget, QtCore.Qt.MouseButton.LeftButton, pos=_where_to_press(widget)
         )
