@@ -455,15 +455,16 @@ class Host:
         """Return a widget, in a section that is open: a user opens the one that is needed."""
         self.unfold(name)
         deadline = time.monotonic() + PATIENCE_S
-        # One that has just been made anew or unfolded is shown by an event.
-        while not self.find(name)._qt.isVisible() and time.monotonic() < deadline:
-            self._settle()
+        # One that has just been made anew or unfolded is shown by an event. Slicer's panel scrolls:
+        # no widget is squeezed to nothing where many sections are open.
+        while not _has_area(self.find(name)._qt) and time.monotonic() < deadline:
+            self._fit(DOCK_WIDTH)
             self.unfold(name)
         widget = self.find(name)._qt
         if not widget.isEnabled():
             raise AssertionError(f"{name} is disabled: {widget.toolTip()}")
-        if not widget.isVisible():
-            raise AssertionError(f"{name} is hidden.")
+        if not _has_area(widget):
+            raise AssertionError(f"{name} is hidden, or {widget.rect()} shows nothing of it.")
         return widget
 
     def made_widget(self) -> Any:
@@ -524,6 +525,10 @@ def _save(picture: QtGui.QPixmap, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     if not picture.save(str(path)):
         raise AssertionError(f"The picture {path} cannot be written.")
+
+
+def _has_area(widget: QtWidgets.QWidget) -> bool:
+    return widget.isVisible() and not widget.rect().isEmpty()
 
 
 def _where_to_press(button: QtWidgets.QWidget) -> QtCore.QPoint:
