@@ -16,8 +16,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.collision import APART, Collision
 from rastrainer_simulator.collision.contact import Contact
-from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
-from rastrainer_simulator.collision.robot_shape import robot_shape
+from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, robot_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.fabrik import Fabrik

@@ -27,12 +27,12 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.study_notes import read_notes
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.core.prepared_robot import read_prepared
 from rastrainer_simulator.core.settings import (
     SimulationSettings,
     settings_from_json,
     settings_to_json,
 )
+from rastrainer_simulator.core.setup import read_prepared
 from rastrainer_simulator.flow.session.preferences import (
     Preferences,
     read_preferences,

@@ -18,7 +18,7 @@ from pointer_tool import plain_tool, tip, tool
 
 from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.core.prepared_robot import model_to_json, shape_to_json, write_prepared
+from rastrainer_simulator.core.setup import model_to_json, shape_to_json, write_prepared
 from rastrainer_simulator.robot.model import load_robot
 
 RINGS = 25

@@ -10,8 +10,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer_simulator.core.arm import start_joints
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.rendering.lighting import Shadows
-from rastrainer_simulator.rendering.moment import SceneMoment
-from rastrainer_simulator.rendering.picture import render_picture
+from rastrainer_simulator.rendering.picture import SceneMoment, render_picture
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
 from rastrainer_simulator.scene.scene_glb import scene_nodes

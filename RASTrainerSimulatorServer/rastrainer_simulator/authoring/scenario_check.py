@@ -14,7 +14,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.units import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_check import check_tasks
-from rastrainer_simulator.collision.plan_reach import PlanReach
+from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import start_joints
 from rastrainer_simulator.core.settings import SimulationSettings
 

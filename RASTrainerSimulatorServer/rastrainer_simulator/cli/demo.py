@@ -197,8 +197,7 @@ def _draw_robot(
     path: Path, scenario: Scenario, state: dict[str, Any], trial: dict[str, Any]
 ) -> None:
     """Picture the last touch: the arm as it then stood, at the head that is no longer secret."""
-    from rastrainer_simulator.rendering.moment import SceneMoment
-    from rastrainer_simulator.rendering.picture import render_picture
+    from rastrainer_simulator.rendering.picture import SceneMoment, render_picture
     from rastrainer_simulator.robot.kinematics import make_kinematics
     from rastrainer_simulator.robot.model import load_robot
     from rastrainer_simulator.scene.scene_glb import scene_nodes

@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _findings(arguments: argparse.Namespace) -> list[CheckResult]:
     from rastrainer_simulator.cli.doctor.files import check_folders, check_journals, check_settings
-    from rastrainer_simulator.cli.doctor.graphics import check_graphics
+    from rastrainer_simulator.cli.doctor.graphics import check_gamepad, check_graphics
     from rastrainer_simulator.cli.doctor.software import check_page, check_python, check_slicer
     from rastrainer_simulator.cli.doctor.system import check_clock, check_ports, check_real_time
     from rastrainer_simulator.ops.folders import config_folder, log_folder
@@ -58,7 +58,7 @@ def _findings(arguments: argparse.Namespace) -> list[CheckResult]:
     }
     findings = list(check_python())
     findings += check_graphics()
-    findings += _gamepad()
+    findings += check_gamepad()
     findings += check_ports(arguments.port, arguments.view_port)
     findings += check_page()
     findings += check_slicer()
@@ -68,15 +68,6 @@ def _findings(arguments: argparse.Namespace) -> list[CheckResult]:
     findings += check_journals(arguments.records)
     findings += check_clock(arguments.records)
     return findings
-
-
-def _gamepad() -> Iterable[CheckResult]:
-    # Only here: a broken pygame must not keep the doctor from reporting it.
-    try:
-        from rastrainer_simulator.cli.doctor.gamepad import check_gamepad
-    except ImportError:
-        return []
-    return check_gamepad()
 
 
 def _lines(findings: Iterable[CheckResult]) -> Iterable[str]:

@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.ops.child_process import VIEW_KEY_VARIABLE
+from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE
 
 DEFAULT_URL = "http://127.0.0.1:18945"
 LEAST_SIDE, MOST_SIDE = 320, 16_384

@@ -9,11 +9,10 @@ from math import dist
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.collision.clearance import FAR, Nearest
-from rastrainer_simulator.collision.distance_bounds import DistanceBounds
+from rastrainer_simulator.collision.capsules import thin_segment
+from rastrainer_simulator.collision.clearance import FAR, DistanceBounds, Nearest
 from rastrainer_simulator.collision.head_surface import HeadSurface
-from rastrainer_simulator.collision.posed_arm import ArmCapsules, PosedArm
-from rastrainer_simulator.collision.segments import thin_segment
+from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm
 from rastrainer_simulator.vectors import ZERO, Vector
 
 _RIGID = 1e-6

@@ -8,9 +8,9 @@ from functools import lru_cache
 import fcl
 import numpy as np
 
+from rastrainer_simulator.collision.capsules import thin_segment
 from rastrainer_simulator.collision.clearance import Nearest
 from rastrainer_simulator.collision.closed_surface import ClosedSurface
-from rastrainer_simulator.collision.segments import thin_segment
 from rastrainer_simulator.vectors import Vector
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)

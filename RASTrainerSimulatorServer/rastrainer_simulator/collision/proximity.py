@@ -1,4 +1,13 @@
-"""Free, in proximity or in contact: what the trainee sees, hears and feels of the clearance."""
+"""Free, in proximity or in contact, and how deep the commanded motion has gone into the head.
+
+The head is rigid: a pressed tip rests on the skin and slides, however hard it is pushed. The depth
+is that of a god object in haptic rendering (Zilles and Salisbury 1995, 10.1109/IROS.1995.525876):
+the tool that is shown stays on the surface while the hand moves on beneath it, and their distance
+is the penetration. A joystick and a jog command velocities, not positions, so the displacement
+commanded into the skin is summed up tick by tick; a move cannot get deeper than its end.
+
+The depth is only measured: it does not influence the motion.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +17,8 @@ from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_
 from rastrainer.protocol import Proximity
 from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.clearance import Clearance
+from rastrainer_simulator.collision.sliding import REST
+from rastrainer_simulator.vectors import Vector, dot, subtract
 
 
 @dataclass(frozen=True)
@@ -38,3 +49,59 @@ def next_proximity(
     if clearance.tip_m <= (settings.far if is_near else settings.near):
         return Proximity.PROXIMITY
     return Proximity.FREE
+
+
+DEEPEST = 0.010
+"""m: pressing farther in counts no more."""
+
+
+class Pressing:
+    """The virtual depth of the tool in the head, all lengths in m.
+
+    Attributes:
+        depth: now; 0 without contact.
+        deepest: greatest of the contact that lasts, or of the last one.
+    """
+
+    def __init__(self) -> None:
+        self.depth = 0.0
+        self.deepest = 0.0
+        self._is_in_contact = False
+
+    def end(self) -> None:
+        """Take note that the tool is not in contact."""
+        self.depth = 0.0
+        self._is_in_contact = False
+
+    def move(
+        self,
+        commanded: Vector,
+        carried_out: Vector,
+        clearance: Clearance,
+        to_goal: Vector | None = None,
+    ) -> None:
+        """Take note of a tick at whose end the tool is in contact.
+
+        Args:
+            commanded: displacement of the tip that the operator wanted, World.
+            carried_out: displacement of the tip that came of it, World.
+            clearance: at the tick's end; the part of the tool that is nearer to the head counts.
+            to_goal: from the tip to where a commanded move shall end, None without an end.
+        """
+        if not self._is_in_contact:
+            self._is_in_contact, self.deepest = True, 0.0
+        nearest = clearance.tip
+        if clearance.shaft is not None and clearance.shaft.distance_m < nearest.distance_m:
+            nearest = clearance.shaft
+        outward = dot(commanded, nearest.normal)
+        if outward >= 0.0:
+            self.depth = max(self.depth - outward, 0.0)
+            return
+        # What was free and yet not gone, as at the limit of a joint's speed, is not the skin's.
+        free = max(nearest.distance_m - REST, 0.0)
+        held_back = dot(subtract(carried_out, commanded), nearest.normal) - free
+        depth = self.depth + max(min(-outward, held_back), 0.0)
+        if to_goal is not None:
+            depth = min(depth, max(self.depth, -dot(to_goal, nearest.normal) - free))
+        self.depth = min(depth, DEEPEST)
+        self.deepest = max(self.deepest, self.depth)

@@ -14,8 +14,8 @@ from rastrainer.units import MM_PER_M
 from rastrainer_simulator.collision.clearance import Clearance
 from rastrainer_simulator.collision.contact import Moved
 from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.robot.solution import FabrikSettings
 from rastrainer_simulator.teleoperation.axes import Axes
 from rastrainer_simulator.teleoperation.teleoperation import Tip
 from rastrainer_simulator.teleoperation.tool_steering import NearestSurface

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_type_hints
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
 from rastrainer_simulator.collision.proximity import ProximitySettings
-from rastrainer_simulator.robot.solution import FabrikSettings
+from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
 from rastrainer_simulator.training.touch_rule import TrainingSettings

@@ -1,19 +1,136 @@
-"""What a simulation is made from: the scenario, the robot and the settings."""
+"""What a simulation is made from: the scenario, the robot and the settings.
+
+The packages that read URDF and meshes take a second to import and 90 MB. A prepared robot (its
+model and shape as JSON beside the URDF, exact to the last bit) is loaded without them.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import read_json
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.collision.robot_shape import RobotShape, robot_shape
-from rastrainer_simulator.core.prepared_robot import model_from_json, read_prepared, shape_from_json
+from rastrainer_simulator.collision.capsules import Capsule
+from rastrainer_simulator.collision.robot_shape import LinkShape, RobotShape, robot_shape
 from rastrainer_simulator.core.settings import SimulationSettings, settings_to_json
-from rastrainer_simulator.robot.model import DEFAULT_URDF, RobotModel, load_robot
+from rastrainer_simulator.robot.mesh_files import MeshPart, mesh_inside
+from rastrainer_simulator.robot.model import (
+    DEFAULT_URDF,
+    RobotLink,
+    RobotModel,
+    load_robot,
+    make_model,
+)
+from rastrainer_simulator.robot.srs_geometry import Joint
+
+PREPARED_NAME = "prepared.json"
+MOST_BYTES = 2**20
+
+
+def read_prepared(urdf: Path) -> Mapping[str, Any] | None:
+    """Return what is written beside a URDF, None where nothing is or where it is out of date."""
+    try:
+        prepared = read_json(urdf.parent / PREPARED_NAME, MOST_BYTES)
+        return prepared if prepared["sha256"] == _fingerprint(urdf) else None
+    except (InputError, OSError, KeyError, TypeError):
+        return None
+
+
+def write_prepared(urdf: Path, model: Mapping[str, Any], shape: Mapping[str, Any]) -> None:
+    """Write the JSON of a robot's model and shape beside its URDF."""
+    prepared = {"sha256": _fingerprint(urdf), "model": model, "shape": shape}
+    text = json.dumps(prepared, indent=1, sort_keys=True) + "\n"
+    (urdf.parent / PREPARED_NAME).write_text(text, encoding="utf-8", newline="\n")
+
+
+def _fingerprint(urdf: Path) -> str:
+    """Return a hash of the URDF and of everything below its folder's `meshes/collision`."""
+    whole = hashlib.sha256(urdf.read_bytes())
+    for path in sorted((urdf.parent / "meshes" / "collision").glob("*")):
+        whole.update(path.name.encode() + hashlib.sha256(path.read_bytes()).digest())
+    return whole.hexdigest()
+
+
+def model_to_json(model: RobotModel, folder: Path) -> dict[str, Any]:
+    """Return a model as a JSON object; its mesh files are named from `folder` on."""
+    meshes = [asdict(part) | {"path": part.path.relative_to(folder)} for part in model.meshes]
+    return {
+        "name": model.name,
+        "tip": model.tip.name,
+        "joints": [_plain(asdict(joint)) for joint in model.joints],
+        "links": [_plain(asdict(link)) for link in model.links],
+        "meshes": [_plain(mesh) for mesh in meshes],
+    }
+
+
+def model_from_json(value: Mapping[str, Any], folder: Path) -> RobotModel:
+    """Return the model that a JSON object holds; its mesh files are below `folder`."""
+    joints = tuple(Joint(**_arrays(joint, "origin", "axis")) for joint in value["joints"])
+    links = tuple(RobotLink(**_arrays(link, "offset")) for link in value["links"])
+    meshes = tuple(
+        MeshPart(
+            **_arrays(part, "origin")
+            | {"path": mesh_inside(folder, folder / part["path"], part["link"])}
+            | {name: tuple(part[name]) for name in ("scale", "color")}
+        )
+        for part in value["meshes"]
+    )
+    return make_model(value["name"], joints, links, value["tip"], meshes)
+
+
+def _plain(value: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: _plain_part(part) for name, part in value.items()}
+
+
+def _plain_part(part: Any) -> Any:
+    if isinstance(part, np.ndarray):
+        return part.tolist()
+    return part.as_posix() if isinstance(part, Path) else part
+
+
+def _arrays(value: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    arrays = {name: np.array(value[name]) for name in names}
+    for array in arrays.values():
+        array.setflags(write=False)
+    return {**value, **arrays}
+
+
+def shape_to_json(shape: RobotShape) -> dict[str, Any]:
+    """Return a shape as a JSON object."""
+    links = [_link_to_json(link) for link in shape.links]
+    return {"links": links, "tool": _link_to_json(shape.tool), "tipName": shape.tip_name}
+
+
+def shape_from_json(value: Mapping[str, Any]) -> RobotShape:
+    """Return the shape that a JSON object holds."""
+    links = tuple(_link_from_json(link) for link in value["links"])
+    return RobotShape(links, _link_from_json(value["tool"]), value["tipName"])
+
+
+def _link_to_json(link: LinkShape) -> dict[str, Any]:
+    capsules = [
+        {"start": capsule.start.tolist(), "end": capsule.end.tolist(), "radius": capsule.radius}
+        for capsule in link.capsules
+    ]
+    return {"name": link.name, "joint": link.joint, "capsules": capsules}
+
+
+def _link_from_json(value: Mapping[str, Any]) -> LinkShape:
+    capsules = tuple(
+        Capsule(np.array(found["start"]), np.array(found["end"]), found["radius"])
+        for found in value["capsules"]
+    )
+    return LinkShape(value["name"], value["joint"], capsules)
+
 
 DEFAULT_SCENARIO = ("scenarios", "colin27")
 

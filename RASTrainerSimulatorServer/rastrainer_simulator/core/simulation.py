@@ -12,12 +12,10 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.units import MM_PER_M
-from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.contact import Contact, Moved
-from rastrainer_simulator.collision.plan_reach import PlanReach
-from rastrainer_simulator.collision.pressing import Pressing
-from rastrainer_simulator.collision.proximity import next_proximity
-from rastrainer_simulator.collision.table_clearance import Surroundings
+from rastrainer_simulator.collision.proximity import Pressing, next_proximity
+from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput

@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 
 from rastrainer_simulator.desktop.glb_parts import Finish, Part
-from rastrainer_simulator.scene.materials import NEXT, TIP_FREE, TIP_NEAR, TOUCHED, WAITING
+from rastrainer_simulator.scene.nodes import NEXT, TIP_FREE, TIP_NEAR, TOUCHED, WAITING
 from rastrainer_simulator.scene.surfaces import surface
 
 Shade = tuple[float, float, float]

@@ -21,14 +21,13 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.loop_statistics import LoopStatistics, Punctuality
-from rastrainer_simulator.loop.pending_answers import PendingAnswers
 from rastrainer_simulator.loop.precise_clock import (
     precise_timing,
     raise_thread_priority,
     sleep_until,
 )
-from rastrainer_simulator.loop.rate_limit import RateLimit, TrialLimits
-from rastrainer_simulator.loop.subscribers import Subscribers
+from rastrainer_simulator.loop.rates import RateLimit, TrialLimits
+from rastrainer_simulator.loop.subscribers import PendingAnswers, Subscribers
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.display_use import DisplayReport

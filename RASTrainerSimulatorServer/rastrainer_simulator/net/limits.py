@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer_simulator.loop.rate_limit import TrialLimits
+from rastrainer_simulator.loop.rates import TrialLimits
 
 LIMITS_FILE = "limits.json"
 MOST_BYTES = 2**14

@@ -9,7 +9,7 @@ import ssl
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-from rastrainer_simulator.net.rates import AsyncRateLimiter
+from rastrainer_simulator.loop.rates import AsyncRateLimiter
 
 MOST_HANDSHAKES = 32
 """Peers that may be agreeing on a key at once."""

@@ -1,15 +1,26 @@
-"""The window that a simulator opens beside itself: another process, which may come and go."""
+"""Child processes beside the control loop: their environment, and the desktop window."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import os
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 from rastrainer.processes.private_folder import python_words
-from rastrainer_simulator.ops.child_process import VIEW_KEY_VARIABLE
+
+VIEW_KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
+"""Holds a key that views are served for, agreed on by who starts a simulator and a window."""
+BELOW_NORMAL = getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0)
+"""Windows' flag of a process that gives way; elsewhere such a process raises its niceness."""
+
+
+def environment_without_secrets() -> dict[str, str]:
+    """Return the environment without the key that only this process may know."""
+    return {name: value for name, value in os.environ.items() if name != VIEW_KEY_VARIABLE}
+
 
 ENDING_S = 3.0
 GONE = (

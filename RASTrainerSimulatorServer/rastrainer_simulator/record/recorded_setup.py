@@ -1,15 +1,45 @@
-"""What a trial was recorded with, to simulate it again or to resume it."""
+"""What a trial was recorded with: scenario, robot, settings and versions."""
 
 from __future__ import annotations
 
+import contextlib
+import platform
 from collections.abc import Mapping
+from importlib import metadata
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
+import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.protocol import TouchRule
+from rastrainer.protocol import PROTOCOL_VERSION, TouchRule
 from rastrainer_simulator.core.settings import SimulationSettings, settings_from_json
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+
+PACKAGES = ("numpy", "pin", "python-fcl")
+
+
+def versions() -> dict[str, str]:
+    """Return name and version of what a trajectory depends on; a missing package is left out."""
+    return {
+        "rastrainer": rastrainer.__version__,
+        "protocol": str(PROTOCOL_VERSION),
+        "python": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}",
+        **_OF_PACKAGES,
+    }
+
+
+def _of_packages() -> Mapping[str, str]:
+    found = {}
+    for package in PACKAGES:
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            found[package] = metadata.version(package)
+    return MappingProxyType(found)
+
+
+# Looked up at once: that goes through folders, and a trial begins within a tick.
+_OF_PACKAGES = _of_packages()
 
 
 def setup_of(

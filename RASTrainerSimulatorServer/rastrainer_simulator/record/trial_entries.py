@@ -18,8 +18,8 @@ from rastrainer.units import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
+from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.state import (
     Event,
     EventKind,

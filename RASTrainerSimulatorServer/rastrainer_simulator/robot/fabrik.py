@@ -17,9 +17,16 @@ from collections.abc import Sequence
 from math import inf
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.robot.arm_frame import ArmFrame
+from rastrainer_simulator.robot.arm_frame import ArmFrame, solve_rounded
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, chain
-from rastrainer_simulator.robot.goal import Goal
+from rastrainer_simulator.robot.goal import (
+    BLOCKED,
+    OUT_OF_REACH,
+    ROLL_BLOCKED,
+    FabrikSettings,
+    Goal,
+    Solution,
+)
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.robot.prediction import follow, predict
@@ -28,14 +35,6 @@ from rastrainer_simulator.robot.reaching import (
     Start,
     reach_position,
     reach_wrist,
-)
-from rastrainer_simulator.robot.rounded_arm import solve_rounded
-from rastrainer_simulator.robot.solution import (
-    BLOCKED,
-    OUT_OF_REACH,
-    ROLL_BLOCKED,
-    FabrikSettings,
-    Solution,
 )
 from rastrainer_simulator.vectors import Vector
 

@@ -30,9 +30,6 @@ class Kinematics(Protocol):
     def links(self, q: Sequence[float]) -> dict[str, np.ndarray]:
         """Return LinkToWorld, (4, 4) float, of every link by its name."""
 
-    def jacobian(self, q: Sequence[float]) -> np.ndarray:
-        """Return the tip's Jacobian, (6, 7) float: m/rad, then rad/rad, along World's axes."""
-
 
 def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics:
     """Return the kinematics of `model`.
@@ -45,8 +42,6 @@ def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics
         return NumpyKinematics(model)
     if importlib.util.find_spec("pinocchio") is None:
         raise InputError(f"Pinocchio is not installed; set {VARIABLE}=numpy.")
-    from rastrainer_simulator.robot.pinocchio_kinematics import PinocchioKinematics
-
     return PinocchioKinematics(model)
 
 
@@ -74,11 +69,8 @@ def _available() -> str:
     return "numpy" if importlib.util.find_spec("pinocchio") is None else "pinocchio"
 
 
-_NEXT, _AFTER_NEXT = [1, 2, 0], [2, 0, 1]
-
-
 class NumpyKinematics:
-    """Implements `kinematics.Kinematics`."""
+    """Kinematics by numpy alone."""
 
     def __init__(self, model: RobotModel) -> None:
         self.model = model
@@ -91,7 +83,6 @@ class NumpyKinematics:
         self._names = model.link_names
         self._joint_of_link = [link.joint for link in model.links]
         self._offsets = np.array([link.offset for link in model.links])
-        self._axes = np.array([joint.axis for joint in model.joints])[:, :, None]
         self._frames = np.tile(np.eye(4), (8, 1, 1))
 
     def tip(self, q: Sequence[float]) -> np.ndarray:
@@ -102,14 +93,6 @@ class NumpyKinematics:
         """Return LinkToWorld, (4, 4) float, of every link by its name."""
         poses = self._move(q)[self._joint_of_link] @ self._offsets
         return dict(zip(self._names, poses, strict=True))
-
-    def jacobian(self, q: Sequence[float]) -> np.ndarray:
-        """Return the tip's Jacobian, (6, 7) float: m/rad, then rad/rad, along World's axes."""
-        frames = self._move(q)[1:]
-        axes = (frames[:, :3, :3] @ self._axes)[:, :, 0]
-        arms = (frames[6] @ self.model.tip.offset[:, 3])[:3] - frames[:, :3, 3]
-        turns = axes[:, _NEXT] * arms[:, _AFTER_NEXT] - axes[:, _AFTER_NEXT] * arms[:, _NEXT]
-        return np.concatenate((turns, axes), axis=1).T
 
     def _move(self, q: Sequence[float]) -> np.ndarray:
         """Return the base's and the seven movable frames in World, (8, 4, 4) float.
@@ -124,3 +107,42 @@ class NumpyKinematics:
         for reach in (1, 2, 4):
             chain[reach:] = chain[:-reach] @ chain[reach:]
         return frames
+
+
+class PinocchioKinematics:
+    """Kinematics by Pinocchio. Only what is needed is read: copying all frames is slow."""
+
+    def __init__(self, model: RobotModel) -> None:
+        import pinocchio as pin
+
+        self.model = model
+        self._pin = pin
+        self._model = pin.Model()
+        joint = 0
+        for found in model.joints:
+            placement = pin.SE3(found.origin)
+            joint = self._model.addJoint(
+                joint, pin.JointModelRevoluteUnaligned(found.axis), placement, found.name
+            )
+        inertia = pin.Inertia.Zero()
+        frames = [
+            self._model.addFrame(
+                pin.Frame(link.name, link.joint, pin.SE3(link.offset), pin.FrameType.BODY, inertia)
+            )
+            for link in model.links
+        ]
+        self._links = dict(zip(model.link_names, frames, strict=True))
+        self._tip = self._links[model.tip.name]
+        self._data = self._model.createData()
+
+    def tip(self, q: Sequence[float]) -> np.ndarray:
+        """Return ToolTipToWorld, (4, 4) float."""
+        self._pin.forwardKinematics(self._model, self._data, np.asarray(q, dtype=float))
+        return self._pin.updateFramePlacement(self._model, self._data, self._tip).homogeneous
+
+    def links(self, q: Sequence[float]) -> dict[str, np.ndarray]:
+        """Return LinkToWorld, (4, 4) float, of every link by its name."""
+        self._pin.framesForwardKinematics(self._model, self._data, np.asarray(q, dtype=float))
+        # One by one they take ten times as long.
+        placements = self._data.oMf.tolist()
+        return {name: placements[frame].homogeneous for name, frame in self._links.items()}

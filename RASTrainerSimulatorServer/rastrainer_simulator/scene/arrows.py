@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer_simulator.scene.mark_shapes import RIM_RADIUS
-from rastrainer_simulator.scene.skin import Shape, Skin
+from rastrainer_simulator.scene.skin import RIM_RADIUS, Shape, Skin
 
 STEP = 2.0
 """The ribbon is laid onto the skin anew after every 2 mm."""

@@ -1,13 +1,67 @@
-"""A scene as values: named nodes with surfaces; lengths in m."""
+"""A scene as values: named nodes with surfaces and physically based materials; lengths in m."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer_simulator.scene.materials import Material
+Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Material:
+    """A surface's color (sRGB, 0…1), roughness and metallicity; a `glowing` one needs no light."""
+
+    name: str
+    color: Color
+    roughness: float = 0.5
+    metallic: float = 0.0
+    glowing: bool = False
+
+    @property
+    def linear_color(self) -> Color:
+        """The color as light, as glTF and physically based shading want it (IEC 61966-2-1)."""
+        red, green, blue = (
+            value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+            for value in self.color
+        )
+        return red, green, blue
+
+
+SKIN = Material("skin", (0.87, 0.67, 0.56), 0.55)
+STEEL = Material("steel", (0.76, 0.77, 0.78), 0.35, 0.6)
+TABLE_TOP = Material("table_top", (0.68, 0.70, 0.70), 0.45)
+MAT = Material("mat", (0.22, 0.45, 0.50), 0.85)
+FLOOR = Material("floor", (0.50, 0.55, 0.58), 0.5)
+FLOOR_BORDER = Material("floor_border", (0.36, 0.43, 0.47), 0.5)
+WALL = Material("wall", (0.91, 0.92, 0.91), 0.85)
+WALL_BAND = Material("wall_band", (0.58, 0.71, 0.72), 0.8)
+WALL_SEAM = Material("wall_seam", (0.72, 0.75, 0.75), 0.9)
+DOOR = Material("door", (0.66, 0.76, 0.77), 0.6)
+CABINET = Material("cabinet", (0.83, 0.86, 0.87), 0.5)
+DARK = Material("dark", (0.13, 0.15, 0.17), 0.35)
+DISPLAY = Material("display", (0.05, 0.10, 0.14), glowing=True)
+TRACE = Material("trace", (0.30, 0.62, 0.60), glowing=True)
+LAMP_GLASS = Material("lamp_glass", (0.96, 0.97, 0.94), glowing=True)
+
+TIP_FREE = Material("tip_free", (0.05, 0.30, 1.0), glowing=True)
+TIP_NEAR = Material("tip_near", (1.0, 0.05, 0.05), glowing=True)
+
+WAITING = Material("waiting", (0.10, 0.24, 0.62), glowing=True)
+NEXT = Material("next", (1.0, 0.80, 0.05), glowing=True)
+TOUCHED = Material("touched", (0.10, 0.62, 0.25), glowing=True)
+MARK_RIM = Material("rim", (0.97, 0.97, 0.97), glowing=True)
+NUMBER = Material("number", (0.07, 0.09, 0.16), glowing=True)
+ARROW = Material("arrow", (0.16, 0.22, 0.38), glowing=True)
+
+
+def painted(color: Sequence[float]) -> Material:
+    """Return the coating of a robot part: the color its URDF names, a little glossy."""
+    red, green, blue = (float(value) for value in color[:3])
+    name = "paint_" + "".join(f"{round(255 * value):02x}" for value in (red, green, blue))
+    return Material(name, (red, green, blue), 0.38)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import numpy as np
 
 from rastrainer.scenario.scenario import Furniture
 from rastrainer.units import MM_PER_M
-from rastrainer_simulator.scene.materials import (
+from rastrainer_simulator.scene.nodes import (
     CABINET,
     DARK,
     DISPLAY,
@@ -22,9 +22,11 @@ from rastrainer_simulator.scene.materials import (
     WALL_BAND,
     WALL_SEAM,
     Material,
+    Node,
+    Surface,
+    merged,
 )
-from rastrainer_simulator.scene.nodes import Node, Surface, merged
-from rastrainer_simulator.scene.solids import Span, box, post, soft_box, turned
+from rastrainer_simulator.scene.surfaces import Span, box, post, soft_box, turned
 
 FLOOR_HEIGHT = -0.78
 WALL_TOP = 1.9

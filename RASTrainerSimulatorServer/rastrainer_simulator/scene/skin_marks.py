@@ -9,8 +9,7 @@ import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer_simulator.scene.arrows import LENGTHS, Arrow, arrow_shape, arrows
-from rastrainer_simulator.scene.mark_shapes import RIM_RADIUS, Flat, dot, number, rim
-from rastrainer_simulator.scene.skin import Shape, Skin
+from rastrainer_simulator.scene.skin import RIM_RADIUS, Flat, Shape, Skin, dot, number, rim
 
 DISTANCES = (11.5, 13.0, 15.0, 17.5, 20.5, 24.0)
 ANGLES = np.radians(np.arange(0, 360, 20))

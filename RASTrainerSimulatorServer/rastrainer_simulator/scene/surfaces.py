@@ -1,6 +1,8 @@
-"""Arrays as VTK's surfaces and back, smooth but for their sharp edges."""
+"""Arrays as VTK's surfaces and back, smooth but for sharp edges; solids for furniture, in m."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -9,8 +11,93 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-from rastrainer_simulator.scene.materials import Material
-from rastrainer_simulator.scene.nodes import Surface
+from rastrainer_simulator.scene.nodes import Material, Surface
+
+ROUND = 40
+_CORNER = 5
+
+Span = tuple[float, float]
+
+
+def box(x: Span, y: Span, z: Span, material: Material) -> Surface:
+    """Return a box with sharp edges."""
+    ring = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
+    return _stack([(ring, z[0]), (ring, z[1])], material)
+
+
+def soft_box(
+    x: Span, y: Span, z: Span, material: Material, radius: float = 0.02, edge: float = 0.006
+) -> Surface:
+    """Return a box with round upright edges of a `radius`, the others beveled by `edge`."""
+    outer, inner = _rounded(x, y, radius, 0.0), _rounded(x, y, radius, edge)
+    low, high = z
+    rings = [(inner, low), (outer, low + edge), (outer, high - edge), (inner, high)]
+    return _stack(rings, material)
+
+
+def post(x: float, y: float, z: Span, radius: float, material: Material) -> Surface:
+    """Return an upright cylinder."""
+    return turned(x, y, [(radius, z[0]), (radius, z[1])], material)
+
+
+def turned(
+    x: float,
+    y: float,
+    profile: Sequence[tuple[float, float]],
+    material: Material,
+    pose: np.ndarray | None = None,
+) -> Surface:
+    """Return what a lathe makes: `profile` has radius and height, from below upward.
+
+    `pose` (4, 4) float moves it from where it stands upright.
+    """
+    angles = np.linspace(0.0, 2.0 * np.pi, ROUND, endpoint=False)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    rings = [(circle * radius + (x, y), height) for radius, height in profile]
+    return _stack(rings, material, pose)
+
+
+def _rounded(x: Span, y: Span, radius: float, inset: float) -> np.ndarray:
+    """Return a rectangle with round corners, moved inward by `inset`: (n, 2) float."""
+    bend = max(radius - inset, 1e-4)
+    quarter = np.linspace(0.0, np.pi / 2.0, _CORNER)
+    centers = [
+        (x[1] - radius, y[1] - radius),
+        (x[0] + radius, y[1] - radius),
+        (x[0] + radius, y[0] + radius),
+        (x[1] - radius, y[0] + radius),
+    ]
+    corners = []
+    for index, center in enumerate(centers):
+        angles = quarter + index * np.pi / 2.0
+        corners.append(np.column_stack([np.cos(angles), np.sin(angles)]) * bend + center)
+    return np.concatenate(corners)
+
+
+def _stack(
+    rings: Sequence[tuple[np.ndarray, float]],
+    material: Material,
+    pose: np.ndarray | None = None,
+) -> Surface:
+    """Return the solid through rings (n, 2) at rising heights, each counterclockwise and convex."""
+    count = len(rings[0][0])
+    points = [np.column_stack([ring, np.full(count, height)]) for ring, height in rings]
+    middles = [points[0].mean(axis=0), points[-1].mean(axis=0)]
+    vertices = np.concatenate([*points, middles])
+    here = np.arange(count)
+    following = np.roll(here, -1)
+    triangles = []
+    for level in range(len(rings) - 1):
+        below, above = level * count, (level + 1) * count
+        triangles.append(np.column_stack([below + here, below + following, above + following]))
+        triangles.append(np.column_stack([below + here, above + following, above + here]))
+    top = (len(rings) - 1) * count
+    bottom_middle, top_middle = len(vertices) - 2, len(vertices) - 1
+    triangles.append(np.column_stack([following, here, np.full(count, bottom_middle)]))
+    triangles.append(np.column_stack([top + here, top + following, np.full(count, top_middle)]))
+    if pose is not None:
+        vertices = vertices @ pose[:3, :3].T + pose[:3, 3]
+    return shaded(vertices, np.concatenate(triangles), material)
 
 
 def surface(vertices: np.ndarray, triangles: np.ndarray) -> vtkPolyData:

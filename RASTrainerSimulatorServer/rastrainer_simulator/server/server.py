@@ -36,9 +36,8 @@ from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
 from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
-from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.record.recorded_setup import setup_of, versions
 from rastrainer_simulator.record.records_folder import RecordsFolder
-from rastrainer_simulator.record.versions import versions
 from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.server.scenario_loader import ScenarioLoader
 from rastrainer_simulator.state import Answer

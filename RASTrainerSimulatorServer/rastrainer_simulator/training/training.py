@@ -27,8 +27,7 @@ from rastrainer_simulator.training.touch_rule import (
     TrainingSettings,
     refused_touch,
 )
-from rastrainer_simulator.training.trial_clock import TrialClock
-from rastrainer_simulator.training.trial_seed import trial_id, trial_seed
+from rastrainer_simulator.training.trial_clock import TrialClock, trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, vector
 

@@ -19,7 +19,7 @@ const FURNITURE = ["table", "floor", "room"];
 const PULSE_S = 1.4;
 const PULSE_COLOR = new Color(1, 0.97, 0.75);
 
-/** sRGB, as in the simulator's scene/materials.py. */
+/** sRGB, as in the simulator's scene/nodes.py. */
 const COLORS = {
   waiting: new Color().setRGB(0.1, 0.24, 0.62, "srgb"),
   next: new Color().setRGB(1.0, 0.8, 0.05, "srgb"),

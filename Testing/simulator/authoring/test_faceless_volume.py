@@ -13,7 +13,7 @@ from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.mask import squared_distances
 from rastrainer.slicer.head.volume import Volume
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.authoring.faceless_volume import Grid, without_face_in
+from rastrainer_simulator.authoring.export import Grid, without_face_in
 from Testing.domain.head.test_face_removal import head as ball_with_a_face
 
 REACH_MM = 6

@@ -14,8 +14,7 @@ from rastrainer.units import MM_PER_M
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_set import TaskSetProposer
-from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.table_clearance import Surroundings
+from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin_marks import skin_marks

@@ -15,8 +15,7 @@ import pytest
 from rastrainer_simulator.cli.doctor import files, software
 from rastrainer_simulator.cli.doctor.check_result import CheckStatus
 from rastrainer_simulator.cli.doctor.files import check_folders, check_journals, check_settings
-from rastrainer_simulator.cli.doctor.gamepad import check_gamepad
-from rastrainer_simulator.cli.doctor.graphics import check_graphics
+from rastrainer_simulator.cli.doctor.graphics import check_gamepad, check_graphics
 from rastrainer_simulator.cli.doctor.software import check_python, check_slicer
 from rastrainer_simulator.cli.doctor.system import check_clock, check_ports, check_real_time
 from rastrainer_simulator.cli.main import main

@@ -3,9 +3,8 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR
-from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.posed_arm import ArmCapsules
-from rastrainer_simulator.collision.table_clearance import Surroundings
+from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.robot_shape import ArmCapsules
 from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, at, posture
 from Testing.simulator.collision.brute_force import segment_to_segments, segment_to_triangles
 from Testing.simulator.collision.heads import bumpy_head

@@ -8,9 +8,8 @@ import pytest
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.units import MM_PER_M
-from rastrainer_simulator.collision.collision import Collision
+from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.sliding import REST
-from rastrainer_simulator.collision.table_clearance import Surroundings
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, TICK, Driver, at, posture
 from Testing.simulator.collision.heads import ball, box, groove, together

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer_simulator.collision.clearance import FAR
-from rastrainer_simulator.collision.distance_bounds import DistanceBounds
+from rastrainer_simulator.collision.clearance import FAR, DistanceBounds
 
 COUNT, TICKS = 40, 3000
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.collision.clearance import FAR, Clearance, Nearest
-from rastrainer_simulator.collision.pressing import DEEPEST, Pressing
+from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.vectors import ZERO
 

@@ -16,7 +16,7 @@ from rastrainer.units import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
-from rastrainer_simulator.robot.solution import FabrikSettings
+from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.state import EventKind, Motion, StartingPoint
 from rastrainer_simulator.teleoperation.axes import AxesChoice, camera_axes
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings

@@ -17,8 +17,7 @@ from rastrainer_simulator.net.views.screen import (
     ScreenMessage,
     Tone,
 )
-from rastrainer_simulator.scene.materials import ARROW, SKIN, TIP_FREE, WAITING, WALL
-from rastrainer_simulator.scene.nodes import Node
+from rastrainer_simulator.scene.nodes import ARROW, SKIN, TIP_FREE, WAITING, WALL, Node
 from rastrainer_simulator.scene.scene_glb import to_glb
 from rastrainer_simulator.scene.surfaces import shaded
 

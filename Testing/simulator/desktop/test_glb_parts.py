@@ -3,7 +3,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.scene.materials import SKIN, TIP_FREE
+from rastrainer_simulator.scene.nodes import SKIN, TIP_FREE
 from Testing.simulator.desktop.conftest import BODIES
 
 

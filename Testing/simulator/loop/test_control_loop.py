@@ -20,7 +20,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop import control_loop
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.rate_limit import TrialLimits
+from rastrainer_simulator.loop.rates import TrialLimits
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay

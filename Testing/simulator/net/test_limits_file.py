@@ -10,7 +10,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client, LinkError
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer_simulator.loop.rate_limit import TrialLimits
+from rastrainer_simulator.loop.rates import TrialLimits
 from rastrainer_simulator.net.limits import (
     LIMITS_FILE,
     LinkLimits,

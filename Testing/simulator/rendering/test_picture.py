@@ -9,14 +9,12 @@ from rastrainer.scenario.scenario import Camera, Furniture
 from rastrainer.scenario.tasks import Task
 from rastrainer.units import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
-from rastrainer_simulator.rendering.moment import SceneMoment
 from rastrainer_simulator.rendering.offscreen import write_png
-from rastrainer_simulator.rendering.picture import render_picture
+from rastrainer_simulator.rendering.picture import SceneMoment, render_picture
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
-from rastrainer_simulator.scene.robot_nodes import robot_nodes
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
-from rastrainer_simulator.scene.scene_glb import head_node
+from rastrainer_simulator.scene.scene_glb import head_node, robot_nodes
 from Testing.read_png import read_png
 
 RADIUS = 80.0

@@ -9,8 +9,8 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.fabrik import Fabrik
+from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.robot.model import load_robot
-from rastrainer_simulator.robot.solution import FabrikSettings
 
 MODES = ("position", "direction", "pose")
 SHOULDER = np.array([0.0, 0.0, 0.34])

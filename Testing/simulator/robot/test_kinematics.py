@@ -22,10 +22,9 @@ def test_numpy_equals_pinocchio_to_1e_12_in_10_000_postures(robot, postures):
     ours, theirs = make_kinematics(robot, "numpy"), make_kinematics(robot, "pinocchio")
     for q in postures:
         np.testing.assert_allclose(ours.tip(q), theirs.tip(q), rtol=0, atol=1e-12)
-        difference = np.abs(ours.jacobian(q) - theirs.jacobian(q)).max()
         links, expected = ours.links(q), theirs.links(q)
         assert links.keys() == expected.keys()
-        difference = max(difference, *(np.abs(links[n] - expected[n]).max() for n in links))
+        difference = max(np.abs(links[n] - expected[n]).max() for n in links)
         assert difference <= 1e-12
 
 
@@ -42,31 +41,13 @@ def test_the_kinematics_agree_with_pinocchios_own_reading_of_the_urdf(robot, pos
 
 
 @pytest.mark.parametrize("backend", ["numpy", "pinocchio"])
-def test_the_jacobian_is_the_derivative_of_the_tip(robot, postures, backend):
-    kinematics, step = make_kinematics(robot, backend), 1e-6
-    for q in postures[:50]:
-        jacobian = kinematics.jacobian(q).copy()
-        rotation = kinematics.tip(q)[:3, :3]
-        for joint in range(7):
-            change = np.zeros(7)
-            change[joint] = step
-            slope = (kinematics.tip(q + change) - kinematics.tip(q - change)) / (2.0 * step)
-            spin = slope[:3, :3] @ rotation.T
-            turn = [spin[2, 1], spin[0, 2], spin[1, 0]]
-            np.testing.assert_allclose(jacobian[:3, joint], slope[:3, 3], atol=1e-8)
-            np.testing.assert_allclose(jacobian[3:, joint], turn, atol=1e-8)
-
-
-@pytest.mark.parametrize("backend", ["numpy", "pinocchio"])
-def test_an_answer_is_not_changed_by_the_next_question(robot, postures, backend):
+def test_returned_poses_are_not_changed_by_the_next_call(robot, postures, backend):
     kinematics = make_kinematics(robot, backend)
-    tip, jacobian = kinematics.tip(postures[0]), kinematics.jacobian(postures[0])
-    links = kinematics.links(postures[0])
-    before = [tip.copy(), jacobian.copy(), *(pose.copy() for pose in links.values())]
+    tip, links = kinematics.tip(postures[0]), kinematics.links(postures[0])
+    before = [tip.copy(), *(pose.copy() for pose in links.values())]
     kinematics.tip(postures[1])
     kinematics.links(postures[1])
-    kinematics.jacobian(postures[1])
-    for kept, now in zip(before, [tip, jacobian, *links.values()], strict=True):
+    for kept, now in zip(before, [tip, *links.values()], strict=True):
         np.testing.assert_array_equal(kept, now)
 
 

@@ -10,8 +10,7 @@ import pytest
 
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.collision.robot_shape import robot_shape
-from rastrainer_simulator.core.prepared_robot import FILE_NAME, read_prepared
-from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.setup import PREPARED_NAME, load_setup, read_prepared
 from rastrainer_simulator.robot.model import DEFAULT_URDF, load_robot
 
 URDF = asset_path(*DEFAULT_URDF)
@@ -60,7 +59,7 @@ def test_what_is_prepared_is_not_used_once_a_file_has_changed(copied, changed):
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", "nonsense", None])
 def test_a_robot_is_read_from_its_files_where_nothing_usable_is_prepared(copied, text):
-    prepared = copied.parent / FILE_NAME
+    prepared = copied.parent / PREPARED_NAME
     if text is None:
         prepared.unlink()
     else:

@@ -10,7 +10,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.units import MM_PER_M
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.scene.materials import Material
+from rastrainer_simulator.scene.nodes import Material
 from rastrainer_simulator.scene.scene_glb import scene_glb
 from Testing.simulator.scene.glb_reader import Glb
 

@@ -12,9 +12,9 @@ from typing import Protocol
 
 from rastrainer.igtl.message import CONTENTS, Message
 from rastrainer.igtl.stream import MessageReader
+from rastrainer_simulator.loop.rates import ReadingBudget
 from rastrainer_simulator.net.igtl.outgoing import Outgoing, OutgoingQueue
 from rastrainer_simulator.net.limits import LinkLimits
-from rastrainer_simulator.net.rates import ReadingBudget
 
 _PIECE_BYTES = 16 * 1024
 

@@ -1,18 +1,102 @@
-"""What clients receive without asking: each device at its rate, packed once for all of them."""
+"""The state as messages, each device at its rate, packed once for all clients.
+
+Metres become millimetres here and nowhere else.
+"""
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
+from rastrainer.igtl.content import Status, String, Transform
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import Rate
-from rastrainer_simulator.net.igtl import devices
+from rastrainer.igtl.points import Point, Points
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.connection import ClientConnection
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
-from rastrainer_simulator.net.rates import Pacer
 from rastrainer_simulator.state import SimulationState, TrainingState
+
+
+def tool_tip(state: SimulationState, seq: int) -> Message:
+    """Return the tool tip's pose, with what Slicer cannot read from a header in its metadata."""
+    metadata = {
+        "seq": str(seq),
+        "simTime": f"{state.sim_time:.6f}",
+        "TransformStatus": "OK",
+    }
+    return Message(DeviceName.TOOL_TIP_TO_WORLD, _transform(state.tool_tip_to_world), metadata)
+
+
+def links(state: SimulationState, seq: int) -> tuple[Message, ...]:
+    """Return the poses of the robot's links 0 to 7."""
+    metadata = {"seq": str(seq)}
+    return tuple(
+        Message(device, _transform(pose), metadata)
+        for device, pose in zip(DeviceName.LINK_TO_WORLD, state.link_to_world, strict=True)
+    )
+
+
+def captured_points(training: TrainingState) -> Message:
+    """Return the whole list of touched points; its metadata let Slicer clear an empty one."""
+    points = tuple(
+        Point(touch.label, (MM_PER_M * x, MM_PER_M * y, MM_PER_M * z))
+        for touch in training.touches
+        for x, y, z in [touch.position]
+    )
+    metadata = {"count": str(len(points)), "trialId": training.trial_id}
+    return Message(DeviceName.CAPTURED_POINTS, Points(points), metadata)
+
+
+def what_changes(state: SimulationState) -> dict[str, Any]:
+    """Return what `SimState` says beside its number and time; sent again when it changes."""
+    training = state.training
+    return {
+        "phase": training.phase.value,
+        "trainee": training.trainee,
+        "task": training.task,
+        "mode": training.mode,
+        "trialId": training.trial_id,
+        "nextPoint": training.next_point,
+        "instruction": training.instruction,
+        "proximity": state.proximity.value,
+        "clearanceMm": _rounded(MM_PER_M * state.clearance, 3),
+        "depthMm": _rounded(MM_PER_M * state.depth, 3),
+        "q": [_rounded(angle, 6) for angle in state.q],
+        "operator": state.operator,
+    }
+
+
+def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> Message:
+    """Return the text that says where the trial and the robot stand: ASCII JSON.
+
+    `changing` is what `what_changes` gives; the times go along and are no reason to send it.
+    """
+    times = {"simTime": round(state.sim_time, 6), "elapsedS": round(state.elapsed, 3)}
+    text = json.dumps({"seq": seq, **times, **changing}, allow_nan=False)
+    return Message(DeviceName.SIM_STATE, String(text))
+
+
+def heartbeat(details: Mapping[str, Any]) -> Message:
+    """Return the server's sign of life; its subcode is the protocol's version."""
+    text = json.dumps({"protocolVersion": PROTOCOL_VERSION, **details}, allow_nan=False)
+    status = Status(Status.OK, subcode=PROTOCOL_VERSION, message=text)
+    return Message(DeviceName.SIM_SERVER, status)
+
+
+def _transform(pose: np.ndarray) -> Transform:
+    """Return a (4, 4) float pose (m) as a transform (mm)."""
+    *axes, x, y, z = pose[:3].T.ravel().tolist()
+    return Transform((*axes, MM_PER_M * x, MM_PER_M * y, MM_PER_M * z))
+
+
+def _rounded(value: float, digits: int) -> float | None:
+    return round(value, digits) if math.isfinite(value) else None
 
 
 class PoseSubscription:
@@ -75,9 +159,9 @@ class Publisher:
         """Send a client the present state, and from now on what changes; again for other rates."""
         self._poses[connection] = poses
         state = self._latest()
-        self._send([connection], devices.captured_points(state.training))
-        changing = devices.what_changes(state)
-        self._send([connection], devices.sim_state(changing, state, self._next_number()))
+        self._send([connection], captured_points(state.training))
+        changing = what_changes(state)
+        self._send([connection], sim_state(changing, state, self._next_number()))
         self._next = -math.inf
 
     def unsubscribe(self, connection: ClientConnection) -> None:
@@ -99,10 +183,10 @@ class Publisher:
             self._publish_state(everyone, state)
         tip_due = [who for who, poses in self._poses.items() if poses.tool_tip.is_due(now)]
         if tip_due:
-            self._publish_poses(tip_due, (devices.tool_tip(state, self._number + 1),))
+            self._publish_poses(tip_due, (tool_tip(state, self._number + 1),))
         links_due = [who for who, poses in self._poses.items() if poses.links.is_due(now)]
         if links_due:
-            self._publish_poses(links_due, devices.links(state, self._number + 1))
+            self._publish_poses(links_due, links(state, self._number + 1))
         self._next = min([self._state.next, *(poses.next for poses in self._poses.values())])
 
     def _publish_training(
@@ -112,13 +196,13 @@ class Publisher:
         sent = self._sent_training
         self._sent_training = training
         if sent is None or (sent.touches, sent.trial_id) != (training.touches, training.trial_id):
-            self._send(everyone, devices.captured_points(training))
+            self._send(everyone, captured_points(training))
 
     def _publish_state(self, everyone: Iterable[ClientConnection], state: SimulationState) -> None:
-        changing = devices.what_changes(state)
+        changing = what_changes(state)
         if changing != self._sent_state:
             self._sent_state = changing
-            message = devices.sim_state(changing, state, self._next_number())
+            message = sim_state(changing, state, self._next_number())
             self._send(everyone, message)
 
     def _publish_poses(self, due: Iterable[ClientConnection], messages: Iterable[Message]) -> None:

@@ -18,11 +18,10 @@ from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Phase
 from rastrainer.study.protocol.study_step import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.net.igtl import devices
 from rastrainer_simulator.net.igtl.command_handler import CommandHandler
 from rastrainer_simulator.net.igtl.connection import ClientConnection
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
-from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
+from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, heartbeat
 from rastrainer_simulator.net.igtl.server import IgtlServer
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState
@@ -127,7 +126,7 @@ class SimulatorLink:
 
     def _heartbeat(self) -> Outgoing:
         clients = len(self.server.clients)
-        return Outgoing(devices.heartbeat({"clients": clients, **self._health()}))
+        return Outgoing(heartbeat({"clients": clients, **self._health()}))
 
     def _submit(
         self, connection: ClientConnection, name: str, arguments: Mapping[str, Any]

@@ -14,7 +14,7 @@ from aiohttp.typedefs import Handler
 from rastrainer.errors import InputError
 from rastrainer.json_checks import text
 from rastrainer.protocol import decode_json_object
-from rastrainer_simulator.net.rates import AsyncRateLimiter
+from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.views.pairing import DIGITS, TOO_MANY, WRONG, PairingCode, Sessions
 
 COOKIE = "rastrainer-view"

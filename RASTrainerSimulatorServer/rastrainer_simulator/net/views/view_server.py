@@ -14,9 +14,9 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
-from rastrainer_simulator.net.rates import AsyncRateLimiter
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
 from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
 from rastrainer_simulator.net.views.gate import Gate, add_security_headers

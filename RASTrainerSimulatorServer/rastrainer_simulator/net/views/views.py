@@ -10,8 +10,8 @@ from collections.abc import Sequence
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.rates import Pacer
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.presenter import (

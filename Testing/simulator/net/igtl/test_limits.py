@@ -16,8 +16,8 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
+from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.limits import LinkLimits
-from rastrainer_simulator.net.rates import AsyncRateLimiter
 from rastrainer_simulator.state import Answer
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, PlainServer
 

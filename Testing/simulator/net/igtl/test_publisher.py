@@ -14,8 +14,8 @@ from rastrainer.igtl.content import String
 from rastrainer.igtl.message import HEADER_BYTES, read_header, unpack
 from rastrainer.igtl.points import Points
 from rastrainer.protocol import DeviceName, Phase, Proximity
+from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
-from rastrainer_simulator.net.rates import Pacer
 from rastrainer_simulator.state import TouchState, TrainingState
 from Testing.simulator.net.igtl.servers import at_rest
 

@@ -7,7 +7,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import String
 from rastrainer.igtl.message import Message
-from rastrainer_simulator.net.rates import ReadingBudget
+from rastrainer_simulator.loop.rates import ReadingBudget
 from Testing.simulator.net.igtl.servers import PlainServer
 
 
