@@ -150,3 +150,31 @@ def test_a_place_that_was_shown_is_shown_again_after_the_views_were_moved(room, 
     jumpTo(room.scene, (0.0, 0.0, 0.0))
     follower.showAgain()
     np.testing.assert_allclose(place(room.scene), [10, 20, 30])
+
+
+def test_a_scene_that_is_cleared_and_shown_again_at_once_gets_its_next_point(
+    room, follower, scenario
+):
+    play(room, follower, "3")
+    room.scene.Clear(False)
+    follower.forgetScene()
+    jumpTo(room.scene, (0.0, 0.0, 0.0))
+    showTask(room.scene, scenario, "task-1")
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[2], atol=1e-3)
+
+
+def test_in_a_cleared_scene_the_slices_go_to_a_tool_that_stands_still(room, follower, scenario):
+    follower.followsTool = True
+    stand(room, scenario)
+    put_tool(room.scene, TIP)
+    follower.process()
+    shown = place(room.scene)
+    room.scene.Clear(False)
+    follower.forgetScene()
+    jumpTo(room.scene, (0.0, 0.0, 0.0))
+    stand(room, scenario)
+    put_tool(room.scene, TIP)
+    room.now += PERIOD_S
+    follower.process()
+    np.testing.assert_allclose(place(room.scene), shown)

@@ -39,6 +39,9 @@ class Lab:
     def next(self):
         return self.logic.progress().next_step.name
 
+    def skip(self, reason):
+        self.logic.skipStep(self.next, reason)
+
     def practice(self, seconds, **changes):
         """Let a trial run be played for so long, with a pause in it, and then be ended."""
         self.tell(phase="running", elapsedS=0.0, **changes)
@@ -146,7 +149,7 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
     enrolled, make_record, tmp_path
 ):
     enrolled.logic.answer([0] * 16)
-    enrolled.logic.skipStep("has practiced in the pilot")
+    enrolled.skip("has practiced in the pilot")
     enrolled.close()
     with Study.open(tmp_path / "study.db") as study:
         study.add_trial(
@@ -176,7 +179,7 @@ def test_a_break_ends_by_itself_and_whoever_is_chosen_when_the_protocols_minutes
     path.write_text(json.dumps(short))
     lab.logic.begin(path)
     lab.logic.enroll()
-    lab.logic.skipStep("the headset's battery was empty")
+    lab.skip("the headset's battery was empty")
     assert lab.next == "desktop/break"
     lab.trainees.choose("")
     lab.moment = datetime.now(timezone.utc) + timedelta(minutes=9.9)
@@ -205,8 +208,65 @@ def test_a_trial_that_will_not_count_is_told_while_it_is_played(enrolled):
 
 def test_the_next_step_is_not_skipped_without_a_reason(enrolled):
     with pytest.raises(InputError, match="only with a reason"):
-        enrolled.logic.skipStep("no")
+        enrolled.skip("no")
     assert enrolled.next == "hmd/before/ssq"
+
+
+def test_only_the_step_that_was_asked_about_is_skipped(enrolled):
+    asked = enrolled.next
+    enrolled.logic.answer([0] * 16)
+    with pytest.raises(InputError, match="The next step is hmd/trial-run"):
+        enrolled.logic.skipStep(asked, "the sheets were missing")
+    assert enrolled.next == "hmd/trial-run"
+
+
+def test_a_break_that_another_slicer_has_ended_ends_no_other_step(lab, tmp_path):
+    short = json.loads(SHIPPED.read_text()) | {
+        "tasks": ["task-1"],
+        "questionnaires": [],
+        "trialRun": {"minutes": 5},
+    }
+    path = tmp_path / "short.json"
+    path.write_text(json.dumps(short))
+    lab.logic.begin(path)
+    lab.logic.enroll()
+    while lab.next != "desktop/break":
+        lab.skip("this is not what is tested")
+    lab.trainees.choose("")
+    with Study.open(lab.path) as elsewhere:
+        StudyProgress(elsewhere).skip("T001", "desktop/break", "the trainee wants to continue")
+    lab.moment = datetime.now(timezone.utc) + timedelta(hours=1)
+    lab.logic.process()
+    lab.trainees.choose("T001")
+    assert lab.next == "desktop/trial-run"
+
+
+def test_practice_before_another_study_is_chosen_counts_in_the_former_study_alone(enrolled):
+    enrolled.logic.answer([0] * 16)
+    enrolled.tell(phase="running", elapsedS=0.0)
+    enrolled.tell(phase="running", elapsedS=3.0)
+    former = enrolled.path
+    enrolled.logic.leaveStudy()
+    enrolled.path = former.with_name("other.db")
+    enrolled.trainees.reopen()
+    enrolled.trainees.create("T001", consent=True)
+    enrolled.logic.begin(SHIPPED)
+    enrolled.logic.enroll()
+    enrolled.logic.answer([0] * 16)
+    enrolled.tell(phase="running", elapsedS=4.0)
+    enrolled.tell(phase="idle", elapsedS=0.0)
+    assert enrolled.logic.progress().practiced_s == 0.0
+    with Study.open(former) as study:
+        assert StudyProgress(study).progress("T001").practiced_s == pytest.approx(3.0)
+
+
+def test_a_second_trial_run_counts_from_its_start_though_it_lasts_longer(enrolled):
+    enrolled.logic.answer([0] * 16)
+    enrolled.tell(phase="running", elapsedS=0.0)
+    enrolled.tell(phase="running", elapsedS=20.0)
+    enrolled.tell(phase="running", elapsedS=30.0, trialId="another")
+    enrolled.tell(phase="idle", elapsedS=0.0)
+    assert enrolled.logic.progress().practiced_s == pytest.approx(50.0)
 
 
 def told(lab):
@@ -231,7 +291,7 @@ def test_the_simulator_is_told_what_comes_next_whenever_that_changes(enrolled):
     }
     count = len(room.sent("StudyStep"))
     enrolled.trainees.changed.emit()
-    enrolled.logic.skipStep("has practiced in the pilot")
+    enrolled.skip("has practiced in the pilot")
     room.run_until(lambda: told(enrolled)["kind"] == "trial")
     assert len(room.sent("StudyStep")) == count + 1
 
@@ -258,7 +318,7 @@ def test_a_trial_of_somebody_who_is_not_chosen_counts_and_the_simulator_is_told(
     enrolled, make_record
 ):
     enrolled.logic.answer([0] * 16)
-    enrolled.logic.skipStep("has practiced in the pilot")
+    enrolled.skip("has practiced in the pilot")
     enrolled.trainees.create("T002", consent=True)
     record = make_record(
         "00000000-0000-0000-0000-000000000001",
@@ -277,7 +337,7 @@ def test_a_late_trial_counts_before_a_simulator_is_told_what_comes_next(
     enrolled, make_record, tmp_path
 ):
     enrolled.logic.answer([0] * 16)
-    enrolled.logic.skipStep("has practiced in the pilot")
+    enrolled.skip("has practiced in the pilot")
     enrolled.trainees.choose("")
     enrolled.room.run_until(lambda: told(enrolled).get("task") == "task-1")
     with Study.open(tmp_path / "study.db") as elsewhere:
@@ -340,7 +400,7 @@ def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab
     path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
     lab.logic.begin(path)
     lab.logic.enroll()
-    lab.logic.skipStep("the headset's battery was empty")
+    lab.skip("the headset's battery was empty")
     lab.room.run_until(lambda: told(lab).get("minutes") == 10.0)
     lab.moment = datetime.now(timezone.utc) + timedelta(minutes=4)
     lab.room.link.disconnect()
@@ -353,7 +413,7 @@ def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab
 
 def test_the_simulator_is_told_to_wait_until_an_aborted_trial_has_its_reason(enrolled):
     while enrolled.logic.progress().next_step.kind is not StepKind.TRIAL:
-        enrolled.logic.skipStep("this is not what is tested")
+        enrolled.skip("this is not what is tested")
     step = enrolled.logic.progress().next_step
     started = datetime.now(timezone.utc).isoformat()
     aborted = make_aborted(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)

@@ -10,7 +10,7 @@ from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import isApplied, isPlanned, matrixOf
 from rastrainer.slicer.scene.scene import Role
-from Testing.slicer.training_room import Room
+from Testing.slicer.training_room import TRIAL, Room
 
 
 @pytest.fixture
@@ -72,17 +72,36 @@ def test_progress_tells_the_next_point_the_clearance_and_the_time_that_goes_on(r
     assert room.logic.progress.elapsedS == 36.0
 
 
-def test_one_button_pauses_and_resumes(room):
+def test_a_cleared_scene_does_not_turn_the_trials_time_back(room):
+    room.tell(elapsedS=30.0)
+    room.run_until(lambda: room.logic.progress.phase == "running")
+    room.now += 5.0
+    room.scene.Clear(False)
+    room.logic.forgetScene()
+    assert room.logic.progress.elapsedS == 35.0
+
+
+def test_a_trial_is_paused_resumed_and_aborted(room):
     room.tell()
     room.run_until(lambda: room.logic.progress.phase == "running")
-    room.logic.pauseOrResume()
+    room.logic.pause()
     room.run_until(lambda: room.sent("Pause"))
     room.tell(phase="paused")
     room.run_until(lambda: room.logic.progress.phase == "paused")
-    room.logic.pauseOrResume()
+    room.logic.resume()
     room.run_until(lambda: room.sent("Resume"))
-    room.logic.abort()
+    room.logic.abort(TRIAL)
     room.run_until(lambda: room.sent("Abort"))
+
+
+def test_a_trial_that_began_while_the_user_was_asked_about_another_is_not_aborted(room):
+    room.tell()
+    room.run_until(lambda: room.logic.progress.trialId == TRIAL)
+    room.tell(trialId="another")
+    room.run_until(lambda: room.logic.progress.trialId == "another")
+    with pytest.raises(InputError, match="was not aborted"):
+        room.logic.abort(TRIAL)
+    assert room.sent("Abort") == []
 
 
 def test_a_refusal_is_told_in_the_simulators_words(room):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import slicer
 
+from rastrainer.panels.widgets import connectAsPressed
 from rastrainer.progress import Progress
 from rastrainer.slicer.translation import _
 
@@ -57,6 +58,10 @@ class CancelableWork:
         finally:
             self.isUnderWay = False
             self._showUsable()
+
+    def connectButton(self, button: Any, start: Callable[[], None]) -> None:
+        """Have a button start the work, or cancel what is under way."""
+        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else start)
 
     def cancel(self) -> None:
         """Cancel what is under way, as soon as it reports its progress."""

@@ -99,7 +99,7 @@ class NewScenarioPanel:
         self._setUp = SetUpForm(ui.setUpGroupBox)
         self._work = CancelableWork(self._tell, self._showProgress, self._showUsable)
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
-        ui.makeScenarioButton.connect("clicked()", self.makeOrCancel)
+        self._work.connectButton(ui.makeScenarioButton, self.make)
         ui.previewHeadButton.connect("clicked()", self.preview)
         ui.checkScenarioButton.connect("clicked()", self.check)
         ui.scanComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
@@ -157,11 +157,8 @@ class NewScenarioPanel:
                 text = _("Set-up, plan and fiducials can be used.")
                 self._tell(" ".join([text, *warnings]))
 
-    def makeOrCancel(self) -> None:
-        """Make the scenario and use it, or cancel."""
-        if self._work.isUnderWay:
-            self._work.cancel()
-            return
+    def make(self) -> None:
+        """Make the scenario and use it."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not made.")):
             own = self._ui.programPathLineEdit.currentPath
             made = self._work.run(lambda report: self._maker.make(*self._wanted(), report, own))

@@ -10,7 +10,14 @@ import qt
 
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import buttonTitle, shortName
-from rastrainer.panels.widgets import LINK_COLORS, setLight, setSentence, setText, setUsable
+from rastrainer.panels.widgets import (
+    LINK_COLORS,
+    connectAsPressed,
+    setLight,
+    setSentence,
+    setText,
+    setUsable,
+)
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -77,7 +84,7 @@ class NextStepPanel:
         self._studyStep: Any = None
         self._repeatSentence = ""
         self._needsSetup = session.simulator.needsSetup
-        ui.nextStepButton.connect("clicked()", self.do)
+        connectAsPressed(ui.nextStepButton, self._action)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
         self._listening = (
             (session.link.statusChanged, self.showState),
@@ -100,9 +107,11 @@ class NextStepPanel:
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
-    def do(self) -> None:
-        """Do what comes next."""
+    def _action(self) -> Callable[[], None]:
         action = NextAction.WAIT if self._step is None else self._step.action
+        return lambda: self._do(action)
+
+    def _do(self, action: NextAction) -> None:
         if action in self._actions:
             self._actions[action]()
         elif action is NextAction.CHOOSE_TRAINEE:

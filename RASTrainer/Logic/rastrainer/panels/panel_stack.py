@@ -66,7 +66,9 @@ class PanelStack:
         self._panels = [*sections.values(), line]
 
     def showState(self) -> None:
-        """Show what changes without a word: the scene, and time."""
+        """Show what no signal reports: the scene, and time; nothing while a scene is loaded."""
+        if slicer.mrmlScene.IsBatchProcessing():
+            return
         with mainTurn():
             for panel in self._panels:
                 if hasattr(panel, "showState"):
@@ -82,13 +84,13 @@ def _actions(sections: Mapping[type, Any]) -> dict[NextAction, Callable[[], None
     """Return what the line at the top lets the sections do."""
     return {
         NextAction.START_SIMULATOR: sections[SimulatorPanel].startAndConnect,
-        NextAction.CONNECT: sections[SimulatorPanel].toggleConnection,
+        NextAction.CONNECT: sections[SimulatorPanel].connect,
         NextAction.CONNECT_TO_RUNNING: sections[RunningSimulatorPanel].connectToIt,
         NextAction.CREATE_TRAINEE: sections[TraineesPanel].createTrainee,
         NextAction.START_STUDY_STEP: sections[StudyPanel].startStep,
         NextAction.EXPLAIN_REPEAT: sections[StudyPanel].explainRepeat,
         NextAction.START_TRIAL_RUN: sections[TrainingPanel].startTrialRun,
         NextAction.START_TASK: sections[TrainingPanel].startTask,
-        NextAction.PAUSE: sections[TrainingPanel].pauseOrResume,
-        NextAction.RESUME: sections[TrainingPanel].pauseOrResume,
+        NextAction.PAUSE: sections[TrainingPanel].pause,
+        NextAction.RESUME: sections[TrainingPanel].resume,
     }

@@ -37,7 +37,7 @@ class PlanPanel:
         self._ui = ui
         self._session = session
         self._logic = session.plan
-        self._offered: tuple = ()
+        self._offered: tuple[Any, tuple[str, ...]] = (None, ())
         self._seen: tuple = ()
         self._known: tuple[PlanOnImages | None, str] = (None, "")
         self._keeping = CancelableWork(
@@ -48,9 +48,9 @@ class PlanPanel:
         ui.removePlanPointButton.connect("clicked()", self.removePoint)
         ui.undoPlanButton.connect("clicked()", self.undo)
         ui.sendPlanButton.connect("clicked()", self.send)
-        ui.keepPlanButton.connect("clicked()", self.saveOrCancel)
+        self._keeping.connectButton(ui.keepPlanButton, self.save)
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
-        ui.planTargetComboBox.connect("activated(int)", self.showState)
+        ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
         self._listening = (
             (self._logic.changed, self.showState),
             (session.registration.changed, self.showState),
@@ -93,11 +93,8 @@ class PlanPanel:
         with slicer.util.tryWithErrorDisplay(_("The plan was not sent.")):
             self._logic.send(self._ui.planComboBox.currentNode(), self._row())
 
-    def saveOrCancel(self) -> None:
-        """Copy the scenario chosen above with this plan and use the copy, or cancel."""
-        if self._keeping.isUnderWay:
-            self._keeping.cancel()
-            return
+    def save(self) -> None:
+        """Copy the scenario chosen above with this plan and use the copy."""
         with slicer.util.tryWithErrorDisplay(_("The plan was not saved.")):
             ui = self._ui
             scenario = self._keeping.run(
@@ -180,10 +177,23 @@ class PlanPanel:
         """Offer the points of a list as targets; where they change, the last is chosen."""
         labels = targetsOf(node)
         if (node, labels) != self._offered:
-            self._offered = (node, labels)
-            entries = [(label, str(row)) for row, label in enumerate(labels)]
-            fillComboBox(self._ui.planTargetComboBox, entries, str(len(labels) - 1))
-            self._ui.planTargetComboBox.enabled = len(labels) > 1
+            self._fillTargets(node, labels, len(labels) - 1)
+
+    def _fillTargets(self, node: Any | None, labels: tuple[str, ...], row: int) -> None:
+        self._offered = (node, labels)
+        entries = [(label, str(row)) for row, label in enumerate(labels)]
+        fillComboBox(self._ui.planTargetComboBox, entries, str(row))
+        self._ui.planTargetComboBox.enabled = len(labels) > 1
+
+    def _chooseTarget(self, _index: int = 0) -> None:
+        """Keep the user's choice, though a point was placed or removed while the list was open."""
+        node, row = self._ui.planComboBox.currentNode(), self._row()
+        offeredNode, offered = self._offered
+        labels = targetsOf(node)
+        if node is offeredNode and row >= 0 and offered[row] in labels:
+            isSameRow = row < len(labels) and labels[row] == offered[row]
+            self._fillTargets(node, labels, row if isSameRow else labels.index(offered[row]))
+        self.showState()
 
     def _row(self) -> int:
         """Return which point of the chosen list is the target; the last of a line."""

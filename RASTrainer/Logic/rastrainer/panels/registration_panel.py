@@ -38,7 +38,9 @@ class RegistrationPanel:
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._logic = session.registration
+        self._remedies: tuple[Remedy, ...] = ()
         self._remedyWidgets: list[Any] = []
+        self._labels: tuple[str, ...] = ()
         entries = [(title, kind) for kind, title in TITLES.items()]
         keepChosen(ui.kindComboBox, entries, session.settings, FIT)
         self._logic.kind = chosenData(ui.kindComboBox)
@@ -116,7 +118,7 @@ class RegistrationPanel:
         fits = [] if comparison is None else _fitRows(comparison)
         fillTable(ui.fitsTable, fits, [INTERVAL_NOTE] * len(fits))
         shown = self._logic.shown
-        fillTable(ui.residualsTable, [] if shown is None else self._residualRows(shown))
+        self._showResiduals(shown)
         self._showRemedies(() if comparison is None else comparison.remedies)
         self._showButtons()
         self.showState()
@@ -146,6 +148,19 @@ class RegistrationPanel:
             _("No pair was changed."),
         )
 
+    def _showResiduals(self, shown: Registration | None) -> None:
+        """Show the residuals; the chosen fiducial stays chosen, whichever row is its own now."""
+        table, row = self._ui.residualsTable, self._ui.residualsTable.currentRow()
+        chosen = self._labels[row] if 0 <= row < len(self._labels) else ""
+        self._labels = () if shown is None else shown.labels
+        wasBlocked = table.blockSignals(True)
+        fillTable(table, [] if shown is None else self._residualRows(shown))
+        newRow = self._labels.index(chosen) if chosen in self._labels else -1
+        if newRow != row:
+            table.clearSelection()
+            table.setCurrentCell(newRow, 0 if newRow >= 0 else -1)
+        table.blockSignals(wasBlocked)
+
     def _residualRows(self, shown: Registration) -> list[tuple[str, ...]]:
         without: Sequence[float | None] = [None] * len(shown.labels)
         if self._logic.leaveOneOut is not None:
@@ -159,7 +174,13 @@ class RegistrationPanel:
         ]
 
     def _showRemedies(self, remedies: tuple[Remedy, ...]) -> None:
-        """Show each warning with its button, in place of those before."""
+        """Show each warning with its button, in place of those before, unless they are the same.
+
+        Otherwise a button could be replaced between press and release, and the press be lost.
+        """
+        if remedies == self._remedies:
+            return
+        self._remedies = remedies
         layout = self._ui.warningsWidget.layout()
         for widget in self._remedyWidgets:
             layout.removeWidget(widget)

@@ -38,9 +38,9 @@ class ScenarioPanel:
         ui.showScenarioButton.connect("clicked()", self.show)
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self.showRobot)
-        ui.useHeadButton.connect("clicked()", self.useHeadOrCancel)
-        ui.exportScenarioButton.connect("clicked()", self.exportOrCancel)
-        ui.importScenarioButton.connect("clicked()", self.importOrCancel)
+        self._work.connectButton(ui.useHeadButton, self.useHead)
+        self._writing.connectButton(ui.exportScenarioButton, self.exportScenario)
+        self._adding.connectButton(ui.importScenarioButton, self.importScenario)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         session.link.statusChanged.connect(self._showUsable)
         session.training.answered.connect(self._tell)
@@ -82,11 +82,8 @@ class ScenarioPanel:
             if shown:
                 fitThreeDViews()
 
-    def useHeadOrCancel(self) -> None:
-        """Look at a model, or at the skin of a volume, as the head, or cancel."""
-        if self._work.isUnderWay:
-            self._work.cancel()
-            return
+    def useHead(self) -> None:
+        """Look at a model, or at the skin of a volume, as the head."""
         with slicer.util.tryWithErrorDisplay(_("This cannot be used as the head.")):
             node = self._ui.headModelComboBox.currentNode()
             used = self._work.run(lambda report: self._logic.useHead(node, report))
@@ -96,11 +93,8 @@ class ScenarioPanel:
                 text = _("{name} is the head now; the simulator keeps its own.")
                 self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
 
-    def importOrCancel(self) -> None:
-        """Take a scenario in that comes as a zip file, and choose it, or cancel."""
-        if self._adding.isUnderWay:
-            self._adding.cancel()
-            return
+    def importScenario(self) -> None:
+        """Add a scenario that comes as a zip file, and choose it."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not added.")):
             path = qt.QFileDialog.getOpenFileName(
                 slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
@@ -115,11 +109,8 @@ class ScenarioPanel:
                 self._fill(added.name)
                 self._tell(_("{title} is added.").format(title=added.title))
 
-    def exportOrCancel(self) -> None:
-        """Write the chosen scenario as a zip file, or cancel."""
-        if self._writing.isUnderWay:
-            self._writing.cancel()
-            return
+    def exportScenario(self) -> None:
+        """Write the chosen scenario as a zip file."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not saved.")):
             name = chosenData(self._ui.scenarioComboBox)
             keepsFace = not self._ui.removeFaceCheckBox.checked

@@ -56,7 +56,7 @@ class ScorePanel:
         ui.exportScoresButton.connect("clicked()", self.exportScores)
         ui.reportButton.connect("clicked()", self.writeReport)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        ui.replayButton.connect("clicked()", self.replayOrCancel)
+        self._work.connectButton(ui.replayButton, self.replay)
         ui.worstTouchButton.connect("clicked()", self.replayWorstTouch)
         self._trainees.changed.connect(self._show)
         session.trials.trialScored.connect(self._noteNewTrial)
@@ -116,11 +116,8 @@ class ScorePanel:
                     self._tell(_("The report is {path}.").format(path=page))
                     qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
 
-    def replayOrCancel(self) -> None:
-        """Show the trial again in the 3D view, or cancel."""
-        if self._work.isUnderWay:
-            self._work.cancel()
-            return
+    def replay(self) -> None:
+        """Show the trial again in the 3D view."""
         with slicer.util.tryWithErrorDisplay(_("The trial is not shown.")):
             trial = self._chosenTrial()
             self._work.run(lambda report: self._session.replay.show(trial, report))
@@ -168,6 +165,7 @@ class ScorePanel:
 
     def _showTrial(self, _index: int = 0) -> None:
         ui = self._ui
+        self._session.replay.retryFeedback()
         try:
             trial = self._trial()
             beside = [] if trial is None else self._standings(trial)

@@ -7,7 +7,7 @@ from typing import Any
 import slicer
 
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.widgets import keepPath, keepText, setText, setUsable
+from rastrainer.panels.widgets import connectAsPressed, keepPath, keepText, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS
@@ -25,9 +25,9 @@ class SetupPanel:
         keepPath(ui.programPathLineEdit, session.settings, PROGRAM)
         ui.indexLineEdit.connect("textChanged(QString)", self._showSetup)
         ui.wheelsPathLineEdit.connect("currentPathChanged(QString)", self._showSetup)
-        ui.setupButton.connect("clicked()", self.setUpOrCancel)
-        ui.removeSetupButton.connect("clicked()", self.remove)
         setup = self._simulator.setup
+        connectAsPressed(ui.setupButton, lambda: setup.cancel if setup.isRunning else self.setUp)
+        ui.removeSetupButton.connect("clicked()", self.remove)
         self._listening = (
             (setup.progressed, self._follow),
             (setup.changed, self._showSetup),
@@ -44,12 +44,9 @@ class SetupPanel:
         for signal, slot in self._listening:
             signal.disconnect(slot)
 
-    def setUpOrCancel(self) -> None:
-        """Begin the set-up, or cancel it."""
+    def setUp(self) -> None:
+        """Start the set-up."""
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be set up.")):
-            if self._simulator.setup.isRunning:
-                self._simulator.setup.cancel()
-                return
             self._ui.setupLogEdit.clear()
             self._simulator.beginSetup(
                 self._ui.indexLineEdit.text, self._ui.wheelsPathLineEdit.currentPath

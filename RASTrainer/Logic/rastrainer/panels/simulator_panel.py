@@ -11,6 +11,7 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.setup_panel import costSentence
 from rastrainer.panels.widgets import (
     LINK_COLORS,
+    connectAsPressed,
     keepChecked,
     keepNumber,
     keepText,
@@ -42,7 +43,9 @@ class SimulatorPanel:
         ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
         ui.stopSimulatorButton.connect("clicked()", self.stopSimulator)
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
-        ui.connectButton.connect("clicked()", self.toggleConnection)
+        connectAsPressed(
+            ui.connectButton, lambda: self.connect if self._isOff() else self.disconnect
+        )
         ui.probeButton.connect("clicked()", self.testConnection)
         self._listening = (
             (self._link.statusChanged, self._showStatus),
@@ -73,30 +76,35 @@ class SimulatorPanel:
             "The simulator is not set up on this computer yet. Set it up now, and start it then? "
             "{cost} Slicer itself stays as it is. This takes some minutes."
         ).format(cost=costSentence(self._ui, self._simulator.setup))
-        self._startsAfterSetup = slicer.util.confirmOkCancelDisplay(
-            toolTip(question), _("Set up the simulator")
-        )
-        if self._startsAfterSetup:
+        if slicer.util.confirmOkCancelDisplay(toolTip(question), _("Set up the simulator")):
             self._ui.setupButton.click()
+            # Not if it could not be started: another set-up may follow that is to start nothing.
+            self._startsAfterSetup = self._simulator.setup.isRunning
 
     def stopSimulator(self) -> None:
         """End the simulator that was started here."""
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be stopped.")):
             self._simulator.stop()
 
-    def toggleConnection(self) -> None:
-        """Connect to the simulator, or disconnect."""
+    def connect(self) -> None:
+        """Connect to the simulator, unless that is under way already."""
         with slicer.util.tryWithErrorDisplay(_("The connection could not be started.")):
-            if self._link.status.state is LinkState.OFF:
+            if self._isOff():
                 self._link.connectTo(self._ui.hostLineEdit.text, self._ui.portSpinBox.value)
-            else:
-                self._link.disconnect()
+
+    def disconnect(self) -> None:
+        """Disconnect from the simulator."""
+        with slicer.util.tryWithErrorDisplay(_("The connection could not be closed.")):
+            self._link.disconnect()
 
     def testConnection(self) -> None:
         """Check once whether a simulator answers, and say so when it is known."""
         with slicer.util.tryWithErrorDisplay(_("The connection could not be tested.")):
             host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
             self._showWords(self._link.testConnection(host, port, self._showTest))
+
+    def _isOff(self) -> bool:
+        return self._link.status.state is LinkState.OFF
 
     def _needsSetup(self) -> bool:
         return self._simulator.needsSetup and not self._ui.programPathLineEdit.currentPath

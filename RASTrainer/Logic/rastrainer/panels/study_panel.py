@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -77,8 +78,12 @@ class StudyPanel:
     def skipStep(self) -> None:
         """Leave the step out, for a reason; one that does not do can be completed."""
         question = _("Why is it left out? The reason goes into the report.")
-        with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
-            self._withReason(_("Skip the step"), question, self._logic.skipStep)
+        step = None if self._progress is None else self._progress.next_step
+        if step is not None:
+            # By its name: while the dialog is open, the step may be done.
+            skip = partial(self._logic.skipStep, step.name)
+            with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
+                self._withReason(_("Skip the step"), question, skip)
 
     def explainRepeat(self) -> None:
         """Say why an aborted trial is played again; only then can it be started."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, sh
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     chosenData,
+    connectAsPressed,
     fillComboBox,
     fillTable,
     millimeters,
@@ -42,7 +43,7 @@ class TraineesPanel:
         ui.traineeComboBox.connect("activated(int)", self.chooseTrainee)
         ui.archivedCheckBox.connect("toggled(bool)", self._show)
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
-        ui.archiveButton.connect("clicked()", self.archive)
+        connectAsPressed(ui.archiveButton, self._archiving)
         ui.exportTraineeButton.connect("clicked()", self.exportTrainee)
         ui.deleteTraineeButton.connect("clicked()", self.deleteTrainee)
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
@@ -50,6 +51,7 @@ class TraineesPanel:
         ui.calibrationButton.connect("clicked()", self.showCalibration)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         ui.exportHistoryButton.connect("clicked()", self.exportHistory)
+        self._isArchived = False
         self._logic.changed.connect(self._show)
         self._show()
 
@@ -83,17 +85,22 @@ class TraineesPanel:
     def setConsent(self, consent: bool) -> None:
         """Note whether the chosen trainee agrees to research."""
         with slicer.util.tryWithErrorDisplay(_("The consent was not saved.")):
-            self._logic.setConsent(consent)
+            try:
+                self._logic.setConsent(consent)
+            except InputError:
+                setChecked(self._ui.consentCheckBox, not consent)
+                raise
 
     def archive(self) -> None:
-        """Archive the chosen trainee, or bring them back."""
+        """Archive the chosen trainee, who stays in view."""
         with slicer.util.tryWithErrorDisplay(_("The trainee was not archived.")):
-            trainee = self._logic.chosenTrainee()
-            if trainee is None:
-                return
-            if not trainee.archived:
-                self._ui.archivedCheckBox.checked = True
-            self._logic.setArchived(not trainee.archived)
+            self._ui.archivedCheckBox.checked = True
+            self._logic.setArchived(True)
+
+    def bringBack(self) -> None:
+        """Show the chosen trainee in the list again, who was archived."""
+        with slicer.util.tryWithErrorDisplay(_("The trainee was not brought back.")):
+            self._logic.setArchived(False)
 
     def exportTrainee(self) -> None:
         """Write everything about the chosen trainee into a file."""
@@ -156,6 +163,9 @@ class TraineesPanel:
         setChecked(self._ui.learningCurveButton, purpose == CURVE)
         setChecked(self._ui.calibrationButton, purpose == CALIBRATION)
 
+    def _archiving(self) -> Callable[[], None]:
+        return self.bringBack if self._isArchived else self.archive
+
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
             self._session.layout.giveBack(CURVE)
@@ -180,7 +190,8 @@ class TraineesPanel:
         hasTrainee = trainee is not None
         reason = _("Choose a trainee first.")
         ui.consentCheckBox.enabled = hasTrainee
-        ui.archiveButton.text = _("Bring back") if trainee and trainee.archived else _("Archive")
+        self._isArchived = trainee is not None and trainee.archived
+        ui.archiveButton.text = _("Bring back") if self._isArchived else _("Archive")
         for button, tip in (
             (ui.archiveButton, _("Hide the trainee from the list, or show again.")),
             (ui.exportTraineeButton, _("Write all that is known about the trainee to a file.")),

@@ -14,6 +14,7 @@ from rastrainer.panels.widgets import (
     RED,
     YELLOW,
     chosenData,
+    connectAsPressed,
     keepChecked,
     keepChosen,
     setLight,
@@ -58,7 +59,7 @@ class TrainingPanel:
             box.connect("toggled(bool)", self._moveSlices)
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
         ui.startTaskButton.connect("clicked()", self.startTask)
-        ui.pauseButton.connect("clicked()", self.pauseOrResume)
+        connectAsPressed(ui.pauseButton, lambda: self.resume if self._isPaused() else self.pause)
         ui.abortButton.connect("clicked()", self.abort)
         self._listening = (
             (self._logic.changed, self.showState),
@@ -88,19 +89,25 @@ class TrainingPanel:
         """Start the chosen task."""
         self._start(self._session.task)
 
-    def pauseOrResume(self) -> None:
-        """Pause the trial, or resume it."""
+    def pause(self) -> None:
+        """Pause the trial."""
         with slicer.util.tryWithErrorDisplay(_("The trial was not paused.")):
-            self._logic.pauseOrResume()
+            self._logic.pause()
+
+    def resume(self) -> None:
+        """Resume the trial."""
+        with slicer.util.tryWithErrorDisplay(_("The trial was not resumed.")):
+            self._logic.resume()
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
         with slicer.util.tryWithErrorDisplay(_("The trial was not aborted.")):
+            trial = self._logic.progress
             question = _("Abort the trial of {name}? Its touches will not be registered.").format(
-                name=shortName(self._logic.progress.trainee)
+                name=shortName(trial.trainee)
             )
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
-                self._logic.abort()
+                self._logic.abort(trial.trialId)
 
     def _moveSlices(self, *_checked: bool) -> None:
         slices = self._session.slices
@@ -140,6 +147,9 @@ class TrainingPanel:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
             mode = chosenData(self._ui.modeComboBox)
             self._session.study.startTrial(task, mode)
+
+    def _isPaused(self) -> bool:
+        return self._logic.progress.phase == Phase.PAUSED.value
 
     def _showButtons(self, progress: TrialStatus, isConnected: bool) -> None:
         ui = self._ui

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import qt
@@ -60,6 +60,24 @@ def textLabel(text: str) -> Any:
     label.minimumWidth = 1
     setText(label, text)
     return label
+
+
+def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> None:
+    """Have a click do what the button meant when it was pressed.
+
+    A timer may give a button another meaning while the mouse is down, such as Resume for Pause.
+
+    Args:
+        button: whose meaning changes.
+        action: returns what the button does as it is labeled now.
+    """
+    pressed: list[Callable[[], None]] = []
+
+    def notePress() -> None:
+        pressed[:] = [action()]
+
+    button.connect("pressed()", notePress)
+    button.connect("clicked()", lambda: (pressed.pop() if pressed else action())())
 
 
 def setUsable(button: Any, usable: bool, tip: str, reason: str = "") -> None:

@@ -40,7 +40,7 @@ def findSkin(
     """
     from rastrainer.slicer.head.volume import image_of_node
 
-    image = image_of_node(volumeNode)
+    image, scene = image_of_node(volumeNode), volumeNode.GetScene()
 
     def find(report: Progress) -> tuple[HeadBody, HeadMesh, list[str]]:
         found, skin, warnings = in_own_process(python, FIND_SKIN, report, image, settings)
@@ -48,7 +48,11 @@ def findSkin(
         _ = found.labels
         return found, skin, warnings
 
-    return inBackground(find, progress)
+    found = inBackground(find, progress)
+    if volumeNode.GetScene() is not scene:
+        # In a cleared scene the next volume has the same ID, and would be taken for this one.
+        raise InputError(_("The volume was removed before its head was found."))
+    return found
 
 
 _DRAFT = (

@@ -190,6 +190,7 @@ class ModuleSession:
             InputError: the file is no study, or cannot be used; the present one stays.
         """
         Study.open(path, self._patience, make_folder=True).close()
+        self.study.leaveStudy()
         self.studyPath = path
         self.trials.forgetWaiting()
         self.aborted.forgetWaiting()
@@ -225,6 +226,7 @@ class ModuleSession:
         self.images.process()
         followPlacement(self._scene)
         self.slices.process()
+        self.layout.process()
 
     def giveTimeToWork(self) -> bool:
         """Let work in the background run for a moment; return whether there still is any."""
@@ -236,9 +238,12 @@ class ModuleSession:
 
     def sceneWasCleared(self) -> None:
         """Forget what pointed into the old scene; a trial that runs is shown again."""
-        self.registration.reset()
-        self.training.forgetScene()
+        self.layout.forgetScene()
         self.plan.points.forget()
+        self.replay.forgetScene()
+        self.slices.forgetScene()
+        self.registration.forgetScene()
+        self.training.forgetScene()
 
     def close(self) -> None:
         """Disconnect, close the study, and end the simulator that was started from here."""

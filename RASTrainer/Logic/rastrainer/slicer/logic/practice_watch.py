@@ -41,6 +41,7 @@ class PracticeWatch:
         self._link = link
         self._changed = changed
         self._practicing: tuple[str, str] | None = None
+        self._trialId = ""
         self._seen = self._kept = self._left = 0.0
         self._isFirstSight = True
         link.stateChanged.connect(self._follow)
@@ -49,6 +50,11 @@ class PracticeWatch:
         """Stop listening, and keep what was practiced last."""
         self._link.stateChanged.disconnect(self._follow)
         self.keep()
+
+    def leaveStudy(self) -> None:
+        """Keep what was practiced in the study that is left; only what follows is for the next."""
+        self.keep()
+        self._practicing, self._isFirstSight = None, True
 
     def unsavedS(self, trainee: str, mode: str) -> float:
         """Return how long the trial run was practiced in a mode since it was kept last; s."""
@@ -81,8 +87,10 @@ class PracticeWatch:
         trial = self._training.progress
         isPracticed = trial.isOpen and trial.task == TRIAL_RUN
         practicing = (trial.trainee, trial.mode) if isPracticed else None
-        if practicing != self._practicing or (practicing and trial.elapsedS < self._seen):
+        isOther = practicing != self._practicing or trial.trialId != self._trialId
+        if isOther or (practicing and trial.elapsedS < self._seen):
             self._end()
+            self._trialId = trial.trialId
             self._begin(practicing, trial.elapsedS)
         elif practicing is not None:
             self._seen = trial.elapsedS

@@ -166,6 +166,12 @@ class RegistrationLogic:
         """Forget the changes: what comes next is another trial."""
         self._forgetChoices()
 
+    def forgetScene(self) -> None:
+        """Forget lists and result: the scene was cleared, and the next nodes may have their IDs."""
+        self._movingId = self._fixedId = self._targetId = ""
+        self._forgetChoices()
+        self._compute()
+
     def process(self) -> None:
         """Register again if a list or the target has changed."""
         moving, fixed, target = self.moving(), self.fixed(), self.target()

@@ -104,6 +104,15 @@ class ReplayLogic:
         self._known, self._asked = (trialId, feedback), ""
         self.feedbackFound.emit()
 
+    def retryFeedback(self) -> None:
+        """Forget why there was no feedback: the study or the scenarios may have changed."""
+        if self._known is not None and isinstance(self._known[1], Exception):
+            self._known = None
+
+    def forgetScene(self) -> None:
+        """Forget where the replay is to stop: the scene was cleared."""
+        self._until = None
+
     def show(self, trial: StoredTrial, progress: Progress = lambda _step, _share: None) -> None:
         """Show a trial again, from its beginning.
 
@@ -162,8 +171,7 @@ class ReplayLogic:
             return with_progress(analysis.scored_as(trial.score), study).feedback
 
     def _put(self, trial: StoredTrial, progress: Progress) -> None:
-        if self._isTrialOpen():
-            raise InputError(_("A trial is being played: look at another one when it is over."))
+        self._checkNoTrialIsOpen()
         record, rigid = trial.record, trial.registrations.get(RIGID)
         if rigid is None:
             raise InputError(_("It is not known where the head was: the trial was not registered."))
@@ -177,6 +185,7 @@ class ReplayLogic:
             ),
             progress,
         )
+        self._checkNoTrialIsOpen()
         if isThere and not isReplayOf(self._scene, record.trial_id):
             raise InputError(_("The scene was changed before the trial could be shown."))
         showScenario(self._scene, scenario)
@@ -195,6 +204,10 @@ class ReplayLogic:
             browser.SetAttribute(TRIAL_ATTRIBUTE, record.trial_id)
         # The replay shows them one by one, as they were made.
         setTouchesVisible(self._scene, False)
+
+    def _checkNoTrialIsOpen(self) -> None:
+        if self._isTrialOpen():
+            raise InputError(_("A trial is being played: look at another one when it is over."))
 
     def _play(self, until: float | None) -> None:
         self._until = until

@@ -54,6 +54,10 @@ class SliceFollower:
         if self._place is not None:
             self.show(self._place)
 
+    def forgetScene(self) -> None:
+        """Forget what was shown: the scene was cleared, and its views with it."""
+        self._shownPoint, self._place = (), None
+
     def process(self) -> None:
         """Follow what has moved; called about ten times a second."""
         if self.followsTool:

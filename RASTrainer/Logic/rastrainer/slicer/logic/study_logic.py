@@ -68,6 +68,11 @@ class StudyLogic:
         self._link.stepAnswered.disconnect(self._takeAnswers)
         self._watch.close()
 
+    def leaveStudy(self) -> None:
+        """Save what belongs to the study that is left; the next may have the same pseudonyms."""
+        self._watch.leaveStudy()
+        self._breaks.clear()
+
     def process(self) -> None:
         """End the breaks whose time is over."""
         now = self._now()
@@ -76,9 +81,10 @@ class StudyLogic:
             with contextlib.suppress(InputError):
                 study = StudyProgress(self._trainees.study)
                 progress = study.progress(name)
-                minutes = progress.minutes_over(now)
-                if progress.next_step is not None:
-                    study.finish(name, progress.next_step.name, {"minutes": minutes})
+                step, end = progress.next_step, progress.break_end
+                # Another Slicer may have ended the break already: what follows is no break.
+                if step is not None and end is not None and now >= end:
+                    study.finish(name, step.name, {"minutes": progress.minutes_over(now)})
             self._leadOn(name)
 
     def protocol(self) -> StudyProtocol | None:
@@ -174,15 +180,16 @@ class StudyLogic:
         StudyProgress(self._trainees.study).finish(self._trainees.chosen, step.name, details)
         self._leadOn(self._trainees.chosen)
 
-    def skipStep(self, reason: str) -> None:
+    def skipStep(self, stepName: str, reason: str) -> None:
         """Leave the next step out, for a reason that goes into the report.
 
         Raises:
-            InputError: there is no reason of ten characters.
+            InputError: the step of this name is not the next one (any more), or there is no reason
+                of ten characters.
         """
         self._watch.keep()
-        step = self._next()
-        StudyProgress(self._trainees.study).skip(self._trainees.chosen, step.name, reason)
+        self._next()
+        StudyProgress(self._trainees.study).skip(self._trainees.chosen, stepName, reason)
         self._leadOn(self._trainees.chosen)
 
     def explainRepeat(self, reason: str) -> None:

@@ -15,6 +15,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import showPlannedPlace
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.slicer.scene.trial_scene import forgetStoredTouches, noteTouchedTask
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
@@ -25,6 +26,7 @@ class TrialStatus:
     """Where the simulator's trial stands.
 
     Attributes:
+        trialId: UUID of the trial, empty where there is none.
         phase: of the trial, `idle` where there is none.
         trainee: pseudonym.
         task: name.
@@ -37,6 +39,7 @@ class TrialStatus:
         instruction: what the trainee reads.
     """
 
+    trialId: str = ""
     phase: str = Phase.IDLE.value
     trainee: str = ""
     task: str = ""
@@ -98,13 +101,15 @@ class TrainingLogic:
         elapsed = _number(state.get("elapsedS")) or 0.0
         if state.get("phase") == Phase.RUNNING.value:
             elapsed += self._clock() - self._stateTime
+        touches = findNode(self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS)
         return TrialStatus(
+            trialId=str(state.get("trialId", "")),
             phase=str(state.get("phase", Phase.IDLE.value)),
             trainee=str(state.get("trainee", "")),
             task=str(state.get("task", "")),
             mode=str(state.get("mode", "")),
             nextPoint=str(state.get("nextPoint") or ""),
-            touched=capturedPointsNode(self._scene).GetNumberOfControlPoints() if state else 0,
+            touched=touches.GetNumberOfControlPoints() if state and touches is not None else 0,
             elapsedS=elapsed,
             clearanceMm=_number(state.get("clearanceMm")),
             proximity=str(state.get("proximity", "")),
@@ -123,13 +128,22 @@ class TrainingLogic:
             raise InputError(_("Choose a task first."))
         self._send(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": mode})
 
-    def pauseOrResume(self) -> None:
-        """Pause the trial, or resume it."""
-        isPaused = self._state.get("phase") == Phase.PAUSED.value
-        self._send(CommandName.RESUME if isPaused else CommandName.PAUSE)
+    def pause(self) -> None:
+        """Pause the trial."""
+        self._send(CommandName.PAUSE)
 
-    def abort(self) -> None:
-        """End the trial; it is not registered."""
+    def resume(self) -> None:
+        """Resume the trial."""
+        self._send(CommandName.RESUME)
+
+    def abort(self, trialId: str) -> None:
+        """End the open trial without registering it.
+
+        Raises:
+            InputError: it is not the one of this UUID, which is over.
+        """
+        if self.progress.trialId != trialId:
+            raise InputError(_("This trial is over. The trial that is open now was not aborted."))
         self._send(CommandName.ABORT)
 
     def loadScenario(self, folder: str) -> None:
@@ -145,12 +159,17 @@ class TrainingLogic:
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         self._state, self._stateTime = state, self._clock()
+        self._prepareScene()
+        self.changed.emit()
+
+    def _prepareScene(self) -> None:
+        """Have the scene of the open trial shown, unless it is."""
+        state = self._state
         trial = str(state.get("trialId", ""))
         if state.get("phase") in OPEN_PHASES and trial != self._shownTrial:
             self._shownTrial = trial
             forgetStoredTouches(self._scene)
             self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
-        self.changed.emit()
 
     def _showTrialScene(self, reply: Reply) -> None:
         """Show head and fiducials of the trial that runs, so that touches appear on them."""
@@ -173,8 +192,8 @@ class TrainingLogic:
     def forgetScene(self) -> None:
         """Show the running trial's scene again: the scene was cleared."""
         self._shownTrial = ""
-        if self._state:
-            self._follow(self._state)
+        self._prepareScene()
+        self.changed.emit()
 
     def _emitChange(self, _node: Any) -> None:
         self.changed.emit()

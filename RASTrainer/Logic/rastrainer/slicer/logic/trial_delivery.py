@@ -76,6 +76,7 @@ class DeliveryQueue(Generic[T]):
     def forgetWaiting(self) -> None:
         """Leave undone what has not begun: the simulator offers it again, for another study."""
         self._waiting.clear()
+        self._lastProblem = ""
 
     def report(self, sentence: str) -> None:
         """Report a problem once, though the trial is offered every two seconds."""

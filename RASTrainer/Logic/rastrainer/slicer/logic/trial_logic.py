@@ -110,6 +110,7 @@ class TrialLogic:
         """Leave undone what has not begun: the simulator offers it again, for another study."""
         self._queue.forgetWaiting()
         self._unscored.clear()
+        self.received.clear()
         for trialId in [each for each, state in self._scored.items() if state is _Scoring.DONE]:
             del self._scored[trialId]
 

@@ -33,6 +33,7 @@ class BorrowedLayout:
         self._scene = scene
         self._purpose = ""
         self._shown = self._former = 0
+        self._isOutdated = False
 
     @property
     def purpose(self) -> str:
@@ -48,6 +49,7 @@ class BorrowedLayout:
             return
         if not self.purpose:
             self._former = node.GetViewArrangement()
+        self._isOutdated = False
         self._purpose, self._shown = purpose, layout
         node.SetViewArrangement(layout)
 
@@ -60,6 +62,19 @@ class BorrowedLayout:
         if node is not None and self.purpose and purpose in ("", self._purpose):
             node.SetViewArrangement(self._former)
             self._purpose = ""
+
+    def forgetScene(self) -> None:
+        """Have the next `process` give the layout back: the scene was cleared of what it showed.
+
+        Not yet now, as Slicer shows its last layout again after a scene is closed.
+        """
+        self._isOutdated = True
+
+    def process(self) -> None:
+        """Give the layout back that belongs to a scene which was cleared."""
+        if self._isOutdated:
+            self._isOutdated = False
+            self.giveBack()
 
     def _node(self) -> Any | None:
         return self._scene.GetSingletonNode(LAYOUT_TAG, LAYOUT_TAG)

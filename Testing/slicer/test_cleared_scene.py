@@ -1,0 +1,116 @@
+"""Nothing of a scene that is closed is taken for part of the next one, whose nodes have its IDs."""
+
+import uuid
+from pathlib import Path
+
+import numpy as np
+import pytest
+import slicer
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.logic import head_preview
+from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer_simulator.assets import asset_path
+from Testing.slicer.recorded_trial import write_recorded_trial
+from Testing.slicer.scored_trials import store_trial_on_colin
+
+OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
+FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
+
+
+@pytest.fixture
+def session(host):
+    host.open()
+    return host.widget.logic.session
+
+
+def add_list(scene, name, points):
+    node = scene.AddNewNodeByClass(FIDUCIALS, name)
+    setPoints(node, LABELS[: len(points)], points)
+    return node
+
+
+def test_a_list_that_was_chosen_is_not_mistaken_for_the_next_one_of_its_id(host, session):
+    logic, fixed = session.registration, np.random.default_rng(1).normal(0, 50, (15, 3))
+    own = [add_list(host.scene, name, fixed) for name in ("mine", "also mine")]
+    logic.chooseLists(*own)
+    logic.process()
+    host.scene.Clear(0)
+    other = [add_list(host.scene, name, fixed) for name in ("theirs", "also theirs")]
+    assert [node.GetID() for node in other] == [node.GetID() for node in own]
+    assert logic.moving() is None
+    assert (logic.shown, bool(logic.problem)) == (None, True)
+
+
+def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_former_registration(
+    host, session
+):
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    session.scenario.show("colin27", "task-1")
+    touched = transforms.apply(colin.perturbed_head_to_world(3), colin.task("task-1").fiducials)
+    setPoints(capturedPointsNode(host.scene), LABELS, touched)
+    host.wait_until(lambda: session.registration.shown is not None, "the touches are registered")
+    host.scene.Clear(0)
+    target = add_list(host.scene, "target", np.zeros((1, 3)))
+    with pytest.raises(InputError, match="no registration to map the plan with"):
+        session.plan.read(target)
+
+
+def test_the_users_layout_comes_back_when_the_tables_go_with_their_scene(host, make_record):
+    host.open()
+    record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
+    store_trial_on_colin(host, record, 2)
+    host.press("createTraineeButton")
+    host.choose("traineeComboBox", "T001")
+    slicer.app.layoutManager().setLayout(OWN)
+    host.press("showTablesButton")
+    host.clear_scene()
+    host.wait_until(lambda: not host.find("showTablesButton").checked, "the button follows")
+    assert slicer.app.layoutManager().layout == OWN
+    host.press("showTablesButton")
+    assert host.shown_tables() == ["Score"]
+
+
+def test_a_replay_in_the_next_scene_does_not_stop_where_the_former_was_to(
+    host, session, make_record, tmp_path
+):
+    record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
+    store_trial_on_colin(host, record, 2)
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 16.0)
+    trial = session.trainees.study.trial(record["trialId"])
+    session.replay.showWorstTouch(trial)
+    host.scene.GetFirstNodeByName("Replay of T001, task-1").SetPlaybackActive(False)
+    host.save_scene(tmp_path / "replay.mrb")
+    host.load_scene(tmp_path / "replay.mrb")
+    browser = host.scene.GetFirstNodeByName("Replay of T001, task-1")
+    browser.SetSelectedItemNumber(browser.GetNumberOfItems() - 1)
+    browser.SetPlaybackActive(True)
+    session.replay.process()
+    assert browser.GetPlaybackActive()
+
+
+def test_a_head_found_in_a_volume_of_a_closed_scene_is_not_taken_for_that_of_the_next(
+    host, session, monkeypatch
+):
+    volume = host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "former")
+    slicer.util.updateVolumeFromArray(volume, np.zeros((20, 20, 20), np.int16))
+
+    monkeypatch.setattr(head_preview, "inBackground", lambda *_arguments: host.scene.Clear(0))
+    with pytest.raises(InputError, match="was removed before its head was found"):
+        session.scenarioMaker.preview(volume, NewScenarioOptions(), lambda _step, _share: None)
+    assert findNode(host.scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT) is None
+
+
+def test_nothing_is_added_to_a_scene_while_it_is_being_loaded(host, session):
+    session.training._state = {"phase": "idle"}
+    count = host.scene.GetNumberOfNodes()
+    host.scene.StartState(host.scene.BatchProcessState)
+    host.widget.onTimeout()
+    assert host.scene.GetNumberOfNodes() == count
+    host.scene.EndState(host.scene.BatchProcessState)

@@ -1,0 +1,195 @@
+"""A button does what it said when it was pressed, whatever a timer does before it is released."""
+
+import json
+import uuid
+
+import numpy as np
+import pytest
+import slicer
+from PySide6 import QtCore, QtTest
+
+from rastrainer import transforms
+from rastrainer.igtl.content import Status, String
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer_simulator.assets import asset_path
+from Testing.slicer.simulator_double import SimulatorDouble
+
+LEFT = QtCore.Qt.MouseButton.LeftButton
+
+
+def press_slowly(host, name, meanwhile):
+    """Press a button, and release it only when something else has happened."""
+    host.unfold(name)
+    button = host.find(name)._qt
+    assert button.isEnabled(), name
+    QtTest.QTest.mousePress(button, LEFT)
+    meanwhile()
+    QtTest.QTest.mouseRelease(button, LEFT)
+    host.process_events()
+
+
+@pytest.fixture
+def touched(host):
+    """The module with fifteen touches, of which the seventh is 9 mm off."""
+    host.open()
+    host.unfold("residualsTable")
+    session = host.widget.logic.session
+    session.scenario.show("colin27", "task-1")
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    noise = np.random.default_rng(3).normal(0.0, 0.5, (15, 3))
+    points = colin.task("task-1").fiducials + noise
+    points[6] += 9.0
+    world = transforms.apply(colin.perturbed_head_to_world(3), points)
+    setPoints(capturedPointsNode(host.scene), LABELS, world)
+    host.wait_until(
+        lambda: host.find("residualsTable").rowCount == 15 and not session.work.isBusy,
+        "the touches are registered",
+    )
+    return host
+
+
+class Trial:
+    """The module beside a simulator double that says where a trial is."""
+
+    def __init__(self, host, simulator):
+        self.host, self.simulator = host, simulator
+        host.open()
+        host.type("portSpinBox", str(simulator.port))
+        host.press("connectButton")
+        self.wait_until(lambda: host.text("linkText") == "Connected")
+
+    def wait_until(self, condition):
+        def beats():
+            self.simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+            return condition()
+
+        self.host.wait_until(beats, "the module knows")
+
+    def tell(self, phase, number=5):
+        told = {"trialId": str(uuid.UUID(int=number)), "trainee": "T001", "task": "task-1"}
+        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**told, "phase": phase})))
+        progress = self.host.widget.logic.session.training
+        wanted = (phase, told["trialId"])
+        self.wait_until(lambda: (progress.progress.phase, progress.progress.trialId) == wanted)
+
+    @property
+    def commands(self):
+        names = [name for name, _arguments in self.simulator.commands]
+        return [name for name in names if name in ("Pause", "Resume", "Abort", "StartTask")]
+
+
+@pytest.fixture
+def trial(host):
+    with SimulatorDouble() as simulator:
+        yield Trial(host, simulator)
+
+
+@pytest.mark.parametrize("name", ["pauseButton", "nextStepButton"])
+def test_pause_stays_pause_though_the_trainee_pauses_meanwhile(trial, name):
+    trial.tell("running")
+    press_slowly(trial.host, name, lambda: trial.tell("paused"))
+    trial.wait_until(lambda: trial.commands)
+    assert trial.commands == ["Pause"]
+
+
+def test_a_trial_that_begins_while_the_question_is_open_is_not_aborted(trial, monkeypatch):
+    trial.tell("running")
+
+    def begin_another(*_texts):
+        trial.tell("idle", 5)
+        trial.tell("running", 6)
+        return True
+
+    monkeypatch.setattr(slicer.util, "confirmYesNoDisplay", begin_another)
+    trial.host.unfold("abortButton")
+    trial.host.press("abortButton")
+    assert "was not aborted" in trial.host.messages[-1].text
+    assert trial.commands == []
+
+
+def test_connect_does_not_disconnect_though_the_link_is_begun_meanwhile(host):
+    host.open()
+    link = host.widget.logic.session.link
+    press_slowly(host, "connectButton", lambda: link.connectTo("127.0.0.1", 1))
+    assert link.status.state is not LinkState.OFF
+
+
+def test_cancel_does_not_begin_anew_though_the_work_is_done_meanwhile(host, monkeypatch):
+    host.open()
+    host.unfold("useHeadButton")
+    model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", "Mine")
+    host.choose("headModelComboBox", model)
+    begun, button = [], host.find("useHeadButton")._qt
+
+    def use(_node, progress):
+        begun.append(True)
+        progress("Working", 0.5)
+        QtTest.QTest.mousePress(button, LEFT)
+        return model, []
+
+    monkeypatch.setattr(host.widget.logic.session.scenario, "useHead", use)
+    host.press("useHeadButton")
+    QtTest.QTest.mouseRelease(button, LEFT)
+    assert begun == [True]
+
+
+def test_the_button_of_a_warning_stays_while_the_registration_is_shown_anew(touched):
+    session = touched.widget.logic.session
+    press_slowly(touched, "remedy0Button", lambda: session.registration.chooseKind("similarity"))
+    assert touched.find("residualsTable").rowCount == 14
+
+
+def test_a_fiducial_stays_chosen_by_its_label_whichever_row_it_gets(touched):
+    session = touched.widget.logic.session
+    touched.choose("residualsTable", 9)
+    session.registration.exclude("7")
+    touched.press("excludeButton")
+    assert session.registration.choices.excluded == {"7", "10"}
+    assert not touched.find("excludeButton").enabled
+
+
+def test_the_target_that_is_chosen_is_taken_though_another_was_placed_meanwhile(touched):
+    touched.unfold("planTargetComboBox")
+    touched.press("placeTargetButton")
+    touched.place(10.0, 20.0, 30.0)
+    touched.press("placeTargetButton")
+    touched.place(20.0, 20.0, 30.0)
+    combo = touched.find("planTargetComboBox")
+    touched.wait_until(lambda: combo.count == 2, "both targets are offered")
+    node = touched.find("planComboBox").currentNode()
+    node.AddControlPoint(30.0, 20.0, 30.0)
+    combo._qt.setCurrentIndex(0)
+    combo._qt.activated.emit(0)
+    assert (combo.count, combo.currentIndex) == (3, 0)
+
+
+def test_a_consent_that_could_not_be_saved_is_not_shown_as_given(host, monkeypatch):
+    host.open()
+    host.press("createTraineeButton")
+    host.unfold("consentCheckBox")
+
+    def refuse(_consent):
+        from rastrainer.errors import InputError
+
+        raise InputError("Another program has the study.")
+
+    monkeypatch.setattr(host.widget.logic.session.trainees, "setConsent", refuse)
+    host.check("consentCheckBox")
+    assert not host.find("consentCheckBox").checked
+
+
+def test_a_set_up_that_could_not_begin_starts_no_simulator_after_the_next(host, tmp_path):
+    host.open()
+    host.find("wheelsPathLineEdit").currentPath = str(tmp_path)
+    host.answer("not set up on this computer yet", "Ok")
+    host.unfold("startSimulatorButton")
+    host.press("startSimulatorButton")
+    assert "There are no wheels" in host.messages[-1].text
+    count = len(host.messages)
+    host.widget.logic.session.simulator.setup.finished.emit("")
+    assert len(host.messages) == count
