@@ -9,10 +9,10 @@ from rastrainer.trial.trainee_progress import competence_of
 from Testing.error_rates.measured import Measured, share_of
 
 HEADER = (
-    "trainee, 30 trials begun",
+    "trainee, 30 trials started",
     "called competent",
-    "aborted trials not counted (before)",
-    "not counted, until 30 are finished (before)",
+    "aborted trials not counted (previous method)",
+    "not counted, until 30 are finished (previous method)",
     "trials finished of 30, mean",
 )
 TRIALS = 30
@@ -25,10 +25,10 @@ def competence(sets: int, seed: int = 23) -> list[Measured]:
     """
     random = np.random.default_rng(seed)
     return [
-        _trainees("passes 50 %, aborts each bad trial", 0.5, 1.0, sets, random, at_most=0.05),
+        _trainees("passes 50 %, aborts every bad trial", 0.5, 1.0, sets, random, at_most=0.05),
         _trainees("passes 50 %, aborts every second bad trial", 0.5, 0.5, sets, random, 0.05),
         _trainees("passes 50 %, aborts none", 0.5, 0.0, sets, random, at_most=0.05),
-        _trainees("passes 60 %, aborts each bad trial", 0.6, 1.0, sets, random, at_most=0.05),
+        _trainees("passes 60 %, aborts every bad trial", 0.6, 1.0, sets, random, at_most=0.05),
         _trainees("passes 95 %, aborts none", 0.95, 0.0, sets, random, at_least=0.9),
     ]
 

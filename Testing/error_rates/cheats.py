@@ -17,19 +17,19 @@ from Testing.error_rates.played import TASKS, stored
 
 MOST = 40.0
 """Points that a cheat may get."""
-HEADER = ("way to play", "highest score", "passed", f"competent after {TRAINING_TRIALS}", *TASKS)
+HEADER = ("strategy", "highest score", "passed", f"competent after {TRAINING_TRIALS}", *TASKS)
 FIVE = TASKS[1:]
 ROWS: tuple[tuple[str, str, Sequence[str], float | None], ...] = (
     ("honest, FLE 1 mm", "honest", TASKS, None),
-    ("hover 9 mm beside, the paper's touch rule", "hover", TASKS, MOST),
-    ("hover 2 mm beside, the paper's touch rule", "hover 2 mm", TASKS, MOST),
-    ("aim 2 mm beside along the skin, Tasks 1 to 5", "aim beside", FIVE, MOST),
+    ("hover with an offset of 9 mm, the paper's touch rule", "hover", TASKS, MOST),
+    ("hover with an offset of 2 mm, the paper's touch rule", "hover 2 mm", TASKS, MOST),
+    ("aim 2 mm off along the skin, Tasks 1 to 5", "aim beside", FIVE, MOST),
     ("the same, trial run", "aim beside", TASKS[:1], PASS_MARK),
     ("drag from fiducial to fiducial", "drag", TASKS, MOST),
-    ("press 2 mm in", "press", TASKS, MOST),
-    ("aim 2 mm beside along x, to the front", "aim beside, x", TASKS, None),
-    ("aim 2 mm beside along y, to the left", "aim beside, y", TASKS, None),
-    ("aim 2 mm beside along z, upward", "aim beside, z", TASKS, None),
+    ("press 2 mm into the head", "press", TASKS, MOST),
+    ("aim 2 mm off along x, to the front", "aim beside, x", TASKS, None),
+    ("aim 2 mm off along y, to the left", "aim beside, y", TASKS, None),
+    ("aim 2 mm off along z, upward", "aim beside, z", TASKS, None),
 )
 
 

@@ -10,7 +10,11 @@ from rastrainer.statistics.paired import compare_paired
 from rastrainer.statistics.scipy_modules import scipy_module
 from Testing.error_rates.measured import Measured, share_of, share_text
 
-HEADER = ("paired trainees", "interval holds the truth", "limits times J (before)")
+HEADER = (
+    "paired trainees",
+    "interval contains the truth",
+    "limits multiplied by J (previous method)",
+)
 TRUTHS = (0.0, 0.5, 1.5)
 MORE = 10
 """Times as many data sets as are asked for: a share of 95 % is to be told from 94 %."""

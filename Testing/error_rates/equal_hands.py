@@ -26,13 +26,13 @@ MOST_OFF_SLOW = 3.0
 FLE_MM = {USUAL: 1.0, SLOW: 1.7}
 HEADER = (
     "task",
-    "off by points",
+    "deviation, points",
     "score",
     "played time, s",
     "reference, s",
     "true TRE, RMS, mm",
     "reference, mm",
-    "root of safety",
+    "square root of safety",
 )
 
 

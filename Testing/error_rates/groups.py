@@ -15,8 +15,8 @@ from rastrainer.statistics.trainee_clusters import (
 )
 from Testing.error_rates.measured import Measured, share_of, share_text
 
-HEADER = ("one population", "taken for several")
-POWER_HEADER = ("several populations", "found", "told with stability (100 studies)")
+HEADER = ("one population", "mistaken for several")
+POWER_HEADER = ("several populations", "found", "found with stability check (100 studies)")
 SIZES = (8, 12, 20, 40)
 POPULATIONS = (
     *("normal, correlated", "log-normal, correlated", "log-normal, independent"),
@@ -57,7 +57,7 @@ def several_populations(sets: int, seed: int = 4) -> list[Measured]:
         drawn += member[:, None] * distance / np.sqrt(METRICS)
         parted = [_is_parted(values) for values in drawn]
         told = share_of([_is_told(values) for values in drawn[: sets // 20]])
-        apart = f"{distance} SD apart" if groups == 2 else f"{distance} SD from each to the next"
+        apart = f"{distance} SD apart" if groups == 2 else f"{distance} SD between neighbors"
         words = f"{groups} groups of {trainees // groups}, {apart}"
         found.append(
             Measured(words, share_of(parted), sets, at_least=at_least, beside=(share_text(told),))

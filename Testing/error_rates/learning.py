@@ -78,9 +78,9 @@ def cohorts(sets: int, seed: int = 2) -> list[Measured]:
     """Return the figures of Page's test."""
     random = np.random.default_rng(seed)
     cases = [
-        ("constant, log-normal with 12 %, trainees differ by 20 %", np.ones(5), 0.06, None),
-        ("falling by 10 %, else as above", falling(5, 1.0, 0.9), None, None),
-        ("falling by 15 %, else as above", falling(5, 1.0, 0.85), None, 0.8),
+        ("constant, log-normal scatter of 12 %, trainees differ by 20 %", np.ones(5), 0.06, None),
+        ("falling by 10 %, otherwise as above", falling(5, 1.0, 0.9), None, None),
+        ("falling by 15 %, otherwise as above", falling(5, 1.0, 0.85), None, 0.8),
     ]
     found = []
     for words, means, at_most, at_least in cases:

@@ -75,6 +75,6 @@ class Row(Protocol):
 
 def markdown(header: Sequence[str], found: Sequence[Row]) -> str:
     """Return a table; `header` names the case, the figure and the further figures."""
-    lines = [[header[0], header[1], "asked", *header[2:]], ["---"] * (len(header) + 1)]
+    lines = [[header[0], header[1], "required", *header[2:]], ["---"] * (len(header) + 1)]
     lines += [one.cells() for one in found]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)

@@ -14,7 +14,7 @@ from Testing.error_rates.measured import Measured, share_of, share_text
 COVERAGE = "coverage of the 95 % interval"
 HEADER = (
     "trainees in two sequences",
-    "with the period",
+    "period separated",
     "paired t-test",
     "rank sums",
     COVERAGE,

@@ -16,7 +16,7 @@ from rastrainer.study.study_data import StudyData
 from rastrainer_simulator.virtual.outcome_model import DOF, OutcomeModel
 from Testing.error_rates.drawn_study import draw_protocol_study
 
-HEADER = ("parameter", "off by standard errors", "truth", "mean", "standard error")
+HEADER = ("parameter", "deviation, standard errors", "truth", "mean", "standard error")
 MOST = 3.0
 """Standard errors; of 15 unbiased estimates one is off by more in 1 of 25 tables.
 

@@ -15,8 +15,8 @@ from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = (
     "errors of the touches",
-    "interval holds the true TRE",
-    "without the common offset (before)",
+    "interval contains the true TRE",
+    "without the common offset (previous method)",
     "true TRE, RMS, mm",
     "expected TRE, RMS, mm",
 )
@@ -30,19 +30,23 @@ def intervals(sets: int, seed: int = 10) -> list[Measured]:
 
     Fiducials lie on one side of a ball, the target within; the localization error is 1 mm.
     """
-    common = f"independent, alike, and a common offset of SD {COMMON_BIAS_SD_MM:g} mm on each axis"
+    common = f"independent, equal, with a common offset of SD {COMMON_BIAS_SD_MM:g} mm on each axis"
     cases: list[tuple[str, Errors, float | None]] = [
-        ("independent, unbiased, alike", _alike, 0.94),
-        ("independent, but three times as large at the third on one side", _unequal, None),
+        ("independent, unbiased, equal", _alike, 0.94),
+        (
+            "independent, but three times as large for a third of the fiducials, on one side",
+            _unequal,
+            None,
+        ),
         (common, _with_common_offset, 0.94),
-        ("as the first, and a common hover of 2 mm above the skin", _hovering, None),
-        ("as the first, and a constant aim bias of 1.5 mm", _aimed_beside, None),
+        ("as in row 1, and all touches 2 mm above the skin", _hovering, None),
+        ("as in row 1, and a constant aim bias of 1.5 mm", _aimed_beside, None),
     ]
     found = [
         _measured(words, errors, limit, sets, np.random.default_rng([seed, number]))
         for number, (words, errors, limit) in enumerate(cases)
     ]
-    words = "as the second, each point weighted by its known error"
+    words = "as in row 2, each point weighted by its known error"
     random = np.random.default_rng([seed, 1])
     return [*found[:2], _measured(words, _unequal, 0.94, sets, random, True), *found[2:]]
 

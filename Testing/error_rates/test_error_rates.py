@@ -25,7 +25,7 @@ def test_the_page_has_every_table_and_all_that_is_asked_holds_in_it():
         head, _, *lines = printed(name, text).splitlines()
         assert [cell.strip() for cell in head.strip("|").split("|")] == [
             *header[:2],
-            "asked",
+            "required",
             *header[2:],
         ]
         for line in lines:
