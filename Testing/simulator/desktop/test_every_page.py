@@ -1,0 +1,55 @@
+"""Every menu, page and dialog, opened, closed and opened again in the window."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.desktop.camera import Viewpoint
+from rastrainer_simulator.desktop.glb_parts import read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.desktop.picture import Picture
+from rastrainer_simulator.net.views.screen import Screen
+from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, state_text
+from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401
+from Testing.simulator.flow.every_page import every_screen, names_of_pages
+
+
+@pytest.fixture
+def show(gl_window, glb):
+    """Return a function that shows a screen in the window and returns its pixels."""
+    inbox = Inbox()
+    inbox.bodies = BODIES
+    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
+    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
+    picture = Picture(gl_window, inbox, Quality.LOW)
+    times = itertools.count(0.0, 10.0)
+
+    def show(screen):
+        inbox.screen, inbox.problem = screen, ""
+        inbox.take_state(state_text(next=None))
+        # Twice: a camera that sets out arrives.
+        for now in (next(times), next(times)):
+            picture.is_due(now)
+        picture.draw()
+        return gl_window.pixels().astype(int)
+
+    yield show
+    for renderer in list(gl_window.render_window.GetRenderers()):
+        gl_window.render_window.RemoveRenderer(renderer)
+
+
+def test_every_page_is_shown_the_same_when_it_is_opened_again(show, presenter):  # noqa: F811
+    screens = every_screen(presenter)
+    assert names_of_pages() <= screens.keys()
+    empty = show(Screen())
+    for name, screen in screens.items():
+        first = show(screen)
+        show(Screen())
+        again = show(screen)
+        assert np.array_equal(first, again), name
+        assert not np.array_equal(first, empty), name
+        show(Screen())

@@ -1,0 +1,75 @@
+"""Every menu, page and dialog that the flow can open, as the screens that views draw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Future
+from dataclasses import replace
+
+from rastrainer.protocol import Phase
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.pages import bindings, experiment, introduction, result, start, trial
+from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
+from rastrainer_simulator.flow.pages.replay import ReplayPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
+
+QUESTIONNAIRE = StudyStep("P07", "questionnaire", 2, 19, questionnaire="nasa-tlx")
+SCORED = TrainingState(
+    phase=Phase.SCORED,
+    trainee="P07",
+    task="task-1",
+    mode="desktop",
+    trial_id="none",
+    result=TrialResult(FinalRegistration((1.0,) * 16, 1.25, 1.5), 1.4, 81.0, {"ctps": 62.5}),
+)
+
+
+class _Loading:
+    """A trial that is never loaded."""
+
+    trial: Future = Future()
+
+
+def every_screen(presenter: FlowPresenter) -> dict[str, Screen]:
+    """Return a screen of each page, by the name of its menu, and that of a running trial."""
+    session, flow = presenter._session, presenter._flow
+    session.trainee = "P07"
+    session.state = replace(session.state, training=SCORED)
+    screens = {"": Screen(status=("Task 1",))}
+    for page in _pages(session):
+        session.pages.show(page)
+        screens[page.name] = flow.screen()
+    session.pages.show_start()
+    return screens
+
+
+def names_of_pages(base: type = SessionPage) -> set[str]:
+    """Return the names of all pages that there are."""
+    below = (names_of_pages(page) for page in base.__subclasses__())
+    return ({base.name} if base.name else set()).union(*below)
+
+
+def _pages(session) -> Iterator[SessionPage]:
+    keys, touch = InputDevice.KEYBOARD, ControlName.TOUCH
+    for simple in (start.StartPage, start.QuitPage, start.SettingsPage):
+        yield simple(session)
+    yield introduction.IntroductionPage(session)
+    yield introduction.ControlsPage(session)
+    yield introduction.PadTestPage(session)
+    yield bindings.BindingsPage(session)
+    yield bindings.ListenPage(session, keys, touch)
+    yield bindings.ConflictPage(session, keys, touch, "KeyC")
+    yield experiment.ExperimentPage(session)
+    yield experiment.KeyboardPage(session, lambda *_: None)
+    yield experiment.ScenarioPage(session)
+    yield QuestionnairePage(session, QUESTIONNAIRE)
+    for over_a_trial in (trial.TrialPage, trial.AbortPage, trial.PracticePage, trial.CompletePage):
+        yield over_a_trial(session)
+    yield result.WaitingPage(session)
+    yield result.ResultPage(session)
+    yield ReplayPage(session, _Loading(), begins_at_worst=False)
