@@ -57,6 +57,7 @@ class Lab:
         config = self._folder / "records-config"
         config.mkdir(parents=True)
         (config / LIMITS_FILE).write_text(json.dumps(PATIENT))
+        (config / "preferences.json").write_text('{"order": "any"}')
         os.environ["RASTRAINER_VIEW_KEY"] = self.key
         try:
             return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)

@@ -180,6 +180,8 @@ class StreamTrainee:
         """Move the focus to an item."""
         names = [each.name for each in self.menu.items if each.kind != "axis"]
         assert item in names, f"{self.menu.name} has {names}"
+        # A menu that has opened by itself takes nothing for a moment.
+        self.until(lambda: self.menu.focus, "a focus")
         while (before := self.menu.focus) != item:
             way = "down" if names.index(item) > names.index(before) else "up"
             self.press(way, lambda b=before: self.menu.focus != b, "another focus")

@@ -71,7 +71,7 @@ class Flow:
             before, self._seen = self._seen, (training.trial_id, training.phase)
             self._follow(before)
         if session.pages.top is not None:
-            session.pages.top.advance(dt)
+            session.pages.advance(dt)
         elif self._trial_screen.has_practice_just_ended():
             self._trial_screen.open_menu()
 
@@ -123,37 +123,42 @@ class Flow:
         """Let go of what the open pages have begun."""
         self._session.pages.show(None)
 
-    def _note_done(self) -> None:
-        training, scenario = self._session.training, self._session.scenario
-        self._session.progress.note(training.trainee, scenario.name, training.task)
-
     def _follow(self, before: tuple[str, Phase]) -> None:
         """Show what belongs to the trial's new phase."""
         session = self._session
         training = session.training
-        if training.phase is not Phase.PAUSED:
-            self._unseen = ""
-        if training.trial_id and training.trial_id != before[0]:
-            self._trial_screen.begin(*points_in_world(self._control_loop.truth))
-            session.trainee = training.trainee
-            session.mode = training.mode
-            if training.task == TRIAL_RUN:
-                self._note_done()
+        self._note_trial(before[0])
+        is_requested = self._trial_screen.take_menu_request()
+        was_working = session.pages.top is None
         if training.phase in (Phase.RUNNING, Phase.COMPLETE):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
             is_over = self._trial_screen.is_practice_over
-            session.pages.show((PracticePage if is_over else TrialPage)(session))
+            page = (PracticePage if is_over else TrialPage)(session)
+            session.pages.show(page, has_grace=not is_requested)
         elif training.phase is Phase.REGISTERED:
-            self._note_done()
+            session.note_done()
             session.study.note_registered(training.trainee, training.task, training.mode)
-            session.pages.show(WaitingPage(session))
+            session.pages.show(WaitingPage(session), has_grace=True)
         elif training.phase is Phase.SCORED:
-            session.pages.show(ResultPage(session))
+            session.pages.show(ResultPage(session), has_grace=True)
         elif before[1] in OPEN_PHASES or isinstance(session.pages.top, FinishedPage | ReplayPage):
             # Another simulation may follow a trial while other pages are open: they stay.
             session.pages.show_start()
-            session.pages.open(ExperimentPage(session))
+            session.pages.open(ExperimentPage(session), has_grace=was_working)
+
+    def _note_trial(self, previous_id: str) -> None:
+        """Take note of a new trial, and of a trial run whose points are all touched."""
+        session = self._session
+        training = session.training
+        if training.phase is not Phase.PAUSED:
+            self._unseen = ""
+        if training.trial_id and training.trial_id != previous_id:
+            self._trial_screen.begin(*points_in_world(self._control_loop.truth))
+            session.trainee = training.trainee
+            session.mode = training.mode
+        if training.phase is Phase.COMPLETE and training.task == TRIAL_RUN:
+            session.note_done()
 
     def _link_warnings(self) -> tuple[ScreenMessage, ...]:
         """Warn that the connection to Slicer was lost, once there was one."""

@@ -46,6 +46,7 @@ class TrialScreen:
         self._obstacle = ""
         self._is_within_reach = True
         self._was_refused = False
+        self._has_requested_menu = False
         self._is_practice_end_shown = False
         self._practice_step: StudyStep | None = None
         self._practice_end_s: float | None = None
@@ -107,7 +108,13 @@ class TrialScreen:
         elif control is ControlName.TOUCH:
             session.do(CommandName.CAPTURE)
         elif control in (ControlName.MENU, ControlName.PAUSE):
+            self._has_requested_menu = True
             self.open_menu()
+
+    def take_menu_request(self) -> bool:
+        """Return whether the trainee has requested the menu since this was last asked."""
+        has_requested, self._has_requested_menu = self._has_requested_menu, False
+        return has_requested
 
     def open_menu(self) -> None:
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""

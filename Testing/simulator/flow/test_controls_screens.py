@@ -108,6 +108,7 @@ def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
     trainee.presenter.on_visibility(1, False)
     trainee.until_menu("trial")
     assert trainee.presenter.control.holder == ""
+    trainee.until(lambda: trainee.menu.focus)
     Keys(trainee, view=2, kind="page").tap("accept")
     assert trainee.presenter.control.view == 2
     trainee.until_menu(None)

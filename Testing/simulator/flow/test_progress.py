@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from rastrainer.journal.journal_file import NO_LINE, encode_line
 from rastrainer_simulator.flow.session.progress import DoneTasks
 
@@ -13,14 +15,34 @@ def write_journal(folder, name, trainee, task, *kinds, scenario=HEAD):
     lines, previous = [], NO_LINE
     head = {"name": scenario}
     entries = [{"kind": "header", "trainee": trainee, "scenario": head, "task": task}]
-    for number, entry in enumerate(entries + [{"kind": kind} for kind in kinds], 1):
+    entries += [{"kind": kind} if isinstance(kind, str) else kind for kind in kinds]
+    for number, entry in enumerate(entries, 1):
         line, previous = encode_line(number, previous, entry)
         lines.append(line)
     (folder / f"{name}.journal").write_bytes(b"".join(lines))
 
 
-def test_a_task_counts_once_registered_and_the_trial_run_once_begun(tmp_path):
-    write_journal(tmp_path, "1", "P01", "trial-run", "aborted")
+@pytest.mark.parametrize(
+    ("entry", "is_done"),
+    [
+        ({"kind": "touch", "label": "1"}, False),
+        ({"kind": "phase", "phase": "complete"}, True),
+        ({"kind": "attempt", "record": {"reason": "trainee"}}, False),
+        ({"kind": "attempt", "record": {"reason": "practice over"}}, True),
+    ],
+)
+def test_the_trial_run_counts_once_all_points_were_touched_or_its_time_was_over(
+    tmp_path, entry, is_done
+):
+    write_journal(tmp_path, "1", "P01", "trial-run", entry)
+    write_journal(tmp_path, "2", "P01", "task-2", entry)
+    progress = DoneTasks(tmp_path)
+    assert progress.has_done("P01", HEAD, "trial-run") is is_done
+    assert not progress.has_done("P01", HEAD, "task-2")
+
+
+def test_a_task_counts_once_registered(tmp_path):
+    write_journal(tmp_path, "1", "P01", "trial-run", "registered")
     write_journal(tmp_path, "2", "P01", "task-1", "registered", "scored")
     write_journal(tmp_path, "3", "P01", "task-2", "aborted")
     write_journal(tmp_path, "4", "P02", "task-1", "registered")

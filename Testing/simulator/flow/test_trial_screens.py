@@ -10,6 +10,7 @@ from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.flow.session.progress import DoneTasks
 from rastrainer_simulator.ops.texts.german import GERMAN
 from rastrainer_simulator.ops.texts.texts import Texts
+from Testing.simulator.flow.trainee import STEP_S
 
 
 def test_a_trial_that_slicer_starts_pauses_and_aborts_leads_to_the_same_screens(trainee):
@@ -67,7 +68,9 @@ def test_tasks_wait_for_the_one_before_unless_the_instructor_says_otherwise(trai
     trainee.presenter.on_text(1, "trainee", "P07")
     trainee.step()
     assert trainee.item("trial-run").is_enabled
-    assert trainee.item("task-1").help == "Trial run comes first."
+    assert trainee.item("task-1").help == (
+        "Trial run comes first: touch all its points, or practice until its time is over."
+    )
     trainee.focus("task-3")
     trainee.tap("accept")
     trainee.step()
@@ -87,8 +90,10 @@ def test_tasks_wait_for_the_one_before_unless_the_instructor_says_otherwise(trai
 
 def test_what_was_done_is_known_after_the_simulator_was_started_again(trainee, outside, loop):
     trainee.start("trial-run", "P07")
+    trainee.play("trial-run")
     trainee.submit("Abort")
     trainee.until_menu("experiment")
+    assert trainee.item("trial-run").value == "done"
     trainee.close()
     loop.stop()
     progress, scenario = DoneTasks(outside.services.records), loop.setup.scenario.name
@@ -105,6 +110,11 @@ def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monke
     trainee.until(lambda: trainee.presenter.screen.status[2] == "00:03 left", "time is told")
     trainee.until_menu("practice")
     assert trainee.state.training.phase == "paused"
+    trainee.hands.key("Space")
+    assert trainee.menu.focus == ""
+    trainee.until(lambda: trainee.menu.focus)
+    assert trainee.state.training.phase == "paused"
+    assert trainee.menu.focus == "resume"
     trainee.choose("resume")
     trainee.until_menu(None)
     trainee.step(50)
@@ -114,6 +124,56 @@ def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monke
     trainee.choose("finish")
     trainee.until_menu("experiment")
     assert trainee.item("task-1").is_enabled
+
+
+def test_a_menu_that_opens_by_itself_takes_no_control_for_seven_tenths_of_a_second(trainee):
+    trainee.start("task-1")
+    trainee.submit("Pause")
+    trainee.until_menu("trial")
+    steps = 0
+    while trainee.menu.focus == "":
+        trainee.hands.key("Space")
+        trainee.hands.key("Backspace")
+        steps += 4
+        assert trainee.state.training.phase == "paused"
+    assert 0.6 <= steps * STEP_S <= 0.9
+    trainee.hands.key("Space")
+    trainee.until_menu(None)
+
+
+def test_a_menu_that_the_trainee_opens_takes_the_next_press(trainee):
+    trainee.start("task-1")
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    assert trainee.menu.focus == "resume"
+
+
+def test_a_stray_key_after_a_trial_does_not_make_another_trainee(trainee):
+    trainee.start("task-1", "P07")
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    trainee.choose("abort")
+    trainee.until_menu("abort")
+    trainee.choose("abort")
+    trainee.until_menu("experiment")
+    trainee.hands.type("d")
+    assert trainee.item("trainee").value == "P07"
+    assert trainee.menu.focus == "trial-run"
+
+
+def test_a_trial_run_of_one_point_is_not_done(trainee):
+    trainee.start("trial-run")
+    truth = trainee.loop.truth
+    point, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["1"], truth.target))
+    trainee.touch(point, center)
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    trainee.choose("finish")
+    trainee.until_menu("experiment")
+    assert trainee.item("trial-run").value == ""
+    assert trainee.item("task-1").help == (
+        "Trial run comes first: touch all its points, or practice until its time is over."
+    )
 
 
 def test_a_touch_that_is_too_far_is_refused_in_the_chosen_language_and_with_one_tone(trainee):
@@ -175,6 +235,7 @@ def test_what_the_arm_s_settings_would_change_waits_for_the_end_of_a_trial(train
     assert trainee.item("volume").is_enabled
     trainee.submit("Abort")
     trainee.until_menu("experiment")
+    trainee.until(lambda: trainee.menu.focus)
     trainee.tap("back")
     trainee.until_menu("start")
     trainee.choose("settings")
@@ -203,6 +264,7 @@ def test_another_simulation_after_a_trial_leaves_the_settings_open(trainee, loop
     trainee.start("task-1")
     trainee.submit("Abort")
     trainee.until_menu("experiment")
+    trainee.until(lambda: trainee.menu.focus)
     trainee.tap("back")
     trainee.until_menu("start")
     trainee.choose("settings")

@@ -6,6 +6,7 @@ import numpy as np
 
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.trial.wording import say
+from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.replay.resimulation import replay
 
@@ -42,13 +43,12 @@ def go_to_the_experiment_menu(trainee):
     trainee.until_menu("experiment")
 
 
-def train_and_look_at_the_result(trainee, outside):
+def train_and_look_at_the_result(trainee, outside, monkeypatch):
     trainee.until(lambda: trainee.item("trainee").value == "P07")
     assert not trainee.item("task-1").is_enabled
+    monkeypatch.setattr(trial_screen, "TRIAL_RUN_S", 0.5)
     trainee.choose("trial-run")
-    trainee.until_menu(None)
-    trainee.tap("menu")
-    trainee.until_menu("trial")
+    trainee.until_menu("practice")
     trainee.choose("finish")
     trainee.until_menu("experiment")
     trainee.choose("task-1")
@@ -80,15 +80,15 @@ def train_and_look_at_the_result(trainee, outside):
     return training.trial_id
 
 
-def test_the_whole_flow_goes_by_keys_alone(trainee, outside):
+def test_the_whole_flow_goes_by_keys_alone(trainee, outside, monkeypatch):
     go_to_the_experiment_menu(trainee)
     trainee.focus("trainee")
     trainee.hands.type("P07")
-    train_and_look_at_the_result(trainee, outside)
+    train_and_look_at_the_result(trainee, outside, monkeypatch)
 
 
 def test_the_whole_flow_goes_by_a_gamepad_alone_and_its_trial_replays_bit_by_bit(
-    pilot, outside, setup, tmp_path
+    pilot, outside, setup, tmp_path, monkeypatch
 ):
     go_to_the_experiment_menu(pilot)
     pilot.choose("trainee")
@@ -98,7 +98,7 @@ def test_the_whole_flow_goes_by_a_gamepad_alone_and_its_trial_replays_bit_by_bit
         pilot.tap(*["right"] * steps, "accept")
     pilot.choose("done")
     pilot.until_menu("experiment")
-    trial_id = train_and_look_at_the_result(pilot, outside)
+    trial_id = train_and_look_at_the_result(pilot, outside, monkeypatch)
     (path,) = (tmp_path / "records").glob(f"*{trial_id}.journal")
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT

@@ -135,6 +135,8 @@ class Trainee:
     def focus(self, item: str) -> None:
         names = [each.name for each in self.menu.items if each.kind != "axis"]
         assert item in names, f"{self.menu.name} has {names}"
+        # A menu that has opened by itself takes nothing for a moment.
+        self.until(lambda: self.menu.focus, "a focus")
         while self.menu.focus != item:
             before = self.menu.focus
             is_below = names.index(item) > names.index(before)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName, Mode, StepKind
+from rastrainer.protocol import TRIAL_RUN, CommandName, Mode, StepKind
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
@@ -32,7 +32,7 @@ class ExperimentPage(SessionPage):
 
     def __init__(self, session: TrainingSession, first: str = "") -> None:
         super().__init__(session)
-        self.first = first
+        self.first = first or self._next_task()
 
     def menu(self) -> Menu:
         """Return who, how and what."""
@@ -98,6 +98,19 @@ class ExperimentPage(SessionPage):
             help=reason or self.say("experiment.task help"),
         )
 
+    def _next_task(self) -> str:
+        """Return the first task that can be started and is not done; "" without a trainee.
+
+        With the focus there, a stray key does not change the ID of a known trainee.
+        """
+        step = self._step()
+        if step is not None and step.kind == StepKind.QUESTIONNAIRE:
+            return "answer"
+        tasks = [self._task(task.name) for task in self.session.scenario.tasks]
+        open_tasks = [task for task in tasks if task.is_enabled and not task.value]
+        known = "mode" if self.session.trainee.strip() else ""
+        return open_tasks[0].name if open_tasks else known
+
     def _obstacle(self, name: str) -> str:
         session = self.session
         trainee = session.trainee.strip()
@@ -115,7 +128,10 @@ class ExperimentPage(SessionPage):
         scenario = session.scenario
         order = [task.name for task in scenario.tasks]
         missing = session.progress.missing_before(trainee, scenario.name, name, order)
-        return self.say("experiment.order", task=session.task_title(missing)) if missing else ""
+        if not missing:
+            return ""
+        key = "experiment.trial run first" if missing == TRIAL_RUN else "experiment.order"
+        return self.say(key, task=session.task_title(missing))
 
     def _step(self) -> StudyStep | None:
         return self.session.study.step_of(self.session.trainee.strip())

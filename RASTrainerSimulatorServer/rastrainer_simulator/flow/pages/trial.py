@@ -84,6 +84,7 @@ class PracticePage(SessionPage):
     """The trial run's minutes are over: the trainee decides how to continue."""
 
     name = "practice"
+    first = "resume"
 
     def menu(self) -> Menu:
         """Return the choice."""
@@ -96,6 +97,7 @@ class PracticePage(SessionPage):
     def accept(self, item: str) -> None:
         """Finish, or keep practicing."""
         if item == "finish":
+            self.session.note_done()
             self.session.do(CommandName.ABORT, {"reason": AbortReason.PRACTICE_OVER.value})
         else:
             self.session.do(CommandName.RESUME)

@@ -68,8 +68,15 @@ class Page:
         """It is not open any more."""
 
 
+GRACE_S = 0.7
+"""How long a page that opened by itself has no focus: a press meant for the arm does nothing."""
+
+
 class OpenPages:
     """The open pages; none while the trainee works.
+
+    A page that opened by itself takes no control for `GRACE_S` seconds of the simulator's clock;
+    clicks on its items count at once.
 
     Attributes:
         home: makes the page that all others lie over.
@@ -80,25 +87,33 @@ class OpenPages:
         self._happened = happened
         self._open: list[Page] = []
         self._focus: list[str] = []
+        self._grace_s = 0.0
 
     @property
     def top(self) -> Page | None:
         """The page that is shown."""
         return self._open[-1] if self._open else None
 
-    def show(self, page: Page | None) -> None:
+    def show(self, page: Page | None, has_grace: bool = False) -> None:
         """Close all pages and open one, or none."""
         while self._open:
             self.close()
         if page is not None:
-            self.open(page)
+            self.open(page, has_grace)
+
+    def advance(self, dt: float) -> None:
+        """Advance the page that is shown by `dt` seconds."""
+        self._grace_s -= dt
+        if self.top is not None:
+            self.top.advance(dt)
 
     def show_start(self) -> None:
         """Close all pages but the first."""
         self.show(self.home())
 
-    def open(self, page: Page) -> None:
-        """Open a page over the others."""
+    def open(self, page: Page, has_grace: bool = False) -> None:
+        """Open a page over the others; with a grace time where it opens by itself."""
+        self._grace_s = GRACE_S if has_grace else 0.0
         self._open.append(page)
         self._focus.append(page.first)
 
@@ -124,7 +139,7 @@ class OpenPages:
     def pressed(self, control: ControlName) -> None:
         """Take a control of the menus."""
         page = self.top
-        if page is None or page.pressed(control):
+        if page is None or self._grace_s > 0.0 or page.pressed(control):
             return
         if control in _MOVES:
             self.move(_MOVES[control])
@@ -197,6 +212,8 @@ class OpenPages:
 
     def _focused(self, menu: Menu) -> str:
         """Return the item with the focus: the first that can be chosen, where it is gone."""
+        if self._grace_s > 0.0:
+            return ""
         items = [item for item in menu.items if item.kind is not ItemKind.AXIS]
         names = [item.name for item in items]
         if self._focus[-1] in names:

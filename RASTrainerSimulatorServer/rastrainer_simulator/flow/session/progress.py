@@ -12,14 +12,22 @@ from rastrainer.journal.journal_file import (
     DamagedLineError,
     decode_line,
 )
-from rastrainer.protocol import TRIAL_RUN
+from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
 
 _TAIL_BYTES = 1 << 16
 _REGISTERED = b'"kind":"registered"'
+_PRACTICED = (
+    f'"phase":"{Phase.COMPLETE.value}"'.encode(),
+    f'"reason":"{AbortReason.PRACTICE_OVER.value}"'.encode(),
+)
 
 
 class DoneTasks:
-    """Counts a task as done when it was registered, and the trial run when it was begun."""
+    """Counts a task as done when it was registered.
+
+    The trial run also counts when all its points were touched, or when it was ended after its time
+    was over, as the paper's procedure has it (figure 4).
+    """
 
     def __init__(self, records: Path) -> None:
         """Look through the folder's journals: at the first line and the end of each."""
@@ -48,10 +56,11 @@ class DoneTasks:
             with path.open("rb") as file:
                 header = decode_line(file.readline(LONGEST_LINE).rstrip(b"\n"), 1, NO_LINE)
                 file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
-                is_registered = _REGISTERED in file.read(_TAIL_BYTES)
+                tail = file.read(_TAIL_BYTES)
             what = header["trainee"], header["scenario"]["name"], header["task"]
         except (OSError, KeyError, TypeError, DamagedLineError):
             return
         is_text = all(isinstance(word, str) for word in what)
-        if is_text and (is_registered or header["task"] == TRIAL_RUN):
+        is_practiced = header["task"] == TRIAL_RUN and any(mark in tail for mark in _PRACTICED)
+        if is_text and (_REGISTERED in tail or is_practiced):
             self.note(*what)

@@ -41,7 +41,6 @@ from rastrainer_simulator.vectors import Vector
 NOTICE_S = 5.0
 SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""
-"""The phases of a trial that can still be changed."""
 
 
 @dataclass(frozen=True)
@@ -222,6 +221,10 @@ class TrainingSession:
         if not found:
             raise InputError(self.texts.say("replay.no journal"))
         return TrialLoading(found[0], self._control_loop.setup)
+
+    def note_done(self) -> None:
+        """Count the present trial's task as done."""
+        self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
 
     def rebind(self, bindings: Bindings) -> None:
         """Take on other bindings and save them."""

@@ -132,6 +132,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.no trainee": "Enter your ID first.",
         "experiment.being set up": "The simulator is applying its new settings.",
         "experiment.order": "{task} comes first.",
+        "experiment.trial run first": "{task} comes first: touch all its points, or practice until "
+        "its time is over.",
         "experiment.study": "Not now. {step} Only your instructor can leave a step out, in "
         "3D Slicer and with a reason.",
         # What a study that Slicer leads asks for next.

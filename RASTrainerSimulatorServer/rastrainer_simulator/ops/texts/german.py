@@ -219,6 +219,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "experiment.task help": "Diese Aufgabe beginnen.",
         "experiment.no trainee": "Gib zuerst deine ID ein.",
         "experiment.being set up": "Der Simulator übernimmt seine neuen Einstellungen.",
+        "experiment.trial run first": "{task} kommt zuerst: Berühre alle Punkte, oder übe, bis die "
+        "Zeit um ist.",
         "experiment.order": "{task} kommt zuerst.",
         "experiment.study": "Jetzt nicht. {step} Nur die Kursleitung kann einen Schritt auslassen, "
         "in 3D Slicer und mit einem Grund.",
