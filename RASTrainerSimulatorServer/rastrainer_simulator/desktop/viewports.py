@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
+from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from rastrainer_simulator.desktop.camera import CameraTransition, Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
 from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.desktop.plain_light import add_plain_lights
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 
 BACKGROUND = (0.62, 0.65, 0.68)
-KEY_LIGHT = ((-0.25, -0.55, 0.80), 0.86)
-FILL_LIGHT = ((0.75, -0.60, 0.25), 0.30)
 
 
 class Viewports:
@@ -131,19 +130,8 @@ class Viewports:
             renderer.SetEnvironmentTexture(None)  # type: ignore[arg-type]
         if not self.quality.is_physical:
             for renderer in (self.main, self._inset):
-                for direction, intensity in (KEY_LIGHT, FILL_LIGHT):
-                    renderer.AddLight(_plain_light(direction, intensity))
+                add_plain_lights(renderer)
             return
         has_shadows = self.quality is Quality.HIGH
         light_room(self.main, Shadows.FULL if has_shadows else Shadows.NONE)
         light_room(self._inset, Shadows.SMALL if has_shadows else Shadows.NONE)
-
-
-def _plain_light(direction: tuple[float, float, float], intensity: float) -> vtkLight:
-    light = vtkLight()
-    light.SetLightTypeToSceneLight()
-    light.PositionalOff()
-    light.SetPosition(*direction)
-    light.SetFocalPoint(0.0, 0.0, 0.0)
-    light.SetIntensity(intensity)
-    return light
