@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -11,6 +12,9 @@ import numpy as np
 
 from rastrainer.protocol import Phase, Proximity
 from rastrainer_simulator.vectors import Vector
+
+SAME = 1e-9
+"""Registrations are the same up to this part of a number, and up to as many mm."""
 
 
 class EventKind(str, Enum):
@@ -84,7 +88,7 @@ class PlanInWorld:
 
 @dataclass(frozen=True)
 class FinalRegistration:
-    """The registration that a client has found for a trial: after it the truth is told (mm).
+    """The registration that was submitted for a trial: after it the truth is told (mm).
 
     `matrix` is WorldToHead, 16 floats row by row, mm.
     """
@@ -92,6 +96,23 @@ class FinalRegistration:
     matrix: tuple[float, ...]
     fre_mm: float
     expected_tre_mm: float
+
+    @classmethod
+    def from_arguments(cls, arguments: Mapping[str, Any]) -> FinalRegistration:
+        """Return what the arguments of SubmitRegistration hold."""
+        return cls(tuple(arguments["matrix"]), arguments["freMm"], arguments["expectedTreMm"])
+
+    def agrees_with(self, other: FinalRegistration) -> bool:
+        """Return whether both are the outcome of one computation.
+
+        Slicer's numpy and the simulator's may round the last digits otherwise; who knows the truth
+        gains nothing from so little.
+        """
+        pairs = zip(self._numbers(), other._numbers(), strict=True)
+        return all(math.isclose(a, b, rel_tol=SAME, abs_tol=SAME) for a, b in pairs)
+
+    def _numbers(self) -> tuple[float, ...]:
+        return (*self.matrix, self.fre_mm, self.expected_tre_mm)
 
 
 @dataclass(frozen=True)

@@ -89,6 +89,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "resumed or aborted",
     )
     parser.add_argument(
+        "--own-score",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="score a trial outside of a study in the simulator where no Slicer is connected when "
+        "it ends",
+    )
+    parser.add_argument(
         "--log-folder",
         type=Path,
         metavar="DIR",
@@ -126,6 +133,7 @@ def run(arguments: argparse.Namespace) -> int:
         config=arguments.config,
         logs=logs,
         resumes=arguments.go_on,
+        scores_alone=arguments.own_score,
         connect_to=connect_to,
         speed=arguments.speed,
         scenario=arguments.scenario,

@@ -18,7 +18,7 @@ from rastrainer_simulator.net.views.feedback_event import feedback_event
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LocalizedText
 from rastrainer_simulator.replay.playback import Playback
-from rastrainer_simulator.state import EventKind, SimulationState, StepResult
+from rastrainer_simulator.state import EventKind, SimulationState, StepResult, TrialResult
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = "interrupted"
@@ -36,6 +36,7 @@ class Flow:
         self._control_loop = control_loop
         self._trial_screen = TrialScreen(session)
         self._seen = ("", Phase.IDLE)
+        self._seen_result: TrialResult | None = None
         self._had_slicer = False
         self._unseen = ""
         session.pages.home = lambda: StartPage(session)
@@ -70,6 +71,9 @@ class Flow:
         if (training.trial_id, training.phase) != self._seen:
             before, self._seen = self._seen, (training.trial_id, training.phase)
             self._follow(before)
+        if training.result is not self._seen_result:
+            self._seen_result = training.result
+            session.history.changed(training.trainee, training.trial_id)
         if session.pages.top is not None:
             session.pages.advance(dt)
         elif self._trial_screen.has_practice_just_ended():
@@ -127,6 +131,7 @@ class Flow:
         """Show what belongs to the trial's new phase."""
         session = self._session
         training = session.training
+        session.history.changed(training.trainee, training.trial_id)
         self._note_trial(before[0])
         is_requested = self._trial_screen.take_menu_request()
         was_working = session.pages.top is None

@@ -22,6 +22,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.state import FinalRegistration
 from rastrainer_simulator.training.true_error import Truth
 
 FIRST_REACH = 1 << 16
@@ -162,7 +163,8 @@ class TrialArchive:
             entry = {"kind": "registration", **times, "arguments": arguments}
             self._append(trial.record.trial_id, entry)
             return replace(trial, registration=arguments)
-        if any(trial.registration[name] != value for name, value in arguments.items()):
+        kept, told = map(FinalRegistration.from_arguments, (trial.registration, arguments))
+        if not kept.agrees_with(told):
             raise InputError(Texts().say("registration is final"))
         return trial
 

@@ -72,6 +72,7 @@ class ServerOptions:
         config: folder of the user's settings; None is the usual one.
         logs: folder of the logs of the window; None is the usual one.
         resumes: whether a trial that the simulator's end has interrupted is resumed.
+        scores_alone: whether a trial outside of a study is scored where no Slicer is connected.
     """
 
     records: Path
@@ -90,6 +91,7 @@ class ServerOptions:
     config: Path | None = None
     logs: Path | None = None
     resumes: bool = True
+    scores_alone: bool = True
 
 
 class SimulatorServer:
@@ -246,6 +248,7 @@ class SimulatorServer:
             is_slicer_connected=lambda: bool(link.server.clients),
             quit=stop.set,
             study=self._study,
+            scores_alone=self._options.scores_alone,
         )
         return RunningPresenter(self._control_loop, services, self._options.has_gamepad)
 

@@ -233,15 +233,12 @@ class Training:
 
     def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Tell the truth in return for a registration, which then cannot be changed any more."""
-        arguments, known = command.arguments, self.state.registration
-        registration = FinalRegistration(
-            matrix=arguments["matrix"],
-            fre_mm=arguments["freMm"],
-            expected_tre_mm=arguments["expectedTreMm"],
-        )
-        if known is not None and known != registration:
+        known = self.state.registration
+        registration = FinalRegistration.from_arguments(command.arguments)
+        if known is not None and not known.agrees_with(registration):
             return TrainingReply(False, self._texts.say("registration is final"))
-        data = {"trialId": self.state.trial_id, **self._revealed(registration.matrix)}
+        matrix = registration.matrix if known is None else known.matrix
+        data = {"trialId": self.state.trial_id, **self._revealed(matrix)}
         if known is not None:
             return TrainingReply(True, data=data)
         final = replace(self.state, registration=registration)

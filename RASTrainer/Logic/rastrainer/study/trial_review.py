@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,8 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.trainee_progress import progress_of
+from rastrainer.trial.scoring import ScoreReference
+from rastrainer.trial.trainee_progress import PastTrial, progress_of
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,25 @@ def review(
     """
     protocol = StudyProgress(study).protocol()
     references = None if protocol is None else protocol.references
+    return scored_with_journal(analysis, truth, scenario, references, records, rest)
+
+
+def scored_with_journal(
+    analysis: TrialAnalysis,
+    truth: RevealedTruth,
+    scenario: Scenario,
+    references: Mapping[str, ScoreReference] | None = None,
+    records: Path | None = None,
+    rest: Callable[[], None] = lambda: None,
+) -> TrialAnalysis:
+    """Score a registered trial, with the feedback of its journal; all as of `review`.
+
+    Args:
+        references: of the score, by task, as a study's protocol sets them; None without one.
+
+    Raises:
+        InputError: the trial cannot be scored.
+    """
     trajectory = trajectory_of(analysis.record, records, rest)
     return analysis.scored(scenario, truth, references, trajectory)
 
@@ -115,7 +135,16 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
     if record.task == TRIAL_RUN or study.trial(record.trial_id).score is None:
         return analysis
     pass_mark = pass_mark_of(StudyProgress(study).protocol())
-    progress = progress_of(
-        AbortedTrials(study).attempts(record.trainee), record.trial_id, pass_mark
-    )
+    return with_progress_among(analysis, AbortedTrials(study).attempts(record.trainee), pass_mark)
+
+
+def with_progress_among(
+    analysis: TrialAnalysis, attempts: Sequence[PastTrial], pass_mark: float
+) -> TrialAnalysis:
+    """Return the analysis of a scored trial, with its place among these attempts, itself included.
+
+    Raises:
+        InputError: it is none of them.
+    """
+    progress = progress_of(attempts, analysis.record.trial_id, pass_mark)
     return replace(analysis, feedback=replace(analysis.feedback, progress=progress))

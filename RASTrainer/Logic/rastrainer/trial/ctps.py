@@ -18,6 +18,9 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.csv_files import number_in, read_rows
 
+PUBLISHED_STUDY = ("studies", "published.csv")
+"""Place among the assets of the published study's trials, with which CTPS compares."""
+
 CTPS_WARNING = (
     "CTPS rises with a slower completion, depends on who else is in the cohort and has no bounds; "
     "it is shown because it is published, not to judge a trainee."

@@ -10,6 +10,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.statistics.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.statistics.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
+from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.wording import Sentence, say
 
@@ -42,6 +43,19 @@ class PastTrial:
     acceptable: bool
     is_aborted: bool = False
     score_version: str = ""
+
+    @classmethod
+    def failed(cls, record: AbortedTrial) -> PastTrial:
+        """Return an aborted trial that counts as not passed."""
+        return cls(
+            record.trial_id,
+            record.task,
+            record.mode,
+            record.elapsed_s,
+            score=0.0,
+            acceptable=False,
+            is_aborted=True,
+        )
 
 
 @dataclass(frozen=True)

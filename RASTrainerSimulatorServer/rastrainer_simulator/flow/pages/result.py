@@ -1,4 +1,4 @@
-"""What comes after the registration: waiting for Slicer, and its score."""
+"""What comes after the registration: waiting for the score, and the result."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from rastrainer.trial.trial_feedback import MOST_SHORT
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.own_score import OWN_SCORE
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem, Tone
 from rastrainer_simulator.ops.texts.texts import Texts
@@ -73,16 +74,16 @@ class WaitingPage(FinishedPage):
 
     def menu(self) -> Menu:
         """Return who is waited for."""
-        training = self.session.training
-        is_there = self.session.is_slicer_connected()
+        session = self.session
+        own, is_there = session.own_score, session.is_slicer_connected()
         key = "waiting.slicer" if is_there else "waiting.nobody"
-        return Menu(
-            self.name,
-            self.say("waiting.title"),
-            (self.say(key, trainee=training.trainee),),
-            _facts_of_trial(self.session),
-            self.items(),
-        )
+        problem = "" if own is None else own.problem
+        if not is_there and own is not None and not problem and self._step() is None:
+            key = "waiting.own"
+        told = self.say(key, trainee=session.training.trainee)
+        why = (self.say("waiting.problem", reason=problem),) if problem else ()
+        facts = _facts_of_trial(session)
+        return Menu(self.name, self.say("waiting.title"), (told, *why), facts, self.items())
 
 
 class ResultPage(FinishedPage):
@@ -105,6 +106,7 @@ class ResultPage(FinishedPage):
             self.say("result.title", trainee=training.trainee, task=task),
             (
                 *(self.say(key) for key in _beyond_limits(result)),
+                *((self.say("result.own"),) if result.details.get(OWN_SCORE) is True else ()),
                 *_sentences(self.session.texts, result, "warnings", 3),
                 *_feedback(self.session.texts, result),
                 self.say("result.interval note"),

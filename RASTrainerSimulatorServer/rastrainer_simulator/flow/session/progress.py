@@ -27,10 +27,14 @@ class DoneTasks:
 
     The trial run also counts when all its points were touched, or when it was ended after its time
     was over, as the paper's procedure has it (figure 4).
+
+    Attributes:
+        journals: of each trainee, oldest first; only those that were there at the beginning.
     """
 
     def __init__(self, records: Path) -> None:
         """Look through the folder's journals: at the first line and the end of each."""
+        self.journals: dict[str, list[Path]] = defaultdict(list)
         self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
         for path in sorted(records.glob("*.journal")):
             self._take(path)
@@ -60,7 +64,9 @@ class DoneTasks:
             what = header["trainee"], header["scenario"]["name"], header["task"]
         except (OSError, KeyError, TypeError, DamagedLineError):
             return
-        is_text = all(isinstance(word, str) for word in what)
+        if not all(isinstance(word, str) for word in what):
+            return
+        self.journals[what[0]].append(path)
         is_practiced = header["task"] == TRIAL_RUN and any(mark in tail for mark in _PRACTICED)
-        if is_text and (_REGISTERED in tail or is_practiced):
+        if _REGISTERED in tail or is_practiced:
             self.note(*what)

@@ -18,12 +18,14 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.commands import Commands
 from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer_simulator.flow.session.own_score import OwnScore
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
     write_preferences,
 )
 from rastrainer_simulator.flow.session.progress import DoneTasks
+from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.control_name import ControlName
@@ -56,6 +58,8 @@ class FlowServices:
         is_slicer_connected: says whether a client is connected over OpenIGTLink.
         quit: ends the process.
         study: knows what a study that Slicer leads asks of the trainees.
+        scores_alone: whether a trial outside of a study is scored here where no Slicer is
+            connected.
     """
 
     config: Path
@@ -66,6 +70,7 @@ class FlowServices:
     is_slicer_connected: Callable[[], bool]
     quit: Callable[[], None]
     study: StudySteps = field(default_factory=StudySteps)
+    scores_alone: bool = False
 
 
 class TrainingSession:
@@ -78,6 +83,8 @@ class TrainingSession:
         preferences: what is chosen in the settings.
         texts: say everything in the chosen language.
         progress: which tasks each trainee has done.
+        history: each trainee's earlier scores.
+        own_score: scores a trial where no Slicer does; None where only Slicer may.
         pages: which are open.
         happened: gives feedback by sound and vibration.
         list_scenarios: lists the heads to train on.
@@ -100,6 +107,17 @@ class TrainingSession:
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
         self.progress = DoneTasks(services.records)
+        self.history = ScoreHistory(services.records, self.progress.journals)
+        self.own_score = (
+            OwnScore(
+                control_loop.submit,
+                services.records,
+                services.is_slicer_connected,
+                self.history.of,
+            )
+            if services.scores_alone
+            else None
+        )
         self.happened = happened
         self.pages = OpenPages(happened)
         self.list_scenarios = services.list_scenarios
@@ -173,6 +191,9 @@ class TrainingSession:
         """Take the newest state, and what has been answered within `dt` seconds."""
         self._time += dt
         self.state = state
+        if self.own_score is not None:
+            is_in_study = self.study.step_of(self.training.trainee) is not None
+            self.own_score.advance(dt, self.training, self.scenario, is_in_study)
         self._commands.poll()
         self._set_up_in -= dt
         if self._setting_up is not None and self._setting_up.done():

@@ -210,6 +210,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "waiting.slicer": "{trainee}, 3D Slicer is scoring your points.",
         "waiting.nobody": "{trainee}, your points are kept. 3D Slicer is not connected: it scores "
         "them as soon as it is.",
+        "waiting.own": "{trainee}, 3D Slicer is not connected: the simulator is registering and "
+        "scoring your points itself.",
+        "waiting.problem": "The simulator cannot score them itself: {reason}",
+        "result.own": "This score is the simulator's own and is not stored in a study. When 3D "
+        "Slicer connects, it scores and stores the trial, and its score replaces this one.",
         "result.title": "{trainee}: {task}",
         "result.score": "Score",
         "result.fre": "Registration error (FRE)",

@@ -299,6 +299,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "waiting.slicer": "{trainee}, 3D Slicer bewertet deine Punkte.",
         "waiting.nobody": "{trainee}, deine Punkte sind aufbewahrt. 3D Slicer ist nicht "
         "verbunden: Er bewertet sie, sobald er es ist.",
+        "waiting.own": "{trainee}, 3D Slicer ist nicht verbunden: Der Simulator registriert und "
+        "bewertet deine Punkte selbst.",
+        "waiting.problem": "Der Simulator kann sie nicht selbst bewerten: {reason}",
+        "result.own": "Diese Punktzahl ist die des Simulators und in keiner Studie gespeichert. "
+        "Sobald 3D Slicer verbunden ist, bewertet und speichert er den Versuch; seine Punktzahl "
+        "ersetzt dann diese.",
         "result.title": "{trainee}: {task}",
         "result.score": "Punktzahl",
         "result.fre": "Registrierungsfehler (FRE)",

@@ -37,10 +37,9 @@ from rastrainer.study.database.database import Patience
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import TrialAnalysis
-from rastrainer.trial.ctps import read_trials
+from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 
 ROBOT = Path("robots", "iiwa7")
-PUBLISHED_STUDY = Path("studies", "published.csv")
 
 
 @dataclass(frozen=True)
@@ -122,7 +121,7 @@ class ModuleSession:
         self._scene = scene
         self._patience = Patience.interactive()
         cache = ScenarioCache.below(places.assets / "scenarios", places.library)
-        self.cohort = read_trials(places.assets / PUBLISHED_STUDY)
+        self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
         self.work = BackgroundWork()
         self.link = Link(scene, findKit, callSoon=callSoon)
         setup = SimulatorSetup(places.python, places.simulator, places.package)

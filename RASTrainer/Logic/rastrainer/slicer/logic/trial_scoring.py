@@ -19,6 +19,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import with_progress
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.submission import registration_arguments, score_arguments
 
 ANSWER_TIMEOUT_S = 60.0
 """Nobody waits for these answers, and what is given up would be asked for again only over the next
@@ -71,7 +72,7 @@ class TrialScoring:
         def report(scored: TrialAnalysis, truth: RevealedTruth) -> None:
             self._ask(
                 CommandName.TRIAL_SCORED,
-                _scoreOf(scored),
+                score_arguments(scored),
                 lambda _answer: keep(scored, truth),
                 end,
             )
@@ -83,7 +84,7 @@ class TrialScoring:
                 end,
             )
 
-        self._ask(CommandName.SUBMIT_REGISTRATION, _registrationOf(analysis), score, end)
+        self._ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis), score, end)
 
     def _ask(
         self,
@@ -111,37 +112,3 @@ class TrialScoring:
     def _keepTruth(self, record: TrialRecord, truth: RevealedTruth) -> None:
         with self._openStudy() as study:
             study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
-
-
-def _registrationOf(analysis: TrialAnalysis) -> dict[str, Any]:
-    return {
-        "trialId": analysis.record.trial_id,
-        "matrix": [float(value) for value in analysis.rigid.matrix.ravel()],
-        "freMm": analysis.rigid.fre_mm,
-        "expectedTreMm": analysis.expected_tre.expected_mm,
-    }
-
-
-def _scoreOf(analysis: TrialAnalysis) -> dict[str, Any]:
-    score, progress = analysis.score, analysis.feedback.progress
-    # What was analyzed with its truth has a score.
-    assert score is not None
-    published = analysis.published_score
-    return {
-        "trialId": analysis.record.trial_id,
-        "score": score.score,
-        "details": {
-            "residualsMm": analysis.rigid.residuals_mm.tolist(),
-            "treIntervalMm": list(analysis.expected_tre.interval_mm),
-            "regionTreMm": score.measures.tre_mm,
-            "timeDesirability": score.time_desirability,
-            "accuracyDesirability": score.accuracy_desirability,
-            "safetyDesirability": score.safety_desirability,
-            "isAccurate": score.is_accurate,
-            "isSafe": score.is_safe,
-            "ctps": None if published is None else published.published,
-            "warnings": [warning.message for warning in analysis.rigid.warnings],
-            "passMark": None if progress is None else progress.pass_mark,
-            "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
-        },
-    }

@@ -85,7 +85,7 @@ class AbortedTrials:
             )
             timed = [(moment(started[trial.trial_id]), trial) for trial in scored]
             timed += [
-                (moment(stored.record.started_utc), _failed(stored.record))
+                (moment(stored.record.started_utc), PastTrial.failed(stored.record))
                 for stored in stored_of(connection, pseudonym)
                 if stored.record.counts_as_failed
             ]
@@ -154,15 +154,3 @@ def _add(connection: sqlite3.Connection, record: AbortedTrial, text: str) -> boo
         ),
     )
     return True
-
-
-def _failed(record: AbortedTrial) -> PastTrial:
-    return PastTrial(
-        record.trial_id,
-        record.task,
-        record.mode,
-        record.elapsed_s,
-        score=0.0,
-        acceptable=False,
-        is_aborted=True,
-    )

@@ -1,0 +1,47 @@
+"""What is submitted of a registered and scored trial: the arguments of the two commands.
+
+Slicer sends them over OpenIGTLink; a simulator that no Slicer is connected to gives them to itself.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rastrainer.trial.analysis import TrialAnalysis
+
+
+def registration_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
+    """Return the arguments of SubmitRegistration, ready for JSON."""
+    return {
+        "trialId": analysis.record.trial_id,
+        "matrix": [float(value) for value in analysis.rigid.matrix.ravel()],
+        "freMm": analysis.rigid.fre_mm,
+        "expectedTreMm": analysis.expected_tre.expected_mm,
+    }
+
+
+def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
+    """Return the arguments of TrialScored for a trial with truth and score, ready for JSON."""
+    score, progress = analysis.score, analysis.feedback.progress
+    # What was analyzed with its truth has a score.
+    assert score is not None
+    published = analysis.published_score
+    return {
+        "trialId": analysis.record.trial_id,
+        "score": score.score,
+        "details": {
+            "scoreVersion": score.version,
+            "residualsMm": analysis.rigid.residuals_mm.tolist(),
+            "treIntervalMm": list(analysis.expected_tre.interval_mm),
+            "regionTreMm": score.measures.tre_mm,
+            "timeDesirability": score.time_desirability,
+            "accuracyDesirability": score.accuracy_desirability,
+            "safetyDesirability": score.safety_desirability,
+            "isAccurate": score.is_accurate,
+            "isSafe": score.is_safe,
+            "ctps": None if published is None else published.published,
+            "warnings": [warning.message for warning in analysis.rigid.warnings],
+            "passMark": None if progress is None else progress.pass_mark,
+            "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
+        },
+    }

@@ -1,0 +1,131 @@
+"""The simulator's own score is Slicer's, to the last digit; Slicer's takes its place."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from rastrainer.journal.folder import journals_of
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.protocol import check_arguments
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.study.database.study import Study
+from rastrainer.study.trial_review import review, store_delivered, with_progress
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.submission import registration_arguments, score_arguments
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_alone, score_alone
+from rastrainer_simulator.flow.session.score_history import ScoreHistory
+from rastrainer_simulator.ops.stamps import stamp
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.slicer_side import SlicerSide
+
+PATIENCE_S = 120.0
+TRIALS = 100
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return load_scenario(COLIN)
+
+
+@pytest.fixture(scope="module")
+def cohort():
+    return read_trials(asset_path(*PUBLISHED_STUDY))
+
+
+class Alone:
+    """A folder of trials that nobody was connected for, scored as the simulator does."""
+
+    def __init__(self, folder, count, scenario):
+        folder.mkdir()
+        self.folder = folder
+        self.trials = write_finished_trials(folder, range(count))
+        self.history = ScoreHistory(folder, {TRAINEE: sorted(folder.iterdir())})
+        self._archive = TrialArchive(folder)
+        for trial in self.trials:
+            analysis = registered_alone(self.ask, trial, scenario)
+            score_alone(self.ask, analysis, scenario, self.history.of(TRAINEE), folder)
+            self.history.changed(TRAINEE, trial)
+
+    def ask(self, command, arguments):
+        return self._archive.answer(command, check_arguments(command, arguments), stamp(0, 0.0))
+
+    def entries(self, trial, kind):
+        (path,) = journals_of(self.folder, trial)
+        return [entry["arguments"] for entry in read_journal(path).of_kind(kind)]
+
+
+def without_its_mark(scored):
+    details = {key: value for key, value in scored["details"].items() if key != OWN_SCORE}
+    return {**scored, "details": details}
+
+
+def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials(
+    tmp_path, scenario, cohort
+):
+    alone = Alone(tmp_path / "alone", TRIALS, scenario)
+    delivered = tmp_path / "delivered"
+    delivered.mkdir()
+    assert write_finished_trials(delivered, range(TRIALS)) == alone.trials
+    archive = TrialArchive(delivered)
+    with Study.open(tmp_path / "study.db") as study:
+        for record in archive.unacknowledged():
+            assert isinstance(record, TrialRecord)
+            stored = store_delivered(
+                record.to_json(), study, lambda each: analyze_trial(each, scenario, cohort)
+            )
+            registration = check_arguments(
+                "SubmitRegistration", registration_arguments(stored.analysis)
+            )
+            told = archive.answer("SubmitRegistration", registration, stamp(0, 0.0))
+            truth = RevealedTruth.from_json(told)
+            scored = review(stored.analysis, truth, scenario, study)
+            study.add_results(record.trial_id, score=scored.score)
+            slicers = score_arguments(with_progress(scored, study))
+            (own,) = alone.entries(record.trial_id, "scored")
+            assert own["details"][OWN_SCORE] is True
+            assert without_its_mark(own) == slicers
+            (registered,) = alone.entries(record.trial_id, "registration")
+            assert tuple(registered["matrix"]) == registration["matrix"]
+        scores = [study.trial(trial).score.score for trial in alone.trials]
+    assert alone.history.trend(TRAINEE, "desktop") == tuple(scores[-20:])
+
+
+@pytest.mark.parametrize("count", [3, pytest.param(TRIALS, marks=pytest.mark.soak)])
+def test_slicer_that_connects_later_stores_the_trial_and_its_score_replaces_the_same_one(
+    tmp_path, scenario, cohort, count
+):
+    alone = Alone(tmp_path / "alone", count, scenario)
+
+    def make_logic(scene, link, open_study, work):
+        return TrialLogic(
+            scene, link, lambda _name: scenario, open_study, work, cohort, alone.folder
+        )
+
+    with SimulatorProcess(alone.folder, "--no-views") as simulator:
+        slicer = SlicerSide(tmp_path / "study.db", simulator.port, make_logic)
+        scored, problems = [], []
+        slicer.logic.trialScored.connect(scored.append)
+        slicer.logic.problemFound.connect(problems.append)
+        give_up = time.monotonic() + PATIENCE_S
+        while len(scored) < count and time.monotonic() < give_up:
+            slicer.run_for(10)
+        slicer.close()
+        assert simulator.stop() == (0, "")
+    assert problems == []
+    for analysis in scored:
+        trial = analysis.record.trial_id
+        (registered,) = alone.entries(trial, "registration")
+        assert registered["matrix"] == analysis.rigid.matrix.ravel().tolist()
+        own, slicers = alone.entries(trial, "scored")
+        assert without_its_mark(own) == slicers
+        assert OWN_SCORE not in slicers["details"]
+    with Study.open(tmp_path / "study.db") as study:
+        assert {study.trial(trial).score.version for trial in alone.trials} == {"2"}

@@ -1,0 +1,100 @@
+"""A trial that ends where no Slicer is connected is scored by the simulator, and by it alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.journal.folder import journals_of
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.ops.texts.german import GERMAN
+
+OWN = "This score is the simulator's own and is not stored in a study."
+A_MICROMETRE = 1e-3
+
+
+@pytest.fixture
+def presenter(loop, outside):
+    services = replace(outside.services, scores_alone=True)
+    presenter = FlowPresenter(loop, services, DEFAULT_BINDINGS, Preferences())
+    yield presenter
+    presenter.close()
+
+
+def register(trainee):
+    """Play Task 1 and register it; return the trial's UUID."""
+    trainee.start("task-1")
+    trainee.play("task-1")
+    trainee.tap("touch")
+    trainee.until_menu("complete")
+    trainee.choose("register")
+    trainee.until_menu("waiting")
+    return trainee.state.training.trial_id
+
+
+def entries_of(outside, trial_id, kind):
+    (path,) = journals_of(outside.services.records, trial_id)
+    return [entry["arguments"] for entry in read_journal(path).of_kind(kind)]
+
+
+def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_replaces_it(
+    trainee, outside
+):
+    trial = register(trainee)
+    assert "the simulator is registering and scoring" in trainee.menu.paragraphs[0]
+    trainee.until_menu("result")
+    assert any(sentence.startswith(OWN) for sentence in trainee.menu.paragraphs)
+    (submitted,) = entries_of(outside, trial, "registration")
+    (own,) = entries_of(outside, trial, "scored")
+    assert own["details"]["scoreVersion"] == "2"
+    # Who has seen the truth cannot register again, not by a micrometre; the same is answered.
+    moved = [*submitted["matrix"][:3], submitted["matrix"][3] + A_MICROMETRE]
+    other = {**submitted, "matrix": [*moved, *submitted["matrix"][4:]]}
+    refused = trainee.submit("SubmitRegistration", **other)
+    assert (refused.ok, "final" in refused.message) == (False, True)
+    assert "trueTreMm" in trainee.submit("SubmitRegistration", **submitted).data
+    details = {key: value for key, value in own["details"].items() if key != "isOwnScore"}
+    outside.has_slicer = True
+    assert trainee.submit("TrialScored", trialId=trial, score=own["score"], details=details).ok
+    trainee.until(lambda: not any(OWN in sentence for sentence in trainee.menu.paragraphs))
+    assert trainee.menu.name == "result"
+
+
+def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothing(trainee, outside):
+    outside.has_slicer = True
+    trial = register(trainee)
+    trainee.step(300)
+    assert trainee.menu.name == "waiting"
+    assert "3D Slicer is scoring" in trainee.menu.paragraphs[0]
+    trainee.choose("menu")
+    trainee.until_menu("experiment")
+    outside.services.study.take(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
+    outside.has_slicer = False
+    trial_of_study = register(trainee)
+    # Longer than a lost connection is waited for.
+    trainee.step(1000)
+    assert trainee.menu.name == "waiting"
+    assert "it scores them as soon as it is" in trainee.menu.paragraphs[0]
+    for one in (trial, trial_of_study):
+        assert entries_of(outside, one, "registration") == []
+
+
+def test_a_slicer_that_comes_back_within_seconds_finds_the_trial_unscored(trainee, outside):
+    outside.has_slicer = True
+    trainee.step(2)
+    outside.has_slicer = False
+    trial = register(trainee)
+    trainee.step(300)
+    assert trainee.menu.name == "waiting"
+    assert entries_of(outside, trial, "registration") == []
+    trainee.until_menu("result")
+
+
+def test_the_page_says_it_in_german_too():
+    for key in ("waiting.own", "waiting.problem", "result.own"):
+        assert key in GERMAN
