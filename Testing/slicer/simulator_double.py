@@ -26,6 +26,7 @@ from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 
+HEARTBEAT_PERIOD_S = 1.0
 Refusal = str
 Responder = Callable[[str, dict[str, Any]], "Mapping[str, Any] | Refusal | None"]
 
@@ -35,7 +36,8 @@ class SimulatorDouble:
 
     `responder(name, arguments)` gives each command's answer: data, a sentence of refusal, or None
     for no answer at all. Everything received stands in `commands`. As the simulator does, it sends
-    its heartbeat to whoever sends a first message; where `beats` is False, only to who asks.
+    its heartbeat to whoever sends a first message, and then once a second; where `beats` is False,
+    only to who asks.
     """
 
     def __init__(
@@ -50,11 +52,14 @@ class SimulatorDouble:
         self._listener = socket.create_server(("127.0.0.1", port))
         self.port = self._listener.getsockname()[1]
         self._peers: list[socket.socket] = []
+        self._greeted: list[socket.socket] = []
+        self._isClosed = threading.Event()
         self._lock = threading.Lock()
         self._nextNumber = 1
         self.received: queue.Queue[Message] = queue.Queue()
         self.commands: list[tuple[str, dict[str, Any]]] = []
         threading.Thread(target=self._accept, daemon=True).start()
+        threading.Thread(target=self._beat, daemon=True).start()
 
     def __enter__(self) -> SimulatorDouble:
         return self
@@ -72,6 +77,7 @@ class SimulatorDouble:
         _close(self._listener)
 
     def close(self) -> None:
+        self._isClosed.set()
         for open_socket in (self._listener, *self._peers):
             _close(open_socket)
 
@@ -119,6 +125,16 @@ class SimulatorDouble:
         if self.beats or message.device == "RASTrainer":
             with self._lock:
                 peer.sendall(pack(self.heartbeat))
+                self._greeted.append(peer)
+
+    def _beat(self) -> None:
+        while not self._isClosed.wait(HEARTBEAT_PERIOD_S):
+            if not self.beats:
+                continue
+            with self._lock:
+                for peer in self._greeted:
+                    with contextlib.suppress(OSError):
+                        peer.sendall(pack(self.heartbeat))
 
     def _answer(self, command: Command) -> None:
         arguments = json.loads(command.body or "{}")

@@ -35,8 +35,10 @@ class Room:
         self.replies = []
         self.simulator = SimulatorDouble(answer)
         self.link = Link(scene, headlessKit, clock=self.clock, callSoon=self.soon.append)
+        opened = []
+        self.link.opened.connect(lambda: opened.append(True))
         self.link.connectTo(port=self.simulator.port)
-        self.run_until(lambda: self.link.status.state is LinkState.CONNECTED)
+        self.run_until(lambda: opened and self.link.status.state is LinkState.CONNECTED)
         self.soon.clear()
 
     def run_until(self, condition):
