@@ -29,7 +29,7 @@ def pytest_configure():
 
 
 class ContainedFailures(logging.Handler):
-    """Keeps what failed where the rest goes on; see `rastrainer.slicer.link.error_guard`."""
+    """Keeps what failed where the rest goes on; see `rastrainer.slicer.signal`."""
 
     def __init__(self) -> None:
         super().__init__()

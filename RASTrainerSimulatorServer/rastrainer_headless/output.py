@@ -13,7 +13,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.scene.residual_glyphs import magnification
+from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.trial.analysis import PublishedScore, RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer_headless.residual_picture import writeResidualPicture

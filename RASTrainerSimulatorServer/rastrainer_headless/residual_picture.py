@@ -10,8 +10,8 @@ import vtk
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.registration import Registration
-from rastrainer.slicer.scene.residual_glyphs import (
-    SCALARS,
+from rastrainer.slicer.scene.error_colors import (
+    RESIDUAL_SCALARS,
     arrowTips,
     glyphsPolyData,
     residualRange,
@@ -145,7 +145,7 @@ def _glyphView(
     mapper = glyphs.GetMapper()
     mapper.ScalarVisibilityOn()
     mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray(SCALARS)
+    mapper.SelectColorArray(RESIDUAL_SCALARS)
     mapper.SetLookupTable(colors)
     mapper.UseLookupTableScalarRangeOn()
     glyphs.GetProperty().SetAmbient(0.35)

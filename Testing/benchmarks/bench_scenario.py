@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from rastrainer.slicer.head.head_draft import make_draft
+from rastrainer.slicer.head.head_draft import makeDraft
 from Testing.benchmarks.row import row
 from Testing.slicer.head.debian_heads import COLIN27, CT_PROJECT, write_ct
 from Testing.slicer.head.phantoms import phantom
@@ -21,7 +21,7 @@ def rows(quick: bool) -> list[dict]:
     volume, seconds = phantom(), []
     for _ in range(1 if quick else 3):
         began = time.perf_counter()
-        make_draft(volume, has_skull=False)
+        makeDraft(volume, hasSkull=False)
         seconds.append(time.perf_counter() - began)
     return [row("scenario.head", seconds, "s")]
 

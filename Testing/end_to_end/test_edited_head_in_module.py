@@ -45,11 +45,11 @@ def _scan_is_chosen(host, tmp_path):
 def paint_wen(node):
     """Paint a ball into the segment as the Segment Editor does: on the grid of the scan."""
     ijk = np.indices(SCAN.values.shape).reshape(3, -1).T
-    ras = ijk @ SCAN.ijk_to_ras[:3, :3].T + SCAN.ijk_to_ras[:3, 3]
+    ras = ijk @ SCAN.ijkToRas[:3, :3].T + SCAN.ijkToRas[:3, 3]
     ball = (np.linalg.norm(ras - WEN, axis=1) < WEN_RADIUS).reshape(SCAN.values.shape)
     image = slicer.vtkOrientedImageData()
     image.SetDimensions(ball.shape)
-    image.SetImageToWorldMatrix(vtk_matrix(SCAN.ijk_to_ras))
+    image.SetImageToWorldMatrix(vtk_matrix(SCAN.ijkToRas))
     values = np.ascontiguousarray(ball.transpose(2, 1, 0), np.uint8).ravel()
     image.GetPointData().SetScalars(numpy_to_vtk(values, array_type=vtk.VTK_UNSIGNED_CHAR, deep=1))
     logic = slicer.vtkSlicerSegmentationsModuleLogic

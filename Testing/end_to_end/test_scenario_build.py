@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.draft import HeadDraft
 from rastrainer.scenario.writer import new_folder, write_scenario
-from rastrainer.slicer.head.scenario_build import build_scenario
+from rastrainer.slicer.head.own_process import buildScenario
 from rastrainer_simulator.authoring.head_process import head_process
 from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
@@ -123,7 +123,7 @@ def test_what_the_planner_warns_of_is_told_beside_the_warnings_of_the_head(tmp_p
     with new_folder(made) as folder:
         write_scenario(folder, made_up_scenario(), ball_head())
     (tmp_path / "planner.py").write_text(PLANNER.format(made=str(made)))
-    scenario, warnings = build_scenario(
+    scenario, warnings = buildScenario(
         lambda _tell: (HeadDraft(ball_head(), "made up"), ["The slices are far apart."]),
         tmp_path / "built",
         (),
@@ -142,7 +142,7 @@ def test_a_build_that_is_cancelled_leaves_nothing(tmp_path):
     vertices = np.maximum(sphere.vertices, [-np.inf, -np.inf, -70.0])
     draft = HeadDraft(HeadMesh(vertices, sphere.triangles), "made up")
     with pytest.raises(CancelledError):
-        build_scenario(
+        buildScenario(
             lambda _tell: (draft, []), tmp_path / "made", (), RASTRAINER, progress=progress
         )
     # The process that plans clears away what it has half made, and ends.

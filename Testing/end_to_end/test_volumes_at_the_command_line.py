@@ -68,8 +68,8 @@ def dicom(folder):
     scan = phantom(CT, spacing=(2.0, 2.0, 2.5), size=SIZE)
     # Ours are rows to the left and down from the front, in LPS: turned half about S.
     values = scan.values[::-1, ::-1].astype(np.int16)
-    first = (-1.0, -1.0, 1.0) * (scan.ijk_to_ras @ [*(np.array(scan.values.shape) - 1), 1.0])[:3]
-    first[2] = scan.ijk_to_ras[2, 3]
+    first = (-1.0, -1.0, 1.0) * (scan.ijkToRas @ [*(np.array(scan.values.shape) - 1), 1.0])[:3]
+    first[2] = scan.ijkToRas[2, 3]
     write_series(folder / "series", values, (2.0, 2.0, 2.5), first=first)
     return folder / "series"
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
-from rastrainer.slicer.scene.urdf import read_arm_chain
+from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer_simulator.assets import asset_path
 
 TICK_S = 0.004
@@ -27,7 +27,7 @@ def write_recorded_trial(
     """
     times = np.arange(5, round(seconds / TICK_S) + 1, 5) * TICK_S
     q = np.array([0.1, 0.5, -0.2, -1.4, 0.3, 0.9, 0.0]) + 0.05 * np.sin(times)[:, None]
-    tips = read_arm_chain(URDF).tool_to_world(q)[:, :3, 3]
+    tips = readArmChain(URDF).toolToWorld(q)[:, :3, 3]
     header = {
         "kind": "header",
         "format": FORMAT,

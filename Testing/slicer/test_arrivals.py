@@ -5,8 +5,7 @@ import json
 import pytest
 
 from rastrainer.slicer.link.arrivals import CHARACTERS_A_TURN, COMMANDS_A_TURN, MOST_KEPT, Arrivals
-from rastrainer.slicer.link.error_guard import ErrorGuard
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import ErrorGuard, Signal
 
 
 @pytest.fixture

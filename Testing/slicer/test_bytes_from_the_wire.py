@@ -11,12 +11,11 @@ from rastrainer.igtl.content import Command, CommandReply, String
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
 from rastrainer.igtl.points import Point, Points
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.link.error_guard import ErrorGuard
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.scene.control_points import labelsOf
 from rastrainer.slicer.scene.link_nodes import decodedText, shownText
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import ErrorGuard, Signal
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import run_link_until
 

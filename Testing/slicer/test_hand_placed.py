@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.hand_placed import handPlacedLists
+from rastrainer.slicer.scene.control_points import handPlacedLists, setPoints
 from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE
 
 

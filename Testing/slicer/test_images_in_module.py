@@ -14,7 +14,7 @@ from rastrainer.igtl.content import Status, String, Transform
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.head.volume import volume_from_node
+from rastrainer.slicer.head.volume import volumeFromNode
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.scene.scenario_volume import VOLUME
 from rastrainer.slicer.scene.scene import Role, findNode
@@ -77,8 +77,8 @@ def test_a_target_is_placed_on_the_mri_and_lies_where_it_was_placed(host):
     host.place(*TARGET)
     node = host.find("planComboBox").currentNode()
     np.testing.assert_allclose(node.GetNthControlPointPosition(0), TARGET)
-    volume = volume_from_node(images(host))
-    i, j, k = np.rint(np.linalg.inv(volume.ijk_to_ras) @ [*TARGET, 1.0])[:3].astype(int)
+    volume = volumeFromNode(images(host))
+    i, j, k = np.rint(np.linalg.inv(volume.ijkToRas) @ [*TARGET, 1.0])[:3].astype(int)
     assert 40 < volume.values[i, j, k] < 200
 
 

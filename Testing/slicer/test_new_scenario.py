@@ -14,12 +14,12 @@ from rastrainer.scenario.library import user_library
 from rastrainer.scenario.package import pack, unpack
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
-from rastrainer.slicer.head import scenario_build
-from rastrainer.slicer.head.extraction import find_head
+from rastrainer.slicer.head import own_process
+from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.segment import for_segment, volume_of_segment
+from rastrainer.slicer.head.segment import forSegment, volumeOfSegment
 from rastrainer.slicer.head.volume import Volume
-from rastrainer.slicer.logic import scenario_files
+from rastrainer.slicer.logic import scenario_logic
 from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.scene import Role, findNode
@@ -83,7 +83,7 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
         finally:
             ended.set()
 
-    monkeypatch.setattr(scenario_files, "unpack", unpack_when_told)
+    monkeypatch.setattr(scenario_logic, "unpack", unpack_when_told)
     unfold(host, "shareGroupBox")
     host.answer("Add a scenario", package)
     with cancels(host, "importScenarioButton", begun.is_set):
@@ -155,10 +155,10 @@ def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(ho
     assert bounds[5] == pytest.approx(70.0 * SIZE, abs=1.5)
     preview = HeadPreview(host.scene, Path(sys.executable))
     settings = HeadSettings()
-    found = find_head(
-        volume_of_segment(preview.segment(volume, settings)), for_segment(settings), ignore
+    found = findHead(
+        volumeOfSegment(preview.segment(volume, settings)), forSegment(settings), ignore
     )
-    assert found.base_mm == pytest.approx(bounds[4], abs=0.01)
+    assert found.baseMm == pytest.approx(bounds[4], abs=0.01)
     assert preview.segment(add_volume(host.scene, EMPTY, "other"), settings) is None
     host.type("thresholdSpinBox", "60")
     host.press("makeScenarioButton")
@@ -170,7 +170,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     host, monkeypatch
 ):
     made = host.widget.logic.session.scenario.find("colin27")
-    monkeypatch.setattr(scenario_build, "build_scenario", lambda *_arguments: (made, []))
+    monkeypatch.setattr(own_process, "buildScenario", lambda *_arguments: (made, []))
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())

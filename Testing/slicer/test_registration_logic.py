@@ -15,7 +15,7 @@ from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.error_colors import SCALARS
+from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_input import Choices
 from rastrainer.slicer.scene.registration_nodes import (
@@ -236,7 +236,7 @@ def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
     table.touch()
     table.logic.setHeadColored(True)
     head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
-    values = slicer.util.arrayFromModelPointData(head, SCALARS)
+    values = slicer.util.arrayFromModelPointData(head, TRE_SCALARS)
     points = slicer.util.arrayFromModelPoints(head)
     there = table.logic.targetError(table.logic.shown, points[100])
     assert values[100] == pytest.approx(there.expected_mm)

@@ -7,8 +7,8 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.registration import register
-from rastrainer.slicer.scene.residual_glyphs import (
-    SCALARS,
+from rastrainer.slicer.scene.error_colors import (
+    RESIDUAL_SCALARS,
     glyphsPolyData,
     magnification,
     showResidualArrows,
@@ -47,7 +47,7 @@ def test_an_arrow_is_a_multiple_of_its_residual_and_carries_it(registration):
     assert reach == pytest.approx(
         magnification(registration) * registration.residuals_mm[4], rel=0.01
     )
-    scalars = vtk_to_numpy(data.GetPointData().GetArray(SCALARS))
+    scalars = vtk_to_numpy(data.GetPointData().GetArray(RESIDUAL_SCALARS))
     np.testing.assert_allclose(scalars, registration.residuals_mm[4])
 
 
@@ -67,7 +67,7 @@ def test_a_residual_of_nothing_is_no_trouble():
 
 def test_the_arrows_are_a_colored_model_in_the_scene(scene, registration):
     node = showResidualArrows(scene, registration)
-    assert node.GetPolyData().GetPointData().GetArray(SCALARS) is not None
+    assert node.GetPolyData().GetPointData().GetArray(RESIDUAL_SCALARS) is not None
     assert node.GetDisplayNode().GetScalarVisibility()
     assert showResidualArrows(scene, registration) is node
 

@@ -8,8 +8,13 @@ import pytest
 
 from rastrainer import __version__
 from rastrainer.errors import InputError
-from rastrainer.slicer.program.pip_install import SetupSource, pythonSlicer
-from rastrainer.slicer.program.simulator_package import LOCK, WHEEL, SimulatorPackage
+from rastrainer.slicer.program.simulator_package import (
+    LOCK,
+    WHEEL,
+    SetupSource,
+    SimulatorPackage,
+    pythonSlicer,
+)
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from Testing.slicer.made_up_package import (

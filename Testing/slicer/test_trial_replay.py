@@ -16,7 +16,7 @@ from rastrainer.slicer.scene.trial_replay import (
     removeReplay,
     showReplay,
 )
-from rastrainer.slicer.scene.urdf import ArmChain, read_arm_chain
+from rastrainer.slicer.scene.urdf import ArmChain, readArmChain
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.recorded_trial import URDF, write_recorded_trial
 
@@ -34,7 +34,7 @@ def tips(tmp_path):
 @pytest.fixture
 def replayed(scene, tips, tmp_path):  # noqa: ARG001 (the journal is needed)
     track = find_track(tmp_path, TRIAL)
-    return showReplay(scene, "Trial 1", track, read_arm_chain(URDF), WORLD_TO_HEAD)
+    return showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
 
 
 def node(scene, name):
@@ -82,7 +82,7 @@ def test_another_trial_takes_the_place_of_the_one_before(scene, replayed, tmp_pa
     before = shown(scene)
     write_recorded_trial(tmp_path / "other", TRIAL, seconds=1.0)
     track = find_track(tmp_path / "other", TRIAL)
-    other = showReplay(scene, "Trial 2", track, read_arm_chain(URDF), WORLD_TO_HEAD)
+    other = showReplay(scene, "Trial 2", track, readArmChain(URDF), WORLD_TO_HEAD)
     assert other is not replayed
     assert shown(scene) == before
     removeReplay(scene)
@@ -99,7 +99,7 @@ def test_a_replay_is_saved_with_the_scene(headless_scene, replayed, tmp_path):
 
 
 def test_a_journal_of_another_robot_or_none_at_all_is_told(scene, tips, tmp_path):  # noqa: ARG001
-    chain = read_arm_chain(URDF)
+    chain = readArmChain(URDF)
     longer = chain.origins.copy()
     longer[3, 2, 3] += 10.0
     track, other = find_track(tmp_path, TRIAL), ArmChain(longer, chain.axes)
@@ -113,7 +113,7 @@ def test_a_journal_of_another_robot_or_none_at_all_is_told(scene, tips, tmp_path
 def test_the_application_may_draw_after_each_slice_of_a_replay(scene, tips, tmp_path):  # noqa: ARG001
     shares = []
     track = find_track(tmp_path, TRIAL)
-    replay = showReplay(scene, "1", track, read_arm_chain(URDF), WORLD_TO_HEAD, shares.append)
+    replay = showReplay(scene, "1", track, readArmChain(URDF), WORLD_TO_HEAD, shares.append)
     states = 2 * replay.GetNumberOfItems() + len(track.trajectory.touches) + 1
     # The first is before there are any states.
     assert len(shares) == 1 + states // STATES_A_SLICE

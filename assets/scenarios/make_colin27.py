@@ -21,8 +21,8 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.files.nrrd import read_nrrd
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, write_head_volume
-from rastrainer.slicer.head.head_draft import make_draft
-from rastrainer.slicer.head.volume import read_volume
+from rastrainer.slicer.head.head_draft import makeDraft
+from rastrainer.slicer.head.volume import readVolume
 
 MRI = Path("/usr/share/mricron/templates/ch2.nii.gz")
 MRI_SHA256 = "a009051127f64dc3dd554d5f5b589870ea72106d9642c21b4e7093e478cfc309"
@@ -50,9 +50,9 @@ def make(mri: Path, check: bool) -> int:
         return 2
     if hashlib.sha256(mri.read_bytes()).hexdigest() != MRI_SHA256:
         print(f"{mri} is not the MRI that the committed files were made of.", file=sys.stderr)
-    draft, _ = make_draft(
-        read_volume(mri),
-        has_skull=False,
+    draft, _ = makeDraft(
+        readVolume(mri),
+        hasSkull=False,
         progress=lambda step, share: print(f"{share:4.0%}  {step}"),
     )
     if check:

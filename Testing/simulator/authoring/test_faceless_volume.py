@@ -8,9 +8,9 @@ from rastrainer.head.face_removal import RADIUS_MM, face_vertices, nose_tip, wit
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.head.extraction import find_head
+from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.mask import squared_distances
+from rastrainer.slicer.head.mask import squaredDistances
 from rastrainer.slicer.head.volume import Volume
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.export import Grid, without_face_in
@@ -42,10 +42,10 @@ def to_skin_found_in(images, places):
     It is exact up to `REACH_MM`; farther places are at least so far away.
     """
     volume = Volume(images.values.astype(np.float32), images.ijk_to_ras)
-    found = find_head(volume, HeadSettings(), lambda _step, _share: None)
+    found = findHead(volume, HeadSettings(), lambda _step, _share: None)
     voxels = tuple(np.rint(places - found.origin).astype(int).T)
     outward, inward = (
-        np.sqrt(squared_distances(body, REACH_MM)[voxels].astype(float))
+        np.sqrt(squaredDistances(body, REACH_MM)[voxels].astype(float))
         for body in (found.body, ~found.body)
     )
     return outward - inward

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.urdf import read_arm_chain
+from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer.units import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -15,10 +15,10 @@ URDF = asset_path("robots", "iiwa7", "iiwa7.urdf")
 
 def test_the_tool_is_where_the_simulators_kinematics_have_it():
     robot = load_robot()
-    kinematics, chain = make_kinematics(robot, "numpy"), read_arm_chain(URDF)
+    kinematics, chain = make_kinematics(robot, "numpy"), readArmChain(URDF)
     postures = np.random.default_rng(5).uniform(robot.lower, robot.upper, (200, 7))
     assert chain.moving == 7
-    for q, pose in zip(postures, chain.tool_to_world(postures), strict=True):
+    for q, pose in zip(postures, chain.toolToWorld(postures), strict=True):
         expected = kinematics.tip(q)
         np.testing.assert_allclose(pose[:3, :3], expected[:3, :3], atol=1e-9)
         np.testing.assert_allclose(pose[:3, 3], MM_PER_M * expected[:3, 3], atol=1e-6)
@@ -37,4 +37,4 @@ def test_the_tool_is_where_the_simulators_kinematics_have_it():
 def test_what_is_no_chain_is_one_sentence(old, new, tmp_path):
     (tmp_path / "arm.urdf").write_text(URDF.read_text().replace(old, new))
     with pytest.raises(InputError, match="URDF"):
-        read_arm_chain(tmp_path / "arm.urdf")
+        readArmChain(tmp_path / "arm.urdf")

@@ -16,7 +16,7 @@ def add_volume(scene, volume, name):
     """Return a volume node of the scene with an image of `Volume`."""
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", name)
     slicer.util.updateVolumeFromArray(node, volume.values.transpose(2, 1, 0).copy())
-    node.SetIJKToRASMatrix(vtk_matrix(volume.ijk_to_ras))
+    node.SetIJKToRASMatrix(vtk_matrix(volume.ijkToRas))
     return node
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head import dicom_series
-from rastrainer.slicer.head.cut_files import is_cut_dicom
+from rastrainer.slicer.head.dicom_series import isCutDicom
 from Testing.slicer.head.dicom_series import element, slice_file
 
 SLICE = slice_file(np.zeros((8, 8), np.int16), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), "1.2.3", 0)
@@ -65,7 +65,7 @@ def test_what_announces_more_than_the_file_has_is_refused_unread(content, tmp_pa
     path.write_bytes(content)
     monkeypatch.setattr(dicom_series.slicer, "vtkITKArchetypeImageSeriesScalarReader", None)
     with pytest.raises(InputError, match=r"a\.dcm is cut short or damaged"):
-        dicom_series.read_dicom_folder(tmp_path)
+        dicom_series.readDicomFolder(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -93,4 +93,4 @@ def test_what_announces_more_than_the_file_has_is_refused_unread(content, tmp_pa
 def test_what_fits_is_not_called_cut(content, tmp_path):
     path = tmp_path / "a.dcm"
     path.write_bytes(content)
-    assert not is_cut_dicom(path)
+    assert not isCutDicom(path)

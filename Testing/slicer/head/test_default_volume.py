@@ -9,7 +9,7 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.head.volume import read_volume
+from rastrainer.slicer.head.volume import readVolume
 from rastrainer_simulator.assets import asset_path
 
 SCENARIO = load_scenario(asset_path("scenarios", "colin27"))
@@ -23,7 +23,7 @@ COVERED_MM = ((-88.0, 88.0), (-123.0, 89.0), (-69.0, 107.0))
 @pytest.fixture(scope="module")
 def volume():
     """The volume as Slicer's own reader has it."""
-    return read_volume(SCENARIO.volume.path)
+    return readVolume(SCENARIO.volume.path)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def skin():
 def image_of(volume):
     image = vtk.vtkImageData()
     image.SetDimensions(volume.values.shape)
-    image.SetOrigin(volume.ijk_to_ras[:3, 3])
+    image.SetOrigin(volume.ijkToRas[:3, 3])
     image.GetPointData().SetScalars(numpy_to_vtk(volume.values.ravel(order="F"), deep=True))
     return image
 
@@ -65,7 +65,7 @@ def test_across_the_head_s_surface_the_mri_goes_from_dark_to_bright(volume, skin
     low, high = np.array(COVERED_MM).T
     covered = ((vertices > low + 4) & (vertices < high - 4)).all(axis=1)
     places, normals = vertices[covered], mesh.vertex_normals[covered]
-    first = volume.ijk_to_ras[:3, 3]
+    first = volume.ijkToRas[:3, 3]
 
     def brightness(offset_mm):
         i, j, k = np.rint(places + offset_mm * normals - first).astype(int).T
@@ -84,7 +84,7 @@ def test_the_wheel_carries_it(built_wheel):
 
 def test_it_is_small_of_1_mm_and_shown_from_air_to_the_brightest_tissue(volume):
     assert SCENARIO.volume.path.stat().st_size < 6_000_000
-    assert np.array_equal(volume.ijk_to_ras[:3, :3], np.eye(3))
+    assert np.array_equal(volume.ijkToRas[:3, :3], np.eye(3))
     white = SCENARIO.volume.level + SCENARIO.volume.window / 2
     assert SCENARIO.volume.level == SCENARIO.volume.window / 2
     head = volume.values[volume.values > SKIN]

@@ -5,9 +5,9 @@ import pytest
 from scipy import ndimage
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.extraction import extract_head
+from rastrainer.slicer.head.extraction import extractHead
 from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.volume import Volume, on_ras_grid
+from rastrainer.slicer.head.volume import Volume, onRasGrid
 from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL
 
 SEMI_AXES = np.array([33.0, 38.0, 36.0])
@@ -82,7 +82,7 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
         int(np.ceil(extent / s)) for extent, s in zip((96, 100, 70), spacing, strict=True)
     )
     volume = phantom(around_head(axes(spacing, turn_deg, flip), shape), shape)
-    mesh = extract_head(volume, HeadSettings(opening_mm=8))
+    mesh = extractHead(volume, HeadSettings(openingMm=8))
     errors = skin_errors(mesh)
     assert len(errors) > 10_000
     assert errors.mean() < 0.5
@@ -102,7 +102,7 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
     ],
 )
 def test_the_skin_is_found_however_the_scan_lies_and_is_stored(directions, spacing):
-    mesh = extract_head(stored_along(directions, spacing), HeadSettings(opening_mm=8))
+    mesh = extractHead(stored_along(directions, spacing), HeadSettings(openingMm=8))
     # Below, the neck goes straight on where the tilted lowest slice leaves some of it out.
     errors = skin_errors(mesh, above=LOWEST + 14.0)
     assert errors.mean() < 0.5
@@ -115,8 +115,8 @@ def test_the_skin_is_found_however_the_scan_lies_and_is_stored(directions, spaci
 def test_a_nose_cut_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
     shape = (80, 60, 60)
     volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
-    edge = volume.ijk_to_ras[1, 3] + shape[1] - 1
-    mesh = extract_head(volume, HeadSettings(opening_mm=8))
+    edge = volume.ijkToRas[1, 3] + shape[1] - 1
+    mesh = extractHead(volume, HeadSettings(openingMm=8))
     assert edge + 2 < mesh.vertices[:, 1].max() < edge + 10
     assert mesh.euler_characteristic == 2
 
@@ -124,7 +124,7 @@ def test_a_nose_cut_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
 def test_the_same_volume_gives_the_same_head():
     shape = (84, 90, 60)
     volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
-    first, second = (extract_head(volume, HeadSettings(opening_mm=8)) for _ in range(2))
+    first, second = (extractHead(volume, HeadSettings(openingMm=8)) for _ in range(2))
     assert np.array_equal(first.vertices, second.vertices)
     assert np.array_equal(first.triangles, second.triangles)
 
@@ -142,7 +142,7 @@ def test_progress_is_told_and_may_cancel():
 
     volume = phantom(around_head(axes((1, 1, 1)), (84, 90, 60)), (84, 90, 60))
     with pytest.raises(CancelledError):
-        extract_head(volume, progress=progress)
+        extractHead(volume, progress=progress)
     assert told == sorted(told)
     assert told[0] == 0.0
 
@@ -150,13 +150,13 @@ def test_progress_is_told_and_may_cancel():
 def test_a_volume_without_a_head_is_refused_with_a_sentence():
     empty = Volume(np.zeros((40, 40, 40), np.float32), np.eye(4))
     with pytest.raises(InputError, match="No head was found"):
-        extract_head(empty)
+        extractHead(empty)
 
 
 def test_a_grid_along_ras_is_kept_as_it_is():
     values = ndimage.gaussian_filter(np.random.default_rng(1).normal(size=(12, 14, 10)), 1)
     matrix = np.eye(4)
     matrix[:3, 3] = [-3, 5, 7]
-    grid = on_ras_grid(Volume(values.astype(np.float32), matrix), 1.0)
+    grid = onRasGrid(Volume(values.astype(np.float32), matrix), 1.0)
     assert np.allclose(grid.values, values, atol=1e-6)
-    assert np.array_equal(grid.ijk_to_ras, matrix)
+    assert np.array_equal(grid.ijkToRas, matrix)

@@ -6,11 +6,11 @@ import slicer
 
 from rastrainer.files.nrrd import MOST_FILE_BYTES, write_nrrd
 from rastrainer.head.volume import KEPT_MM
-from rastrainer.slicer.head.extraction import find_head, skin_of
+from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.head_draft import make_draft
-from rastrainer.slicer.head.images_and_skull import HOUNSFIELD, image_of
-from rastrainer.slicer.head.volume import Volume, read_volume
+from rastrainer.slicer.head.head_draft import makeDraft
+from rastrainer.slicer.head.images_and_skull import HOUNSFIELD, imageOf
+from rastrainer.slicer.head.volume import Volume, readVolume
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
 
 SIZE = 0.5
@@ -19,8 +19,8 @@ SIZE = 0.5
 
 def images(scan):
     """The images of a scan, the sentence on them, and the head in it."""
-    head = find_head(scan, HeadSettings(), lambda _step, _share: None)
-    return *image_of(scan, head), head
+    head = findHead(scan, HeadSettings(), lambda _step, _share: None)
+    return *imageOf(scan, head), head
 
 
 def depths(volume):
@@ -53,7 +53,7 @@ def test_mri_lies_on_a_grid_of_1_mm_where_the_head_is(scan):
 
 def test_mri_whose_values_are_bytes_keeps_them():
     scan = phantom(size=SIZE)
-    scan = Volume(np.rint(scan.values), scan.ijk_to_ras)
+    scan = Volume(np.rint(scan.values), scan.ijkToRas)
     made, told, _head = images(scan)
     assert told == "Images: MRI, 1 mm, its own values, 0 to 255."
     assert np.median(made.values[depths(made) > 20]) == MRI["brain"]
@@ -76,7 +76,7 @@ def test_what_is_far_from_the_head_is_air():
     made, _told, head = images(scan)
     far = depths(made) < -KEPT_MM - 3.0
     assert not made.values[far & (np.indices(made.values.shape)[2] > 20)].any()
-    skin = skin_of(head, HeadSettings(), lambda _step, _share: None)
+    skin = skinOf(head, HeadSettings(), lambda _step, _share: None)
     corners = np.array([made.ijk_to_ras[:3, 3], (made.ijk_to_ras @ [*made.values.shape, 1])[:3]])
     assert (corners[0][:2] > skin.vertices.min(axis=0)[:2] - KEPT_MM - 2).all()
     assert (corners[1] < skin.vertices.max(axis=0) + KEPT_MM + 3).all()
@@ -87,9 +87,9 @@ def test_slicer_reads_the_file_as_it_was_written(tmp_path):
     path = tmp_path / "volume.nrrd"
     write_nrrd(path, made.values, made.ijk_to_ras)
     assert path.stat().st_size < MOST_FILE_BYTES / 2
-    read = read_volume(path)
+    read = readVolume(path)
     assert np.array_equal(read.values, made.values)
-    assert np.allclose(read.ijk_to_ras, made.ijk_to_ras)
+    assert np.allclose(read.ijkToRas, made.ijk_to_ras)
     storage = slicer.vtkMRMLNRRDStorageNode()
     storage.SetFileName(str(path))
     node = slicer.vtkMRMLScene().AddNewNodeByClass("vtkMRMLScalarVolumeNode")
@@ -99,9 +99,9 @@ def test_slicer_reads_the_file_as_it_was_written(tmp_path):
 
 def test_the_draft_has_the_images_unless_they_are_not_wanted():
     scan = phantom(spacing=(3.0, 3.0, 3.0), size=0.75)
-    draft, _warnings = make_draft(scan, has_skull=False)
+    draft, _warnings = makeDraft(scan, hasSkull=False)
     assert draft.volume is not None
     assert "Images: MRI, 1 mm" in draft.method
-    bare, _warnings = make_draft(scan, has_skull=False, has_volume=False)
+    bare, _warnings = makeDraft(scan, hasSkull=False, hasVolume=False)
     assert bare.volume is None
     assert "Images" not in bare.method

@@ -3,22 +3,22 @@
 import numpy as np
 import pytest
 
-from rastrainer.slicer.head.extraction import find_head
+from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.head_draft import make_draft
+from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer.slicer.head.volume import Volume
 from Testing.slicer.head.phantoms import CT, NOSE, SCALP_MM, depth_mm, phantom
 
 BASE = -30.0
 SIZE = 0.75
-SETTINGS = HeadSettings(base_mm=BASE)
+SETTINGS = HeadSettings(baseMm=BASE)
 
 
 @pytest.fixture(scope="module")
 def ct_draft():
     """A CT on a table, turned in the scanner, with thick slices."""
     scan = phantom(CT, spacing=(1.2, 1.2, 2.0), turn_deg=9.0, noise=15.0, size=SIZE)
-    return make_draft(scan, SETTINGS)
+    return makeDraft(scan, SETTINGS)
 
 
 def errors_mm(mesh, size=1.0):
@@ -55,7 +55,7 @@ def test_the_skull_of_a_ct_is_its_bone(ct_draft):
 def test_thick_slices_give_a_whole_head_and_a_warning():
     # Cut where nobody has chosen a base, its decimated skin has a fin, which must go.
     scan = phantom(spacing=(1.0, 1.0, 5.0))
-    draft, warnings = make_draft(scan, HeadSettings(), has_skull=False)
+    draft, warnings = makeDraft(scan, HeadSettings(), hasSkull=False)
     assert "5.0 mm apart" in warnings[0]
     assert is_one_closed_body(draft.head)
     assert errors_mm(draft.head).mean() < 1.0
@@ -67,5 +67,5 @@ def test_a_scan_that_goes_on_below_the_neck_is_cut_200_mm_below_the_crown():
     neck = (np.hypot(*(ijk[:, :2] - 36.0).T) < 14.0) & (ijk[:, 2] < 220.0)
     values = np.where(crown | neck, 100.0, 0.0).reshape(24, 24, 90).astype(np.float32)
     scan = Volume(values, np.diag([3.0, 3.0, 3.0, 1.0]))
-    found = find_head(scan, HeadSettings(), lambda _step, _share: None)
-    assert found.base_mm == pytest.approx(245.0 - 200.0, abs=3.0)
+    found = findHead(scan, HeadSettings(), lambda _step, _share: None)
+    assert found.baseMm == pytest.approx(245.0 - 200.0, abs=3.0)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.head_draft import find_skin
-from rastrainer.slicer.head.own_process import LOGIC, in_own_process
+from rastrainer.slicer.head.head_draft import findSkin
+from rastrainer.slicer.head.own_process import LOGIC, inOwnProcess
 from rastrainer.slicer.head.volume import Volume
 from Testing.slicer.head.phantoms import phantom
 
-FIND_SKIN = "rastrainer.slicer.head.head_draft:find_skin"
+FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
 PYTHON = Path(sys.executable)
 
 
@@ -26,11 +26,11 @@ def ignore(_step, _share):
 def test_the_head_is_the_one_that_is_made_here():
     scan = phantom(spacing=(3.0, 3.0, 3.0), size=0.75)
     told = []
-    body, skin, warnings = in_own_process(
+    body, skin, warnings = inOwnProcess(
         PYTHON, FIND_SKIN, lambda *step: told.append(step), scan, None
     )
-    expected, expected_skin, expected_warnings = find_skin(scan)
-    assert body.base_mm == expected.base_mm
+    expected, expected_skin, expected_warnings = findSkin(scan)
+    assert body.baseMm == expected.baseMm
     np.testing.assert_array_equal(body.body, expected.body)
     np.testing.assert_array_equal(skin.vertices, expected_skin.vertices)
     assert warnings == expected_warnings
@@ -40,15 +40,15 @@ def test_the_head_is_the_one_that_is_made_here():
 def test_what_cannot_be_used_is_refused_in_the_same_words():
     nothing = Volume(np.zeros((30, 30, 30), np.int16), np.eye(4))
     with pytest.raises(InputError) as here:
-        find_skin(nothing)
+        findSkin(nothing)
     with pytest.raises(InputError) as there:
-        in_own_process(PYTHON, FIND_SKIN, ignore, nothing, None)
+        inOwnProcess(PYTHON, FIND_SKIN, ignore, nothing, None)
     assert str(there.value) == str(here.value)
 
 
 def test_a_process_that_ends_before_it_is_done_is_told():
     with pytest.raises(InputError, match="The head could not be made"):
-        in_own_process(PYTHON, "os:abort", ignore)
+        inOwnProcess(PYTHON, "os:abort", ignore)
 
 
 def test_where_the_process_lacks_a_package_the_work_is_done_here(tmp_path, monkeypatch):
@@ -56,7 +56,7 @@ def test_where_the_process_lacks_a_package_the_work_is_done_here(tmp_path, monke
         "import os\ndef work(progress):\n    return os.getpid()\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    assert in_own_process(PYTHON, "only_here:work", ignore) == os.getpid()
+    assert inOwnProcess(PYTHON, "only_here:work", ignore) == os.getpid()
 
 
 def test_what_is_canceled_ends(tmp_path, monkeypatch):
@@ -76,7 +76,7 @@ def test_what_is_canceled_ends(tmp_path, monkeypatch):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        in_own_process(PYTHON, "endless:work", cancel, str(tmp_path / "touched"))
+        inOwnProcess(PYTHON, "endless:work", cancel, str(tmp_path / "touched"))
     # The thread that looks after the end of the process ends with it.
     begun = [thread for thread in threading.enumerate() if thread not in before]
     for thread in begun:
@@ -98,7 +98,7 @@ def test_the_main_process_imports_neither_scipy_nor_the_filters_to_show_a_head()
         "import sys\n"
         f"sys.path.insert(0, {str(LOGIC)!r})\n"
         "import rastrainer.slicer.head.segment, rastrainer.slicer.head.own_process\n"
-        "import rastrainer.slicer.head.head_body, rastrainer.slicer.head.scenario_build\n"
+        "import rastrainer.slicer.head.head_body, rastrainer.slicer.head.own_process\n"
         "assert 'scipy' not in sys.modules"
     )
     subprocess.run([PYTHON, "-c", program], check=True)

@@ -6,13 +6,13 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.extraction import extract_head
+from rastrainer.slicer.head.extraction import extractHead
 from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
 from rastrainer.slicer.head.segment import (
-    for_segment,
-    read_segment,
-    show_segment,
-    volume_of_segment,
+    forSegment,
+    readSegment,
+    showSegment,
+    volumeOfSegment,
 )
 from Testing.slicer.head.placed import add_transform, vtk_matrix
 
@@ -22,7 +22,7 @@ CENTER, RADIUS, NECK = np.array([0.0, 5.0, 0.0]), 30.0, 20.0
 
 @pytest.fixture
 def found():
-    """A ball on a neck, which goes on below the base as `find_head` lets it."""
+    """A ball on a neck, which goes on below the base as `findHead` lets it."""
     origin = np.array([-35.0, -30.0, BASE - 15.0])
     grid = np.indices((70, 70, 95)).transpose(1, 2, 3, 0) + origin - CENTER
     ball = RADIUS - np.linalg.norm(grid, axis=3)
@@ -56,24 +56,24 @@ def ball_errors(mesh):
 
 
 def test_a_head_comes_back_from_its_segment_with_the_base_that_was_shown(node, found):
-    show_segment(node, found)
-    segment = show_segment(node, found)
+    showSegment(node, found)
+    segment = showSegment(node, found)
     assert node.GetSegmentation().GetNumberOfSegments() == 1
-    mesh = extract_head(volume_of_segment(read_segment(node, segment)), for_segment(HeadSettings()))
+    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
     assert mesh.is_closed
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE, abs=0.001)
     assert ball_errors(mesh).mean() < 0.5
 
 
 def test_the_cut_that_is_wished_counts_more_than_the_base_that_was_shown(node, found):
-    segment = show_segment(node, found)
-    settings = for_segment(HeadSettings(base_mm=-10.0))
-    mesh = extract_head(volume_of_segment(read_segment(node, segment)), settings)
+    segment = showSegment(node, found)
+    settings = forSegment(HeadSettings(baseMm=-10.0))
+    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), settings)
     assert mesh.vertices[:, 2].min() == pytest.approx(-10.0, abs=0.001)
 
 
 def test_hardly_more_is_shown_than_what_is_above_the_base(node, found):
-    show_segment(node, found)
+    showSegment(node, found)
     bounds = [0.0] * 6
     node.GetSegmentation().GetBounds(bounds)
     assert BASE - 4.0 < bounds[4] < BASE
@@ -96,33 +96,33 @@ def assert_stands_on_the_whole_neck(mesh):
 
 @pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0)], ids=["axial", "sagittal"])
 def test_the_base_stays_where_an_edit_lays_the_segment_on_an_oblique_grid(node, found, axes):
-    segment = show_segment(node, found)
+    segment = showSegment(node, found)
     lay_on_grid(node, segment, oblique(axes, [35.0, 35.0, 35.0]), (70, 70, 70))
-    mesh = extract_head(volume_of_segment(read_segment(node, segment)), for_segment(HeadSettings()))
+    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE, abs=0.51)
     assert_stands_on_the_whole_neck(mesh)
     assert ball_errors(mesh).mean() < 0.5
 
 
 def test_a_neck_that_an_oblique_scan_cuts_aslant_goes_on_to_a_flat_base(node, found):
-    segment = show_segment(node, found)
+    segment = showSegment(node, found)
     lay_on_grid(node, segment, oblique((0, 1, 2), [35.0, 35.0, 23.0]), (70, 70, 58))
-    mesh = extract_head(volume_of_segment(read_segment(node, segment)), for_segment(HeadSettings()))
+    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
     assert BASE < mesh.vertices[:, 2].min() < BASE + 5.0
     assert_stands_on_the_whole_neck(mesh)
 
 
 def test_a_neck_that_is_erased_is_not_in_the_head(node, found):
     found.body[:, :, : round(-33.0 - found.origin[2])] = False
-    segment = show_segment(node, found)
-    mesh = extract_head(volume_of_segment(read_segment(node, segment)), for_segment(HeadSettings()))
+    segment = showSegment(node, found)
+    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
     assert mesh.vertices[:, 2].min() == pytest.approx(-32.0, abs=1.0)
 
 
 def test_a_segment_that_is_moved_moves_its_head(scene, node, found):
-    segment = show_segment(node, found)
+    segment = showSegment(node, found)
     node.SetAndObserveTransformNodeID(add_transform(scene, [5.0, -7.0, 11.0]).GetID())
-    mesh = extract_head(volume_of_segment(read_segment(node, segment)), for_segment(HeadSettings()))
+    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE + 11.0, abs=0.001)
     mesh.vertices[:] -= [5.0, -7.0, 11.0]
     assert ball_errors(mesh).mean() < 0.5
@@ -130,15 +130,15 @@ def test_a_segment_that_is_moved_moves_its_head(scene, node, found):
 
 def test_an_empty_segment_is_answered_with_a_sentence(node, found):
     with pytest.raises(InputError, match="segment of the head is not there"):
-        volume_of_segment(read_segment(node, "Segment_1"))
+        volumeOfSegment(readSegment(node, "Segment_1"))
     found.body[:] = False
-    segment = show_segment(node, found)
+    segment = showSegment(node, found)
     with pytest.raises(InputError, match="segment of the head is empty"):
-        volume_of_segment(read_segment(node, segment))
+        volumeOfSegment(readSegment(node, segment))
 
 
 def test_a_segment_of_the_neck_alone_is_answered_with_a_sentence(node, found):
     found.body[:, :, round(BASE - found.origin[2]) :] = False
-    segment = show_segment(node, found)
+    segment = showSegment(node, found)
     with pytest.raises(InputError, match="empty above its base"):
-        volume_of_segment(read_segment(node, segment))
+        volumeOfSegment(readSegment(node, segment))

@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer.head.surface_queries import nearest_on_mesh
 from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.head_draft import make_draft
+from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer.slicer.head.images_and_skull import SCALP_MM
 from Testing.slicer.head.phantoms import CT, MRI, depth_mm, phantom
 
@@ -16,8 +16,8 @@ SIZE = 0.75
 @pytest.fixture(scope="module")
 def draft(request):
     """The head in a phantom, with its skull."""
-    return make_draft(
-        phantom(request.param, spacing=(2, 2, 2), size=SIZE), HeadSettings(base_mm=BASE)
+    return makeDraft(
+        phantom(request.param, spacing=(2, 2, 2), size=SIZE), HeadSettings(baseMm=BASE)
     )[0]
 
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from rastrainer.slicer.head.surface import mesh_of, surface_of
-from rastrainer.slicer.head.topology import carved
+from rastrainer.slicer.head.mask import carved
+from rastrainer.slicer.head.surface import meshOf, surfaceOf
 
 
 def ball(radius, size=31):
@@ -12,7 +12,7 @@ def ball(radius, size=31):
 
 
 def euler_characteristic(body):
-    return mesh_of(surface_of(np.where(body, 1.0, -1.0), np.zeros(3), 1.0)).euler_characteristic
+    return meshOf(surfaceOf(np.where(body, 1.0, -1.0), np.zeros(3), 1.0)).euler_characteristic
 
 
 def with_tunnel(width):

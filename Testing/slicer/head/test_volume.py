@@ -4,7 +4,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.volume import Volume, read_volume, volume_from_node
+from rastrainer.slicer.head.volume import Volume, readVolume, volumeFromNode
 from Testing.slicer.head.placed import add_transform, add_volume
 
 
@@ -19,9 +19,9 @@ def test_a_voxel_is_found_where_slicer_says_that_it_is(scene):
     node.SetSpacing(2.0, 3.0, 4.0)
     node.SetOrigin(-10.0, 20.0, 30.0)
     node.SetIJKToRASDirections(0, -1, 0, 1, 0, 0, 0, 0, 1)
-    volume = volume_from_node(node)
+    volume = volumeFromNode(node)
     assert np.argwhere(volume.values == 100).tolist() == [[1, 2, 3]]
-    assert (volume.ijk_to_ras @ [1, 2, 3, 1])[:3].tolist() == [-10 - 6, 20 + 2, 30 + 12]
+    assert (volume.ijkToRas @ [1, 2, 3, 1])[:3].tolist() == [-10 - 6, 20 + 2, 30 + 12]
 
 
 def test_a_volume_lies_where_its_transforms_place_it(scene):
@@ -29,7 +29,7 @@ def test_a_volume_lies_where_its_transforms_place_it(scene):
     outer, inner = add_transform(scene, [1.0, 2.0, 3.0]), add_transform(scene, [10.0, 0.0, 0.0])
     inner.SetAndObserveTransformNodeID(outer.GetID())
     node.SetAndObserveTransformNodeID(inner.GetID())
-    assert (volume_from_node(node).ijk_to_ras @ [1, 1, 1, 1])[:3].tolist() == [12, 3, 4]
+    assert (volumeFromNode(node).ijkToRas @ [1, 1, 1, 1])[:3].tolist() == [12, 3, 4]
 
 
 def test_a_transform_that_is_not_linear_is_refused_with_a_sentence(scene):
@@ -38,16 +38,16 @@ def test_a_transform_that_is_not_linear_is_refused_with_a_sentence(scene):
     bent.SetAndObserveTransformToParent(vtk.vtkThinPlateSplineTransform())
     node.SetAndObserveTransformNodeID(bent.GetID())
     with pytest.raises(InputError, match="under the transform Bent, which is not linear"):
-        volume_from_node(node)
+        volumeFromNode(node)
 
 
 def test_a_missing_volume_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.nii\.gz does not exist"):
-        read_volume(tmp_path / "none.nii.gz")
+        readVolume(tmp_path / "none.nii.gz")
 
 
 def test_a_file_that_is_no_volume_is_refused_with_a_sentence(tmp_path):
     path = tmp_path / "noise.nii.gz"
     path.write_bytes(b"not an image" * 100)
     with pytest.raises(InputError, match="could not be read as a volume"):
-        read_volume(path)
+        readVolume(path)

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.dicom_series import read_dicom_folder
-from rastrainer.slicer.head.head_draft import make_draft
-from rastrainer.slicer.head.volume_checks import check_volume
+from rastrainer.slicer.head.dicom_series import readDicomFolder
+from rastrainer.slicer.head.head_draft import checkVolume, makeDraft
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE, block
 from Testing.slicer.head.dicom_series import write_series
 
 
 def sheared():
     broken = block()
-    broken.ijk_to_ras[:3, 1] = broken.ijk_to_ras[:3, 0]
+    broken.ijkToRas[:3, 1] = broken.ijkToRas[:3, 0]
     return broken
 
 
@@ -27,7 +26,7 @@ UNPLACED = {
 def test_a_broken_volume_is_refused_with_a_sentence(name):
     broken, sentence = (UNUSABLE | UNPLACED)[name]
     with pytest.raises(InputError, match=sentence) as caught:
-        check_volume(broken)
+        checkVolume(broken)
     assert "\n" not in str(caught.value)
 
 
@@ -35,11 +34,11 @@ def test_a_broken_volume_is_refused_with_a_sentence(name):
 def test_a_volume_without_a_head_is_refused_with_a_sentence(name):
     none, sentence = HEADLESS[name]
     with pytest.raises(InputError, match=sentence):
-        make_draft(none, has_skull=False)
+        makeDraft(none, hasSkull=False)
 
 
 def test_thick_slices_are_used_with_a_warning():
-    assert "5.0 mm apart" in check_volume(block((100, 100, 40), (1.0, 1.0, 5.0)))[0]
+    assert "5.0 mm apart" in checkVolume(block((100, 100, 40), (1.0, 1.0, 5.0)))[0]
 
 
 def test_a_dicom_series_is_read_by_position_whatever_its_files_are_called(tmp_path):
@@ -47,11 +46,11 @@ def test_a_dicom_series_is_read_by_position_whatever_its_files_are_called(tmp_pa
     write_series(tmp_path, values, (2.0, 3.0, 4.0), first=(-10.0, -20.0, -30.0))
     write_series(tmp_path, values[:, :, :9] + 7, (2.0, 3.0, 4.0), series="1.2.3.5")
     (tmp_path / "notes.txt").write_text("no image")
-    read = read_dicom_folder(tmp_path)
+    read = readDicomFolder(tmp_path)
     assert np.array_equal(read.values, values)
     # DICOM is LPS, the volume RAS: x and y change their signs.
-    assert np.allclose(read.ijk_to_ras[:3, :3], np.diag([-2, -3, 4]))
-    assert np.allclose(read.ijk_to_ras[:3, 3], [10, 20, -30])
+    assert np.allclose(read.ijkToRas[:3, :3], np.diag([-2, -3, 4]))
+    assert np.allclose(read.ijkToRas[:3, 3], [10, 20, -30])
 
 
 def test_a_series_that_lacks_a_slice_is_refused(tmp_path):
@@ -59,11 +58,11 @@ def test_a_series_that_lacks_a_slice_is_refused(tmp_path):
     write_series(tmp_path, values, (1.0, 1.0, 2.0))
     sorted(tmp_path.iterdir())[4].unlink()
     with pytest.raises(InputError, match="not evenly spaced"):
-        read_dicom_folder(tmp_path)
+        readDicomFolder(tmp_path)
 
 
 @pytest.mark.parametrize("content", [b"", bytes(128) + b"DICM" + b"\x02\x00garbage" * 40])
 def test_a_folder_without_readable_dicom_is_refused(tmp_path, content):
     (tmp_path / "a.dcm").write_bytes(content)
     with pytest.raises(InputError, match="DICOM"):
-        read_dicom_folder(tmp_path)
+        readDicomFolder(tmp_path)

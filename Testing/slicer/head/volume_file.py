@@ -17,7 +17,7 @@ def write_volume(path: Path, volume: Volume, is_compressed: bool = True) -> Path
     image.SetDimensions(volume.values.shape)
     image.GetPointData().SetScalars(numpy_to_vtk(volume.values.ravel(order="F"), deep=True))
     matrix = vtk.vtkMatrix4x4()
-    matrix.DeepCopy(volume.ijk_to_ras.ravel().tolist())
+    matrix.DeepCopy(volume.ijkToRas.ravel().tolist())
     scene = slicer.vtkMRMLScene()
     node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
     node.SetAndObserveImageData(image)

@@ -12,8 +12,7 @@ import slicer
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.scenario.library import user_library
 from rastrainer.slicer.logic.module_session import ModulePaths
-from rastrainer.slicer.program.pip_install import pythonSlicer
-from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.slicer.program.simulator_package import SimulatorPackage, pythonSlicer
 from rastrainer.slicer.scene.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
 from rastrainer.slicer.settings import STUDY, Settings
 from rastrainer.slicer.translation import _

@@ -23,7 +23,7 @@ from rastrainer.registration.registration import AFFINE, RIGID, SIMILARITY, Regi
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.registration_logic import Comparison
-from rastrainer.slicer.logic.registration_remedies import Remedy
+from rastrainer.slicer.scene.registration_input import Remedy
 from rastrainer.slicer.scene.registration_nodes import isApplied, setApplied
 from rastrainer.slicer.scene.views import jumpTo
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED

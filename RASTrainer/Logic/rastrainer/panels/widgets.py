@@ -7,13 +7,7 @@ from typing import Any
 
 import qt
 
-from rastrainer.panels.plain_text import (
-    LONGEST_TEXT,
-    shortened,
-    shortName,
-    toolTip,
-    wrappable,
-)
+from rastrainer.panels.plain_text import LONGEST_TEXT, shortened, shortName, toolTip, wrappable
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.settings import Setting, Settings
 

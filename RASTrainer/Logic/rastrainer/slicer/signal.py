@@ -1,7 +1,8 @@
-"""Tells listeners that something happened, in plain Python: Qt's signals are not needed for it."""
+"""Signals in plain Python, and calls whose errors stop nothing else."""
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from typing import Any
 
@@ -30,3 +31,31 @@ class Signal:
         """Call every listener."""
         for listener in self.listeners:
             listener(*values)
+
+
+_logger = logging.getLogger("rastrainer.error_guard")
+
+MOST_REMEMBERED = 100
+
+
+class ErrorGuard:
+    """Runs one piece of work after another; each different error is logged once."""
+
+    def __init__(self) -> None:
+        self._logged: set[tuple[str, str]] = set()
+
+    def run(self, what: str, work: Callable[..., Any], *arguments: Any) -> Any | None:
+        """Return what `work` returns, None where it raises; `what` names it in the log."""
+        try:
+            return work(*arguments)
+        except Exception as error:
+            failure = (what, repr(error))
+            if failure not in self._logged and len(self._logged) < MOST_REMEMBERED:
+                self._logged.add(failure)
+                _logger.exception("%s failed.", what)
+            return None
+
+    def emit(self, what: str, signal: Signal, *values: Any) -> None:
+        """Call every listener of a signal, whichever of them fail."""
+        for listener in signal.listeners:
+            self.run(what, listener, *values)

@@ -26,7 +26,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(argv)
     try:
         from rastrainer.slicer.head.head_body import HeadSettings
-        from rastrainer.slicer.head.head_draft import make_draft, read_any_volume
+        from rastrainer.slicer.head.head_draft import makeDraft, readAnyVolume
     except ImportError as error:
         print(
             f"A head cannot be made here, {error.name} is missing: pip install slicer-core scipy",
@@ -34,23 +34,23 @@ def main(argv: Sequence[str] | None = None) -> int:
         )
         return 2
     try:
-        volume = read_any_volume(arguments.volume)
-        settings = HeadSettings(threshold=arguments.threshold, base_mm=arguments.cut)
+        volume = readAnyVolume(arguments.volume)
+        settings = HeadSettings(threshold=arguments.threshold, baseMm=arguments.cut)
 
-        def head_made(head: HeadDraft, warnings: list[str]) -> None:
+        def headMade(head: HeadDraft, warnings: list[str]) -> None:
             for warning in warnings:
                 print_warning(warning)
             with new_folder(arguments.output) as folder:
                 write_draft(folder, head)
             print(HEAD_MADE, flush=True)
 
-        draft, _ = make_draft(
+        draft, _ = makeDraft(
             volume,
             settings,
             not arguments.no_skull,
             print_progress,
-            head_made=head_made,
-            has_volume=not arguments.no_volume,
+            headMade=headMade,
+            hasVolume=not arguments.no_volume,
         )
         if draft.skull is not None:
             write_draft(arguments.output, draft)

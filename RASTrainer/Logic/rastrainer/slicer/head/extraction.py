@@ -8,9 +8,9 @@ import vtk
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.progress import Progress
-from rastrainer.slicer.head import level_set, mask, surface, topology
+from rastrainer.slicer.head import level_set, mask, surface
 from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
-from rastrainer.slicer.head.volume import Volume, on_ras_grid
+from rastrainer.slicer.head.volume import Volume, onRasGrid
 
 MARGIN = 14
 """Voxels added around the image, in which the nose and the ears may close."""
@@ -22,7 +22,7 @@ LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
 
 
-def extract_head(
+def extractHead(
     volume: Volume,
     settings: HeadSettings | None = None,
     progress: Progress = lambda _step, _share: None,
@@ -38,18 +38,18 @@ def extract_head(
         InputError: there is no head in the volume, or no closed surface could be made of it.
     """
     settings = settings or HeadSettings()
-    return skin_of(find_head(volume, settings, progress), settings, progress)
+    return skinOf(findHead(volume, settings, progress), settings, progress)
 
 
-def find_head(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
-    """Return the head of a volume; arguments and errors as of `extract_head`."""
+def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
+    """Return the head of a volume; arguments and errors as of `extractHead`."""
     progress("Reading the volume", 0.0)
-    grid = on_ras_grid(volume, SPACING_MM)
+    grid = onRasGrid(volume, SPACING_MM)
     progress("Finding the skin", 0.1)
-    found = level_set.find_tissue(grid.values, settings.threshold, settings.noise_mm / SPACING_MM)
-    lowest = grid.ijk_to_ras[2, 3]
+    found = level_set.findTissue(grid.values, settings.threshold, settings.noiseMm / SPACING_MM)
+    lowest = grid.ijkToRas[2, 3]
     top = lowest + SPACING_MM * np.flatnonzero((found.level > 0).any(axis=(0, 1))).max()
-    base = settings.base_mm
+    base = settings.baseMm
     if base is None:
         base = max(lowest + SPACING_MM, top - LONGEST_HEAD_MM)
     if not lowest <= base < top:
@@ -63,18 +63,18 @@ def find_head(volume: Volume, settings: HeadSettings, progress: Progress) -> Hea
     progress("Filling cavities", 0.3)
     body = _body(level > 0, settings, progress)
     first = np.array([part.start for part in around])
-    origin = grid.ijk_to_ras[:3, 3] + (first - MARGIN) * SPACING_MM
-    return HeadBody(level, body, origin, base, found.threshold, found.is_ct)
+    origin = grid.ijkToRas[:3, 3] + (first - MARGIN) * SPACING_MM
+    return HeadBody(level, body, origin, base, found.threshold, found.isCt)
 
 
-def skin_of(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
-    """Return the surface of a head; arguments and errors as of `extract_head`."""
+def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
+    """Return the surface of a head; arguments and errors as of `extractHead`."""
     progress("Making the surface", 0.8)
-    skin = surface.surface_of(_agreeing(head.level, head.body), head.origin, SPACING_MM)
+    skin = surface.surfaceOf(_agreeing(head.level, head.body), head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles
     for _ in range(MOST_DECIMATIONS):
-        fewer = surface.decimated(skin, wanted, head.base_mm)
-        mesh = _cut(fewer, head.base_mm)
+        fewer = surface.decimated(skin, wanted, head.baseMm)
+        mesh = _cut(fewer, head.baseMm)
         # The base is not decimated with the rest; how many it adds shows only afterwards.
         over = len(mesh.triangles) - MOST_TRIANGLES
         if over <= 0:
@@ -97,22 +97,22 @@ def _around(inside: np.ndarray, below: int) -> tuple[slice, slice, slice]:
 
 def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.ndarray:
     """Return the head without cavities and tunnels, as little filled as possible."""
-    hull = mask.without_cavities(mask.closed_by_ball(inside, settings.opening_mm / 2))
+    hull = mask.withoutCavities(mask.closedByBall(inside, settings.openingMm / 2))
     progress("Filling cavities", 0.45)
-    depth = settings.cavity_depth_mm / SPACING_MM
-    deep = mask.depth_inside(hull, depth) > depth
-    wanted = mask.without_cavities(inside | deep)
+    depth = settings.cavityDepthMm / SPACING_MM
+    deep = mask.depthInside(hull, depth) > depth
+    wanted = mask.withoutCavities(inside | deep)
     progress("Closing tunnels", 0.55)
-    ball = _ball_like(wanted, settings)
+    ball = _ballLike(wanted, settings)
     progress("Closing tunnels", 0.7)
-    return topology.carved(ball, wanted)
+    return mask.carved(ball, wanted)
 
 
-def _ball_like(wanted: np.ndarray, settings: HeadSettings) -> np.ndarray:
+def _ballLike(wanted: np.ndarray, settings: HeadSettings) -> np.ndarray:
     """Return a body without tunnels around the wanted one."""
-    for radius in settings.opening_mm * np.array([0.5, 1.0, 2.0, 4.0]):
-        body = mask.without_cavities(mask.closed_by_ball(wanted, radius / SPACING_MM))
-        contour = surface.mesh_of(surface.surface_of(np.where(body, 1.0, -1.0), np.zeros(3), 1.0))
+    for radius in settings.openingMm * np.array([0.5, 1.0, 2.0, 4.0]):
+        body = mask.withoutCavities(mask.closedByBall(wanted, radius / SPACING_MM))
+        contour = surface.meshOf(surface.surfaceOf(np.where(body, 1.0, -1.0), np.zeros(3), 1.0))
         if contour.euler_characteristic == 2:
             return body
     raise InputError("No head was found: the shape above the threshold has too many tunnels.")
@@ -123,21 +123,21 @@ def _agreeing(level: np.ndarray, body: np.ndarray) -> np.ndarray:
     return np.where(body, np.maximum(level, 0.05), np.minimum(level, -0.05))
 
 
-def _cut(skin: vtk.vtkPolyData, base_mm: float) -> HeadMesh:
+def _cut(skin: vtk.vtkPolyData, baseMm: float) -> HeadMesh:
     """Return the skin cut flat, a hair higher where triangles in the very plane keep it open."""
     for hair in HAIRS_MM:
-        mesh = surface.mesh_of(surface.cut_flat(skin, base_mm + hair))
-        if _is_sound(mesh):
+        mesh = surface.meshOf(surface.cutFlat(skin, baseMm + hair))
+        if _isSound(mesh):
             break
     return mesh
 
 
-def _is_sound(mesh: HeadMesh) -> bool:
+def _isSound(mesh: HeadMesh) -> bool:
     return mesh.is_closed and mesh.euler_characteristic == 2
 
 
 def _check(mesh: HeadMesh) -> None:
-    if not _is_sound(mesh):
+    if not _isSound(mesh):
         raise InputError(
             "No head was found: its surface could not be closed; try another threshold or base."
         )

@@ -19,19 +19,19 @@ class HeadSettings:
 
     Attributes:
         threshold: value that parts air from skin; None finds it (Otsu; −475 HU of a CT).
-        base_mm: height (S) of the flat base; None for just above the image's lower edge, or the
+        baseMm: height (S) of the flat base; None for just above the image's lower edge, or the
             neck.
-        noise_mm: standard deviation of the smoothing of the image.
-        cavity_depth_mm: what lies so deep below the skin is filled: airways, sinuses, ear canals.
-        opening_mm: openings up to this width do not count as part of the skin's outside.
+        noiseMm: standard deviation of the smoothing of the image.
+        cavityDepthMm: what lies so deep below the skin is filled: airways, sinuses, ear canals.
+        openingMm: openings up to this width do not count as part of the skin's outside.
         triangles: how many are aimed at; the flat base adds a few.
     """
 
     threshold: float | None = None
-    base_mm: float | None = None
-    noise_mm: float = 1.0
-    cavity_depth_mm: float = 4.0
-    opening_mm: float = 12.0
+    baseMm: float | None = None
+    noiseMm: float = 1.0
+    cavityDepthMm: float = 4.0
+    openingMm: float = 12.0
     triangles: int = 55_000
 
 
@@ -43,17 +43,17 @@ class HeadBody:
         level: (i, j, k) float, positive inside, its zero between the voxels where the skin is.
         body: (i, j, k) bool, without cavities and tunnels.
         origin: (3,) float, RAS mm, of voxel 0, 0, 0.
-        base_mm: height (S) of the flat base.
+        baseMm: height (S) of the flat base.
         threshold: that parts air from skin, in the volume's own values.
-        is_ct: whether the values are Hounsfield units.
+        isCt: whether the values are Hounsfield units.
     """
 
     level: np.ndarray
     body: np.ndarray
     origin: np.ndarray
-    base_mm: float
+    baseMm: float
     threshold: float
-    is_ct: bool
+    isCt: bool
 
     @cached_property
     def labels(self) -> tuple[np.ndarray, np.ndarray]:
@@ -62,6 +62,6 @@ class HeadBody:
         (k, j, i) uint8, 1 inside, down to 3 mm below the base; (3,) float, RAS mm. Made once, which
         takes a moment.
         """
-        below = max(0, round((self.base_mm - BELOW_BASE_MM - self.origin[2]) / SPACING_MM))
+        below = max(0, round((self.baseMm - BELOW_BASE_MM - self.origin[2]) / SPACING_MM))
         voxels = np.ascontiguousarray(self.body[:, :, below:].transpose(2, 1, 0), np.uint8)
         return voxels, self.origin + np.array([0.0, 0.0, below * SPACING_MM])

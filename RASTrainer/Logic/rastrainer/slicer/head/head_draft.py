@@ -6,102 +6,181 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.progress import Progress
 from rastrainer.scenario.draft import HeadDraft
-from rastrainer.slicer.head.extraction import find_head, skin_of
+from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
-from rastrainer.slicer.head.images_and_skull import SCALP_MM, image_of, skull_of
-from rastrainer.slicer.head.level_set import is_hounsfield
-from rastrainer.slicer.head.segment import SegmentImage, for_segment, volume_of_segment
-from rastrainer.slicer.head.volume import Volume, as_float, read_volume
-from rastrainer.slicer.head.volume_checks import check_head, check_volume
+from rastrainer.slicer.head.images_and_skull import SCALP_MM, imageOf, skullOf
+from rastrainer.slicer.head.level_set import isHounsfield
+from rastrainer.slicer.head.segment import SegmentImage, forSegment, volumeOfSegment
+from rastrainer.slicer.head.volume import Volume, asFloat, readVolume
 
 
-def read_any_volume(path: Path) -> Volume:
+def readAnyVolume(path: Path) -> Volume:
     """Read an NRRD or NIfTI file, or a folder with a DICOM series.
 
     Raises:
         InputError: it cannot be read.
     """
-    from rastrainer.slicer.head.dicom_series import read_dicom_folder
+    from rastrainer.slicer.head.dicom_series import readDicomFolder
 
-    return read_dicom_folder(path) if Path(path).is_dir() else read_volume(path)
+    return readDicomFolder(path) if Path(path).is_dir() else readVolume(path)
 
 
-def make_draft(
+def makeDraft(
     volume: Volume,
     settings: HeadSettings | None = None,
-    has_skull: bool = True,
+    hasSkull: bool = True,
     progress: Progress = lambda _step, _share: None,
     segment: SegmentImage | None = None,
-    head_made: Callable[[HeadDraft, list[str]], None] = lambda _draft, _warnings: None,
-    has_volume: bool = True,
+    headMade: Callable[[HeadDraft, list[str]], None] = lambda _draft, _warnings: None,
+    hasVolume: bool = True,
 ) -> tuple[HeadDraft, list[str]]:
     """Return a head and warnings, one sentence each.
 
     Args:
         volume: T1-weighted MRI or CT of a head.
         settings: what to choose otherwise than usual.
-        has_skull: whether the skull is wanted too.
+        hasSkull: whether the skull is wanted too.
         progress: told each step's name and the share of the work done; may raise to cancel.
         segment: the head; None finds it in the volume.
-        head_made: given the draft without its skull and the warnings, before the skull is made.
-        has_volume: whether the images are to be part of the draft.
+        headMade: given the draft without its skull and the warnings, before the skull is made.
+        hasVolume: whether the images are to be part of the draft.
 
     Raises:
         InputError: the volume cannot be used, or there is no head in it or no bone in a CT.
     """
-    volume = as_float(volume)
-    found, mesh, warnings = find_skin(
+    volume = asFloat(volume)
+    found, mesh, warnings = findSkin(
         volume, settings, lambda step, share: progress(step, 0.8 * share), segment
     )
-    draft = HeadDraft(mesh, _head_method(found, segment is not None))
-    if has_volume:
+    draft = HeadDraft(mesh, _headMethod(found, segment is not None))
+    if hasVolume:
         progress("Preparing the images", 0.8)
-        images, told = image_of(volume, found)
+        images, told = imageOf(volume, found)
         draft = replace(draft, method=f"{draft.method} {told}", volume=images)
-    head_made(draft, warnings)
-    if has_skull:
+    headMade(draft, warnings)
+    if hasSkull:
         progress("Making the skull", 0.85)
-        method = f"{draft.method} {_skull_method(found)}"
-        skull = skull_of(volume, found)
-        draft = replace(draft, method=method, skull=skull, is_skull_approximate=not found.is_ct)
+        method = f"{draft.method} {_skullMethod(found)}"
+        skull = skullOf(volume, found)
+        draft = replace(draft, method=method, skull=skull, is_skull_approximate=not found.isCt)
     progress("Done", 1.0)
     return draft, warnings
 
 
-def find_skin(
+def findSkin(
     volume: Volume,
     settings: HeadSettings | None = None,
     progress: Progress = lambda _step, _share: None,
     segment: SegmentImage | None = None,
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
-    """Return a head as voxels and as a surface, and warnings; otherwise as `make_draft`."""
+    """Return a head as voxels and as a surface, and warnings; otherwise as `makeDraft`."""
     settings = settings or HeadSettings()
-    volume = as_float(volume)
-    warnings = check_volume(volume)
+    volume = asFloat(volume)
+    warnings = checkVolume(volume)
     if segment is not None:
-        settings = for_segment(settings)
-    searched = volume if segment is None else volume_of_segment(segment)
-    found = find_head(searched, settings, progress)
+        settings = forSegment(settings)
+    searched = volume if segment is None else volumeOfSegment(segment)
+    found = findHead(searched, settings, progress)
     if segment is not None:
-        found = replace(found, is_ct=is_hounsfield(volume.values))
-    mesh = skin_of(found, settings, progress)
-    check_head(mesh)
+        found = replace(found, isCt=isHounsfield(volume.values))
+    mesh = skinOf(found, settings, progress)
+    checkHead(mesh)
     return found, mesh, warnings
 
 
-def _head_method(found: HeadBody, is_segment: bool) -> str:
-    kind = "CT" if found.is_ct else "MRI"
-    how = "segment edited by hand" if is_segment else f"threshold {found.threshold:.5g}"
+def _headMethod(found: HeadBody, isSegment: bool) -> str:
+    kind = "CT" if found.isCt else "MRI"
+    how = "segment edited by hand" if isSegment else f"threshold {found.threshold:.5g}"
     return (
         f"Surface of the skin from {kind} by rastrainer, {how}, cavities filled, cut flat at "
-        f"{found.base_mm:.1f} mm (S)."
+        f"{found.baseMm:.1f} mm (S)."
     )
 
 
-def _skull_method(found: HeadBody) -> str:
-    if found.is_ct:
+def _skullMethod(found: HeadBody) -> str:
+    if found.isCt:
         return "Skull: bone of the CT."
     return f"Skull: an approximation, the skin moved inward by {SCALP_MM:g} mm; MRI shows no bone."
+
+
+FEWEST_VOXELS = 16
+MOST_VOXELS = 600_000_000
+SMALLEST_MM, LARGEST_MM = 90.0, 1000.0
+THICKEST_SLICES_MM = 6.0
+COARSE_MM = 2.5
+HEAD_EXTENT_MM = ((90.0, 260.0), (110.0, 320.0), (80.0, 320.0))
+"""Right-left, posterior-anterior and inferior-superior: from small children to adults with ears."""
+
+FULLEST = 0.85
+"""A head fills about half of its bounding box; what fills more of it is no head."""
+
+
+def checkVolume(volume: Volume) -> list[str]:
+    """Return warnings for a volume that can be used, one sentence each.
+
+    Raises:
+        InputError: it cannot be used.
+    """
+    values, shape = volume.values, volume.values.shape
+    if values.ndim != 3 or min(shape) < FEWEST_VOXELS:
+        raise InputError(
+            f"The volume has {' × '.join(map(str, shape))} voxels; a head needs a 3D volume of at "
+            f"least {FEWEST_VOXELS} in each direction."
+        )
+    if values.size > MOST_VOXELS:
+        raise InputError(f"The volume has {values.size / 1e6:.0f} million voxels; crop it.")
+    if not np.isfinite(values).all():
+        raise InputError("The volume holds values that are no numbers (NaN or infinite).")
+    if values.min() == values.max():
+        raise InputError("The volume is empty: all its voxels have the same value.")
+    return _checkSpacing(volume)
+
+
+def _checkSpacing(volume: Volume) -> list[str]:
+    axes = volume.ijkToRas[:3, :3]
+    spacing = np.linalg.norm(axes, axis=0)
+    if not np.isfinite(volume.ijkToRas).all() or spacing.min() <= 0:
+        raise InputError("The volume does not tell where it lies in the patient.")
+    if abs(np.linalg.det(axes / spacing)) < 0.1:
+        raise InputError("The volume's axes do not span a space: its orientation is damaged.")
+    extent = spacing * volume.values.shape
+    if extent.max() < SMALLEST_MM or extent.max() > LARGEST_MM:
+        raise InputError(
+            f"The volume measures {' × '.join(f'{e:.3g}' for e in extent)} mm: no head is that "
+            "size. Its spacing is probably not in millimeters."
+        )
+    if spacing.max() > THICKEST_SLICES_MM:
+        raise InputError(
+            f"The volume's slices are {spacing.max():.1f} mm apart; a head's surface needs at most "
+            f"{THICKEST_SLICES_MM:g} mm."
+        )
+    if spacing.max() > COARSE_MM:
+        return [
+            f"The slices are {spacing.max():.1f} mm apart: between them the skin is guessed, and "
+            "may be off by a millimeter or two at the nose, the ears and the crown."
+        ]
+    return []
+
+
+def checkHead(mesh: HeadMesh) -> None:
+    """Raise a sentence where a closed surface cannot be a head's.
+
+    Raises:
+        InputError: its size or shape is no head's.
+    """
+    extent = np.ptp(mesh.vertices, axis=0)
+    a, b, c = (mesh.vertices[mesh.triangles[:, corner]].astype(float) for corner in range(3))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
+    isSize = all(low <= e <= high for e, (low, high) in zip(extent, HEAD_EXTENT_MM, strict=True))
+    if not isSize or volume > FULLEST * extent.prod():
+        raise InputError(
+            f"No head was found: what is above the threshold measures {extent[0]:.0f} × "
+            f"{extent[1]:.0f} × {extent[2]:.0f} mm and looks like no head. Try another threshold "
+            "or cut."
+        )

@@ -11,7 +11,7 @@ from rastrainer.head.volume import KEPT_MM, HeadVolume
 from rastrainer.slicer.head import mask, surface
 from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody
 from rastrainer.slicer.head.level_set import CT_AIR
-from rastrainer.slicer.head.volume import Volume, on_ras_grid, sampled
+from rastrainer.slicer.head.volume import Volume, onRasGrid, sampled
 
 HOUNSFIELD = (-1024.0, 3071.0)
 CT_WINDOW, CT_LEVEL = 400.0, 40.0
@@ -23,7 +23,7 @@ BRIGHTEST_QUANTILE, WHITE_QUANTILE = 0.9995, 0.995
 _MOST_GRAY = 255.0
 
 
-def image_of(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
+def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
     """Return a head's images on a grid of 1 mm along RAS, and a sentence on how they were made.
 
     MRI becomes uint8: from the darkest value of the volume to the brightest of the head, unless
@@ -31,23 +31,23 @@ def image_of(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
 
     Args:
         volume: what the head was found in.
-        head: as `find_head` has found it.
+        head: as `findHead` has found it.
     """
-    near = mask.squared_distances(head.body, KEPT_MM / SPACING_MM) <= (KEPT_MM / SPACING_MM) ** 2
-    near[:, :, : max(0, int(np.floor((head.base_mm - head.origin[2]) / SPACING_MM)))] = False
+    near = mask.squaredDistances(head.body, KEPT_MM / SPACING_MM) <= (KEPT_MM / SPACING_MM) ** 2
+    near[:, :, : max(0, int(np.floor((head.baseMm - head.origin[2]) / SPACING_MM)))] = False
     around = ndimage.find_objects(near.astype(np.uint8))[0]
     near, body = near[around], head.body[around]
-    grid_to_ras = np.diag([SPACING_MM] * 3 + [1.0])
-    grid_to_ras[:3, 3] = head.origin + SPACING_MM * np.array([part.start for part in around])
-    values = np.where(near, sampled(volume, grid_to_ras, near.shape), volume.values.min())
-    if head.is_ct:
+    gridToRas = np.diag([SPACING_MM] * 3 + [1.0])
+    gridToRas[:3, 3] = head.origin + SPACING_MM * np.array([part.start for part in around])
+    values = np.where(near, sampled(volume, gridToRas, near.shape), volume.values.min())
+    if head.isCt:
         units = np.rint(np.clip(np.where(near, values, CT_AIR), *HOUNSFIELD)).astype(np.int16)
         low, high = HOUNSFIELD
         told = f"Images: CT, 1 mm, Hounsfield units from {low:g} to {high:g}."
-        return HeadVolume(units, grid_to_ras, CT_WINDOW, CT_LEVEL), told
+        return HeadVolume(units, gridToRas, CT_WINDOW, CT_LEVEL), told
     grays, told = _grays(values, volume.values, body)
     white = max(2.0, float(np.quantile(grays[body], WHITE_QUANTILE)))
-    return HeadVolume(grays, grid_to_ras, white, white / 2.0), told
+    return HeadVolume(grays, gridToRas, white, white / 2.0), told
 
 
 def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, str]:
@@ -70,27 +70,27 @@ SCALP_MM = 7.0
 TRIANGLES = 30_000
 
 
-def skull_of(volume: Volume, head: HeadBody) -> HeadMesh:
+def skullOf(volume: Volume, head: HeadBody) -> HeadMesh:
     """Return the skull above the head's base: bone of a CT, else the skin moved inward.
 
     Raises:
         InputError: there is none.
     """
-    level = _bone(volume, head) if head.is_ct else _below_scalp(head)
+    level = _bone(volume, head) if head.isCt else _belowScalp(head)
     heights = head.origin[2] + SPACING_MM * np.arange(level.shape[2])
-    level = np.where(heights >= head.base_mm, level, -1.0).astype(np.float32)
-    body = mask.largest_body(level > 0)
+    level = np.where(heights >= head.baseMm, level, -1.0).astype(np.float32)
+    body = mask.largestBody(level > 0)
     level = np.where(body | (level <= 0), level, -1.0)
-    skull = surface.smoothed(surface.surface_of(level, head.origin, SPACING_MM))
-    return surface.mesh_of(surface.decimated(skull, TRIANGLES, head.base_mm))
+    skull = surface.smoothed(surface.surfaceOf(level, head.origin, SPACING_MM))
+    return surface.meshOf(surface.decimated(skull, TRIANGLES, head.baseMm))
 
 
 def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
     """Return the level set of bone on the head's grid."""
-    grid = on_ras_grid(volume, SPACING_MM)
+    grid = onRasGrid(volume, SPACING_MM)
     smooth = ndimage.gaussian_filter(grid.values, CT_NOISE_MM / SPACING_MM, mode="nearest")
     bone = np.full(head.level.shape, -1.0, np.float32)
-    first = np.rint((grid.ijk_to_ras[:3, 3] - head.origin) / SPACING_MM).astype(int)
+    first = np.rint((grid.ijkToRas[:3, 3] - head.origin) / SPACING_MM).astype(int)
     # The head's grid has a margin, and begins where its base is.
     into = tuple(slice(max(0, f), max(0, f + n)) for f, n in zip(first, smooth.shape, strict=True))
     room = bone[into].shape
@@ -102,6 +102,6 @@ def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
     return np.where(head.body, bone, -1.0)
 
 
-def _below_scalp(head: HeadBody) -> np.ndarray:
+def _belowScalp(head: HeadBody) -> np.ndarray:
     scalp = SCALP_MM / SPACING_MM
-    return np.clip(mask.depth_inside(head.body, scalp + 1.0) - scalp, -1.0, 1.0)
+    return np.clip(mask.depthInside(head.body, scalp + 1.0) - scalp, -1.0, 1.0)

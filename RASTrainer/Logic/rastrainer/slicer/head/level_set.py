@@ -26,15 +26,15 @@ class Tissue:
     Attributes:
         level: (i, j, k) float within ±1, positive in tissue; its zero lies between the voxels.
         threshold: that parts it from air, in the image's own values.
-        is_ct: whether the values are Hounsfield units.
+        isCt: whether the values are Hounsfield units.
     """
 
     level: np.ndarray
     threshold: float
-    is_ct: bool
+    isCt: bool
 
 
-def find_tissue(values: np.ndarray, threshold: float | None, noise: float) -> Tissue:
+def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tissue:
     """Return the head's tissue, alone.
 
     Args:
@@ -45,12 +45,12 @@ def find_tissue(values: np.ndarray, threshold: float | None, noise: float) -> Ti
     Raises:
         InputError: nothing is above the threshold, or everything is.
     """
-    is_ct = is_hounsfield(values)
-    air = CT_AIR if is_ct else 0.0
-    above_air = np.clip(values, CT_AIR, None) - CT_AIR if is_ct else values
-    smooth = ndimage.gaussian_filter(above_air, noise, mode="nearest")
+    isCt = isHounsfield(values)
+    air = CT_AIR if isCt else 0.0
+    aboveAir = np.clip(values, CT_AIR, None) - CT_AIR if isCt else values
+    smooth = ndimage.gaussian_filter(aboveAir, noise, mode="nearest")
     if threshold is None:
-        found = CT_SKIN - CT_AIR if is_ct else mask.otsu_threshold(_without_tail(smooth))
+        found = CT_SKIN - CT_AIR if isCt else mask.otsuThreshold(_withoutTail(smooth))
     else:
         found = threshold - air
     if threshold is None and found <= 0:
@@ -59,17 +59,17 @@ def find_tissue(values: np.ndarray, threshold: float | None, noise: float) -> Ti
         raise InputError(f"The threshold must be above that of air, {air:g}: the skin is brighter.")
     level = np.clip(smooth / found - 1.0, -1.0, 1.0)
     # Filled first: the skull's dark layer may part the scalp from a brain that is larger.
-    head = mask.largest_body(mask.without_cavities(level > 0))
+    head = mask.largestBody(mask.withoutCavities(level > 0))
     level = np.where(head | (level <= 0), level, -1.0).astype(np.float32)
-    return Tissue(level, found + air, is_ct)
+    return Tissue(level, found + air, isCt)
 
 
-def is_hounsfield(values: np.ndarray) -> bool:
+def isHounsfield(values: np.ndarray) -> bool:
     """Tell whether an image has a CT's values: much of it is air at about −1000."""
     return bool(np.quantile(values[::2, ::2, ::2], CT_LOW_QUANTILE) < CT_LOW)
 
 
-def _without_tail(values: np.ndarray) -> np.ndarray:
+def _withoutTail(values: np.ndarray) -> np.ndarray:
     high = TAIL_FACTOR * float(np.quantile(values[::2, ::2, ::2], TAIL_QUANTILE))
     return np.minimum(values, high) if 0 < high < values.max() else values
 
@@ -93,19 +93,19 @@ def continued(level: np.ndarray, margin: int) -> np.ndarray:
     """
     padded = np.pad(level, [(0, 0), (0, 0), (margin, 0)], mode="edge")
     for axis in (0, 1):
-        padded = _continue_end(padded, axis, margin)
-        padded = np.flip(_continue_end(np.flip(padded, axis), axis, margin), axis)
-    return _continue_end(padded, 2, margin)
+        padded = _continueEnd(padded, axis, margin)
+        padded = np.flip(_continueEnd(np.flip(padded, axis), axis, margin), axis)
+    return _continueEnd(padded, 2, margin)
 
 
-def _continue_end(level: np.ndarray, axis: int, margin: int) -> np.ndarray:
+def _continueEnd(level: np.ndarray, axis: int, margin: int) -> np.ndarray:
     """Append `margin` slices to the end of an axis."""
     slices = np.moveaxis(level, axis, 0)
-    outline = _signed_distance(slices[-1])
+    outline = _signedDistance(slices[-1])
     if outline is None:
         beyond = np.full((margin, *slices.shape[1:]), -1.0, level.dtype)
         return np.concatenate([level, np.moveaxis(beyond, 0, axis)], axis=axis)
-    earlier = _signed_distance(slices[-1 - TREND_LENGTH])
+    earlier = _signedDistance(slices[-1 - TREND_LENGTH])
     trend = (outline - earlier) / TREND_LENGTH if earlier is not None else np.zeros_like(outline)
     trend = np.clip(ndimage.gaussian_filter(trend, 2.0), -FASTEST_TREND, 0.0)
     steps = np.arange(1, margin + 1)[:, None, None]
@@ -114,9 +114,9 @@ def _continue_end(level: np.ndarray, axis: int, margin: int) -> np.ndarray:
     return np.concatenate([level, np.moveaxis(beyond, 0, axis)], axis=axis)
 
 
-def _signed_distance(slice_level: np.ndarray) -> np.ndarray | None:
+def _signedDistance(sliceLevel: np.ndarray) -> np.ndarray | None:
     """Return the distance to a slice's outline, positive inside; None for an empty slice."""
-    inside = slice_level > 0
+    inside = sliceLevel > 0
     if not inside.any():
         return None
     margin = 12

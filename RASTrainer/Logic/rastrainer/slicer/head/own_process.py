@@ -1,6 +1,8 @@
-"""Makes a head in a process of its own: VTK's filters would keep Slicer's window from answering.
+"""Heads and scenarios, each made in a process of its own.
 
-The function and what it works on go there and back as files in a private folder.
+VTK's filters would keep Slicer's window from answering, so the head is made by a Python beside it:
+the function and its arguments go there and its result comes back as files in a private folder.
+Fiducials and tasks need the robot, so the simulator proposes them.
 """
 
 from __future__ import annotations
@@ -11,12 +13,15 @@ import pickle
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.progress import Progress, print_progress
+from rastrainer.scenario.draft import HeadDraft, write_draft
+from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.program.child_process import runChild
 
 TASK, OUTCOME = "task.pickle", "outcome.pickle"
@@ -29,7 +34,7 @@ main(sys.argv[2])
 LOGIC = Path(__file__).parents[3]
 
 
-def in_own_process(
+def inOwnProcess(
     python: Path, function: str, progress: Progress, *arguments: Any, **named: Any
 ) -> Any:
     """Return what `function(*arguments, **named, progress=…)` returns in a process of its own.
@@ -86,3 +91,66 @@ def main(folder: str) -> None:
 def _find(function: str) -> Callable[..., Any]:
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)
+
+
+HEAD_SHARE = 0.5
+
+
+def buildScenario(
+    make: Callable[[Progress], tuple[HeadDraft, list[str]]],
+    folder: Path,
+    words: Sequence[str],
+    command: Sequence[str],
+    progress: Progress = lambda _step, _share: None,
+) -> tuple[Scenario, list[str]]:
+    """Build a scenario and return it with warnings, one sentence each; see `planScenario`."""
+    warnings = planScenario(make, folder, words, command, progress)
+    return load_scenario(folder), warnings
+
+
+def planScenario(
+    make: Callable[[Progress], tuple[HeadDraft, list[str]]],
+    folder: Path,
+    words: Sequence[str],
+    command: Sequence[str],
+    progress: Progress = lambda _step, _share: None,
+) -> list[str]:
+    """Make a head, have the simulator plan on it, and return warnings, one sentence each.
+
+    Args:
+        make: makes the head with its warnings, such as `makeDraft`, in a thread of its own.
+        folder: to be made; must be new or empty.
+        words: further arguments of `rastrainer scenario tasks`, such as `--title TITLE`; with
+            `--check` nothing is made.
+        command: words that run `rastrainer` of the simulator's Python.
+        progress: told each step's name and the share of the work done, many times a second; it may
+            let the application draw, and may raise to cancel: then nothing is left behind.
+
+    Raises:
+        InputError: the volume, the folder or the simulator's program cannot be used.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+
+        def makeAndWrite(tell: Progress) -> list[str]:
+            draft, warnings = make(tell)
+            write_draft(Path(temporary), draft)
+            return warnings
+
+        warnings = inBackground(
+            makeAndWrite, lambda step, share: progress(step, HEAD_SHARE * share)
+        )
+        planner = [*command, "scenario", "tasks", temporary, "-o", str(folder), *words]
+        return [*warnings, *_run(planner, progress)]
+
+
+def _run(command: Sequence[str], progress: Progress) -> list[str]:
+    """Run the planner of tasks to its end and return its warnings; `progress` may raise to stop."""
+
+    def showShare(step: str, share: float) -> None:
+        progress(step, HEAD_SHARE + (1.0 - HEAD_SHARE) * share)
+
+    ended = runChild(command, showShare, "Placing fiducials")
+    if ended.exitStatus != 0:
+        reason = ended.lastLine.removeprefix("rastrainer: ") or "it wrote nothing"
+        raise InputError(f"The tasks could not be made: {reason}")
+    return list(ended.warnings)

@@ -13,10 +13,10 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
 from rastrainer.slicer.head.volume import (
     Volume,
-    lowest_slice,
-    matrix_of,
-    on_ras_grid,
-    to_world,
+    lowestSlice,
+    matrixOf,
+    onRasGrid,
+    toWorld,
 )
 
 SEGMENT_NAME = "Head"
@@ -27,7 +27,7 @@ _HALF = 0.5
 _AIR = 2
 
 
-def show_segment(node: Any, head: HeadBody) -> str:
+def showSegment(node: Any, head: HeadBody) -> str:
     """Put a head into a `vtkMRMLSegmentationNode` as a segment and return the segment's ID.
 
     The segment ends 3 mm below the head's base, whose height (S) is kept in its tag `BASE_TAG`.
@@ -47,7 +47,7 @@ def show_segment(node: Any, head: HeadBody) -> str:
     name = slicer.vtkSegmentationConverter.GetSegmentationBinaryLabelmapRepresentationName()
     segment = slicer.vtkSegment()
     segment.SetName(SEGMENT_NAME)
-    segment.SetTag(BASE_TAG, repr(float(head.base_mm)))
+    segment.SetTag(BASE_TAG, repr(float(head.baseMm)))
     segment.AddRepresentation(name, image)
     segmentation.AddSegment(segment)
     return segmentation.GetSegmentIdBySegmentName(SEGMENT_NAME)
@@ -59,14 +59,14 @@ class SegmentImage:
 
     Attributes:
         labels: 0 outside; its image ends where the segment does.
-        base_mm: height (S) of the base that was shown with it, −∞ where none was.
+        baseMm: height (S) of the base that was shown with it, −∞ where none was.
     """
 
     labels: Volume
-    base_mm: float
+    baseMm: float
 
 
-def read_segment(node: Any, segment_id: str) -> SegmentImage:
+def readSegment(node: Any, segmentId: str) -> SegmentImage:
     """Return a segment of a `vtkMRMLSegmentationNode`, copied.
 
     Raises:
@@ -75,7 +75,7 @@ def read_segment(node: Any, segment_id: str) -> SegmentImage:
     import slicer
 
     image = slicer.vtkOrientedImageData()
-    if not segment_id or not node.GetBinaryLabelmapRepresentation(segment_id, image):
+    if not segmentId or not node.GetBinaryLabelmapRepresentation(segmentId, image):
         raise InputError("The segment of the head is not there; choose another, or make it anew.")
     array = image.GetPointData().GetScalars()
     if array is None:
@@ -83,14 +83,14 @@ def read_segment(node: Any, segment_id: str) -> SegmentImage:
     matrix = vtk.vtkMatrix4x4()
     image.GetImageToWorldMatrix(matrix)
     first = np.array(image.GetExtent()[::2], dtype=float)
-    to_ras = to_world(node) @ matrix_of(matrix)
-    to_ras[:3, 3] += to_ras[:3, :3] @ first
+    toRas = toWorld(node) @ matrixOf(matrix)
+    toRas[:3, 3] += toRas[:3, :3] @ first
     labels = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    return SegmentImage(Volume(labels, to_ras), _base_of(node, segment_id))
+    return SegmentImage(Volume(labels, toRas), _baseOf(node, segmentId))
 
 
-def volume_of_segment(segment: SegmentImage) -> Volume:
-    """Return a segment as a volume of zeros and ones, for `find_head` with `for_segment`.
+def volumeOfSegment(segment: SegmentImage) -> Volume:
+    """Return a segment as a volume of zeros and ones, for `findHead` with `forSegment`.
 
     Its grid is of 1 mm along RAS, whatever grid the Segment Editor has given the segment. It
     begins so that the base is cut where it was (to half a voxel) when the segment was shown, or,
@@ -102,47 +102,47 @@ def volume_of_segment(segment: SegmentImage) -> Volume:
     inside = segment.labels.values > 0
     if not inside.any():
         raise InputError("The segment of the head is empty.")
-    bare = Volume(inside.astype(np.float32), segment.labels.ijk_to_ras)
-    return _from_base(on_ras_grid(_in_air(bare), SPACING_MM), segment.base_mm)
+    bare = Volume(inside.astype(np.float32), segment.labels.ijkToRas)
+    return _fromBase(onRasGrid(_inAir(bare), SPACING_MM), segment.baseMm)
 
 
-def for_segment(settings: HeadSettings) -> HeadSettings:
+def forSegment(settings: HeadSettings) -> HeadSettings:
     """Return the settings for a segment's volume."""
-    return replace(settings, threshold=_HALF, noise_mm=EDITED_NOISE_MM)
+    return replace(settings, threshold=_HALF, noiseMm=EDITED_NOISE_MM)
 
 
-def _in_air(bare: Volume) -> Volume:
+def _inAir(bare: Volume) -> Volume:
     """Return a segment with air around it, but below, where its neck goes on.
 
     The segment's image ends where the segment does.
     """
     widths = np.full((3, 2), _AIR)
-    axis, end = lowest_slice(bare)
+    axis, end = lowestSlice(bare)
     widths[axis, 0 if end == 0 else 1] = 0
-    matrix = bare.ijk_to_ras.copy()
+    matrix = bare.ijkToRas.copy()
     matrix[:3, 3] -= matrix[:3, :3] @ widths[:, 0]
     return Volume(np.pad(bare.values, widths), matrix)
 
 
-def _base_of(node: Any, segment_id: str) -> float:
+def _baseOf(node: Any, segmentId: str) -> float:
     """Return the height (S) of the base that was shown with a segment, −∞ where none was."""
     tag = vtk.reference("")
-    if not node.GetSegmentation().GetSegment(segment_id).GetTag(BASE_TAG, tag):
+    if not node.GetSegmentation().GetSegment(segmentId).GetTag(BASE_TAG, tag):
         return -np.inf
     bounds = [0.0] * 6
     node.GetSegmentation().GetBounds(bounds)
     middle = [np.mean(bounds[:2]), np.mean(bounds[2:4]), float(tag.get()), 1.0]
-    return float((to_world(node) @ middle)[2])
+    return float((toWorld(node) @ middle)[2])
 
 
-def _from_base(grid: Volume, base_mm: float) -> Volume:
+def _fromBase(grid: Volume, baseMm: float) -> Volume:
     """Return a segment's volume without what is more than a voxel below its base."""
-    lowest = grid.ijk_to_ras[2, 3]
+    lowest = grid.ijkToRas[2, 3]
     heights = lowest + SPACING_MM * np.arange(grid.values.shape[2])
-    is_wanted = (grid.values > _HALF).any(axis=(0, 1)) & (heights > base_mm - 1.5 * SPACING_MM)
-    if np.count_nonzero(is_wanted) < 2:
+    isWanted = (grid.values > _HALF).any(axis=(0, 1)) & (heights > baseMm - 1.5 * SPACING_MM)
+    if np.count_nonzero(isWanted) < 2:
         raise InputError("The segment of the head is empty above its base.")
-    start = int(is_wanted.argmax())
-    matrix = grid.ijk_to_ras.copy()
+    start = int(isWanted.argmax())
+    matrix = grid.ijkToRas.copy()
     matrix[2, 3] += start * SPACING_MM
     return Volume(grid.values[:, :, start:], matrix)

@@ -18,19 +18,19 @@ SNAP_MM = 0.5
 """Vertices so near to the base are moved onto it: the cut would leave slivers of triangles."""
 
 
-def surface_of(level: np.ndarray, origin_mm: np.ndarray, spacing_mm: float) -> vtk.vtkPolyData:
+def surfaceOf(level: np.ndarray, originMm: np.ndarray, spacingMm: float) -> vtk.vtkPolyData:
     """Return the largest closed surface around the positive part of a level set.
 
     Args:
         level: (i, j, k) float, positive inside, on a grid along the axes of RAS.
-        origin_mm: (3,) float, RAS position of voxel 0, 0, 0.
-        spacing_mm: of the grid.
+        originMm: (3,) float, RAS position of voxel 0, 0, 0.
+        spacingMm: of the grid.
     """
     padded = np.pad(level, 1, constant_values=-1.0)
     image = vtk.vtkImageData()
     image.SetDimensions(padded.shape)
-    image.SetSpacing([spacing_mm] * 3)
-    image.SetOrigin(np.asarray(origin_mm) - spacing_mm)
+    image.SetSpacing([spacingMm] * 3)
+    image.SetOrigin(np.asarray(originMm) - spacingMm)
     scalars = np.ascontiguousarray(padded.transpose(2, 1, 0), np.float32).ravel()
     image.GetPointData().SetScalars(numpy_to_vtk(scalars, deep=True))
     contour = vtk.vtkFlyingEdges3D()
@@ -55,36 +55,36 @@ def smoothed(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
     return _output(smoother)
 
 
-def decimated(surface: vtk.vtkPolyData, triangle_count: int, above_mm: float) -> vtk.vtkPolyData:
-    """Return the surface with at most about `triangle_count` triangles above a height."""
-    mesh = mesh_of(surface)
-    count_above = np.count_nonzero(mesh.vertices[mesh.triangles[:, 0], 2] > above_mm)
-    if count_above <= triangle_count:
+def decimated(surface: vtk.vtkPolyData, triangleCount: int, aboveMm: float) -> vtk.vtkPolyData:
+    """Return the surface with at most about `triangleCount` triangles above a height."""
+    mesh = meshOf(surface)
+    countAbove = np.count_nonzero(mesh.vertices[mesh.triangles[:, 0], 2] > aboveMm)
+    if countAbove <= triangleCount:
         return surface
     decimation = vtk.vtkQuadricDecimation()
     decimation.SetInputData(surface)
-    decimation.SetTargetReduction(1.0 - triangle_count / count_above)
-    return _without_fins(_output(decimation))
+    decimation.SetTargetReduction(1.0 - triangleCount / countAbove)
+    return _withoutFins(_output(decimation))
 
 
-def _without_fins(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
+def _withoutFins(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
     """Remove triangles that hang on an edge which two others share: decimation may leave some."""
-    open_sides = (mesh_of(surface).side_uses == 1).sum(axis=1)
+    openSides = (meshOf(surface).side_uses == 1).sum(axis=1)
     surface.BuildCells()
-    for fin in np.flatnonzero(open_sides == 2):
+    for fin in np.flatnonzero(openSides == 2):
         surface.DeleteCell(fin)
     surface.RemoveDeletedCells()
     return surface
 
 
-def cut_flat(surface: vtk.vtkPolyData, height_mm: float) -> vtk.vtkPolyData:
-    """Return what lies above the horizontal plane S = `height_mm`, closed by a flat base."""
+def cutFlat(surface: vtk.vtkPolyData, heightMm: float) -> vtk.vtkPolyData:
+    """Return what lies above the horizontal plane S = `heightMm`, closed by a flat base."""
     snapped = vtk.vtkPolyData()
     snapped.DeepCopy(surface)
     heights = vtk_to_numpy(snapped.GetPoints().GetData())[:, 2]
-    heights[np.abs(heights - height_mm) < SNAP_MM] = height_mm
+    heights[np.abs(heights - heightMm) < SNAP_MM] = heightMm
     plane = vtk.vtkPlane()
-    plane.SetOrigin(0.0, 0.0, height_mm)
+    plane.SetOrigin(0.0, 0.0, heightMm)
     plane.SetNormal(0.0, 0.0, 1.0)
     planes = vtk.vtkPlaneCollection()
     planes.AddItem(plane)
@@ -100,7 +100,7 @@ def cut_flat(surface: vtk.vtkPolyData, height_mm: float) -> vtk.vtkPolyData:
     return _output(merged)
 
 
-def mesh_of(surface: vtk.vtkPolyData) -> HeadMesh:
+def meshOf(surface: vtk.vtkPolyData) -> HeadMesh:
     """Return the surface's vertices and triangles."""
     return HeadMesh(
         vtk_to_numpy(surface.GetPoints().GetData()).astype(np.float32),

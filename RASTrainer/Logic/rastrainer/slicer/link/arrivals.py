@@ -9,7 +9,6 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DeviceName, decode_json_object
-from rastrainer.slicer.link.error_guard import ErrorGuard
 from rastrainer.slicer.scene.control_points import labelOf
 from rastrainer.slicer.scene.link_nodes import (
     capturedPointsNode,
@@ -17,7 +16,7 @@ from rastrainer.slicer.scene.link_nodes import (
     shownText,
     simStateNode,
 )
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import ErrorGuard, Signal
 
 MOST_KEPT = 256
 """Commands that wait; whoever sends more than can be handled is to send them again, as the

@@ -22,12 +22,11 @@ from rastrainer.protocol import (
 )
 from rastrainer.slicer.link.arrivals import Arrivals
 from rastrainer.slicer.link.connection import ConnectorKit, SlicerConnection
-from rastrainer.slicer.link.error_guard import ErrorGuard
 from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
 from rastrainer.slicer.link.pending_commands import OnReply, PendingCommands, Request
 from rastrainer.slicer.link.simulator_search import ConnectionCheck, checkedAddress, checkPort
 from rastrainer.slicer.scene.link_nodes import prepareNodes
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import ErrorGuard, Signal
 
 CallSoon = Callable[[Callable[[], None]], None]
 """Has something called in the host's next turn."""

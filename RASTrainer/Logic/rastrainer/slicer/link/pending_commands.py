@@ -11,8 +11,8 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import decode_json_object
-from rastrainer.slicer.link.error_guard import ErrorGuard
 from rastrainer.slicer.scene.link_nodes import decodedText, shownText
+from rastrainer.slicer.signal import ErrorGuard
 from rastrainer.slicer.translation import _
 
 OnReply = Callable[[Reply], None]

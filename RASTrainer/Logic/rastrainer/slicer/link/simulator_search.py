@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.link.error_guard import ErrorGuard
 from rastrainer.slicer.link.heartbeat import LinkStatus, judgeFinding, lookingAt
 from rastrainer.slicer.link.peer import Peer, ProbeResult
 from rastrainer.slicer.link.probe import Probe
+from rastrainer.slicer.signal import ErrorGuard
 from rastrainer.slicer.translation import _
 
 RETRY_S = 1.0

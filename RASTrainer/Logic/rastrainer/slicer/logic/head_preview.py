@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.errors import InputError
 from rastrainer.progress import Progress
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.head.own_process import in_own_process
+from rastrainer.slicer.head.own_process import inOwnProcess
 from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, trianglesPolyData
 from rastrainer.slicer.scene.scene import Role, findNode, findOrAddNode
 from rastrainer.slicer.translation import _
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
     from rastrainer.slicer.head.segment import SegmentImage
 
-FIND_SKIN = "rastrainer.slicer.head.head_draft:find_skin"
+FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
 PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
 SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 
@@ -38,12 +38,12 @@ def findSkin(
     Raises:
         InputError: the volume cannot be used, or there is no head in it.
     """
-    from rastrainer.slicer.head.volume import image_of_node
+    from rastrainer.slicer.head.volume import imageOfNode
 
-    image, scene = image_of_node(volumeNode), volumeNode.GetScene()
+    image, scene = imageOfNode(volumeNode), volumeNode.GetScene()
 
     def find(report: Progress) -> tuple[HeadBody, HeadMesh, list[str]]:
-        found, skin, warnings = in_own_process(python, FIND_SKIN, report, image, settings)
+        found, skin, warnings = inOwnProcess(python, FIND_SKIN, report, image, settings)
         # Whoever shows the segment finds them made.
         _ = found.labels
         return found, skin, warnings
@@ -75,11 +75,11 @@ class HeadPreview:
         Raises:
             InputError: the volume cannot be used, or there is no head in it.
         """
-        from rastrainer.slicer.head.segment import show_segment
+        from rastrainer.slicer.head.segment import showSegment
 
         found, skin, warnings = findSkin(self._python, volumeNode, settings, progress)
         node = self._node("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT, "Head to be edited")
-        show_segment(node, found)
+        showSegment(node, found)
         node.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)
         node.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
         node.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
@@ -103,7 +103,7 @@ class HeadPreview:
         Raises:
             InputError: the head was found with other settings, or its segment cannot be used.
         """
-        from rastrainer.slicer.head.segment import SEGMENT_NAME, read_segment
+        from rastrainer.slicer.head.segment import SEGMENT_NAME, readSegment
 
         node = findNode(self._scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
         if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volumeNode.GetID():
@@ -116,7 +116,7 @@ class HeadPreview:
                 )
             )
         segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)
-        return read_segment(node, segment)
+        return readSegment(node, segment)
 
     def _setVisible(self, visible: bool) -> None:
         for className, role in _DRAFT:

@@ -15,8 +15,7 @@ from rastrainer.slicer.logic.plan_logic import PlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.logic.replay_logic import ReplayLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_files import ScenarioFiles
-from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
+from rastrainer.slicer.logic.scenario_logic import ScenarioFiles, ScenarioLogic
 from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.logic.slice_follower import SliceFollower

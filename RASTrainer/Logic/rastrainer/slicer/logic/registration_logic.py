@@ -14,12 +14,22 @@ from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import RIGID, Registration, register_all_kinds
 from rastrainer.registration.target_error import TargetError, target_error
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.registration_remedies import Remedy, remedies
 from rastrainer.slicer.scene.control_points import localPoints, worldPoints
-from rastrainer.slicer.scene.error_colors import colorHead, uncolorHead
-from rastrainer.slicer.scene.registration_input import Choices, Pairs, readPairs, snapshot
+from rastrainer.slicer.scene.error_colors import (
+    clearResidualArrows,
+    colorHead,
+    showResidualArrows,
+    uncolorHead,
+)
+from rastrainer.slicer.scene.registration_input import (
+    Choices,
+    Pairs,
+    Remedy,
+    readPairs,
+    remedies,
+    snapshot,
+)
 from rastrainer.slicer.scene.registration_nodes import showRegistration
-from rastrainer.slicer.scene.residual_glyphs import clearResidualArrows, showResidualArrows
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.slicer.scene.skin_normals import SkinNormals

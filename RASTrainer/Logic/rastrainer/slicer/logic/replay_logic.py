@@ -27,7 +27,7 @@ from rastrainer.slicer.scene.trial_replay import (
     stopReplay,
 )
 from rastrainer.slicer.scene.trial_scene import setTouchesVisible, showTouches
-from rastrainer.slicer.scene.urdf import read_arm_chain
+from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import StoredTrial, Study
@@ -180,7 +180,7 @@ class ReplayLogic:
         track, chain, scenario = inBackground(
             lambda _tell: (
                 None if isThere else find_track(self._records, record.trial_id, giveWay),
-                read_arm_chain(self._robot / URDF),
+                readArmChain(self._robot / URDF),
                 self._findScenario(record.scenario),
             ),
             progress,

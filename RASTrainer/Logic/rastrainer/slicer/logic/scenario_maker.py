@@ -15,19 +15,18 @@ from rastrainer.files.point_list import PointList
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario.setup import SetUp, write_setup
-from rastrainer.slicer.head.own_process import in_own_process
+from rastrainer.slicer.head.own_process import inOwnProcess
 from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_files import planWords
+from rastrainer.slicer.logic.scenario_logic import planWords
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
-from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
-from rastrainer.slicer.scene.hand_placed import handPlacedLists
+from rastrainer.slicer.scene.control_points import handPlacedLists, labelsOf, worldPoints
 from rastrainer.slicer.translation import _
 
 if TYPE_CHECKING:
     from rastrainer.slicer.head.head_body import HeadSettings
 
-MAKE_DRAFT = "rastrainer.slicer.head.head_draft:make_draft"
+MAKE_DRAFT = "rastrainer.slicer.head.head_draft:makeDraft"
 SOURCE = "The volume {name} in 3D Slicer."
 
 
@@ -68,7 +67,7 @@ class _Planned:
 
     Attributes:
         title: of the scenario.
-        head: makes the head; see `make_draft`.
+        head: makes the head; see `makeDraft`.
         words: arguments of `rastrainer scenario tasks`.
         warnings: what of the options is left out.
         folder: of their files.
@@ -141,12 +140,12 @@ class ScenarioMaker:
         Raises:
             InputError: something cannot be used; the sentence says what.
         """
-        from rastrainer.slicer.head.scenario_build import build_scenario
+        from rastrainer.slicer.head.own_process import buildScenario
 
         with self._planned(volumeNode, options) as planned:
             folder = self._library / self._cache.newName(planned.title)
             command = self._simulator.command([], ownProgram)
-            scenario, warnings = build_scenario(
+            scenario, warnings = buildScenario(
                 planned.head, folder, planned.words, command, progress
             )
         self._preview.hide(volumeNode)
@@ -164,24 +163,22 @@ class ScenarioMaker:
 
         Arguments, warnings and errors are those of `make`.
         """
-        from rastrainer.slicer.head.scenario_build import plan_scenario
+        from rastrainer.slicer.head.own_process import planScenario
 
         with self._planned(
             volumeNode, replace(options, hasSkull=False, hasVolume=False)
         ) as planned:
             command = self._simulator.command([], ownProgram)
             words = [*planned.words, "--check"]
-            warnings = plan_scenario(
-                planned.head, planned.folder / "none", words, command, progress
-            )
+            warnings = planScenario(planned.head, planned.folder / "none", words, command, progress)
         return [*planned.warnings, *warnings]
 
     @contextmanager
     def _planned(self, volumeNode: Any, options: NewScenarioOptions) -> Iterator[_Planned]:
         """Yield what the simulator is asked for; its files are there as long as the context."""
-        from rastrainer.slicer.head.volume import image_of_node
+        from rastrainer.slicer.head.volume import imageOfNode
 
-        image, settings = image_of_node(_chosen(volumeNode)), _settings(options)
+        image, settings = imageOfNode(_chosen(volumeNode)), _settings(options)
         segment = self._preview.segment(volumeNode, settings)
         title = options.title.strip() or volumeNode.GetName()
         source = options.source.strip() or SOURCE.format(name=volumeNode.GetName())
@@ -195,7 +192,7 @@ class ScenarioMaker:
             folder = Path(temporary)
             yield _Planned(
                 title,
-                lambda report: in_own_process(
+                lambda report: inOwnProcess(
                     self._python,
                     MAKE_DRAFT,
                     report,
@@ -203,7 +200,7 @@ class ScenarioMaker:
                     settings,
                     options.hasSkull,
                     segment=segment,
-                    has_volume=options.hasVolume,
+                    hasVolume=options.hasVolume,
                 ),
                 [*words, *self._words(options, folder), *_tasks(lists, folder)],
                 leftOut,
@@ -227,7 +224,7 @@ def _chosen(volumeNode: Any) -> Any:
 def _settings(options: NewScenarioOptions) -> HeadSettings:
     from rastrainer.slicer.head.head_body import HeadSettings
 
-    return HeadSettings(threshold=options.threshold, base_mm=options.cutMm)
+    return HeadSettings(threshold=options.threshold, baseMm=options.cutMm)
 
 
 def _tasks(lists: list[Any], folder: Path) -> list[str]:

@@ -9,8 +9,8 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.program.pip_install import SetupSource
 from rastrainer.slicer.program.running_simulator import RunningSimulator
+from rastrainer.slicer.program.simulator_package import SetupSource
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.translation import _

@@ -22,8 +22,12 @@ from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_text
 from rastrainer.processes.private_folder import private_words
 from rastrainer.slicer.program.child_process import ChildProcess, childEnvironment
-from rastrainer.slicer.program.pip_install import SetupProgress, SetupSource, pipEnvironment
-from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.slicer.program.simulator_package import (
+    SetupProgress,
+    SetupSource,
+    SimulatorPackage,
+    pipEnvironment,
+)
 from rastrainer.slicer.program.trim_packages import SIZES
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _

@@ -1,4 +1,4 @@
-"""Reads and writes the control points of markups nodes as arrays."""
+"""Control points of markups as arrays, and the lists that a user placed as tasks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 import slicer
 
+from rastrainer.errors import InputError
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.scenario.tasks import touch_order
 from rastrainer.slicer.scene.link_nodes import shownText
+from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, nodesOfClass
+from rastrainer.slicer.translation import _
 
 
 def labelsOf(node: Any) -> tuple[str, ...]:
@@ -45,3 +50,48 @@ def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
     for index, label in enumerate(labels):
         node.SetNthControlPointLabel(index, label)
     node.EndModify(wasModifying)
+
+
+MOST_LISTS = 6
+
+
+def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
+    """Return the lists that are taken, in the scene's order, and why others are left out.
+
+    Args:
+        scene: the scene.
+        targets: the list of the planned targets, which are no fiducials; None where there is none.
+
+    Raises:
+        InputError: there is no list of fifteen fiducials, or the labels of one are no order.
+    """
+    taken: list[Any] = []
+    leftOut = []
+    for node in nodesOfClass(scene, "vtkMRMLMarkupsFiducialNode"):
+        if node is targets or node.GetAttribute(ROLE_ATTRIBUTE) is not None:
+            continue
+        count = node.GetNumberOfDefinedControlPoints()
+        if count != FIDUCIAL_COUNT or count != node.GetNumberOfControlPoints():
+            told = _("The point list {name} is left out: it has {count} placed points, not {all}.")
+            leftOut.append(told.format(name=node.GetName(), count=count, all=FIDUCIAL_COUNT))
+        elif len(taken) == MOST_LISTS:
+            told = _("The point list {name} is left out: a scenario has at most {most} tasks.")
+            leftOut.append(told.format(name=node.GetName(), most=MOST_LISTS))
+        else:
+            taken.append(_checked(node))
+    if not taken:
+        told = _("There is no point list of {count} fiducials in the scene.")
+        raise InputError(" ".join([told.format(count=FIDUCIAL_COUNT), *leftOut]))
+    return taken, leftOut
+
+
+def _checked(node: Any) -> Any:
+    try:
+        touch_order(labelsOf(node))
+    except InputError as error:
+        raise InputError(
+            _("The point list {name} cannot be used: {reason}").format(
+                name=node.GetName(), reason=error
+            )
+        ) from None
+    return node

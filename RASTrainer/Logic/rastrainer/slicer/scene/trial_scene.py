@@ -8,9 +8,9 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints
+from rastrainer.slicer.scene.error_colors import showResidualArrows
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import showRegistration
-from rastrainer.slicer.scene.residual_glyphs import showResidualArrows
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE, showScenario, showTask, taskKey
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.translation import _

@@ -92,7 +92,7 @@ class ArmChain:
         """How many joints move."""
         return int(self.axes.any(axis=1).sum())
 
-    def tool_to_world(self, q: np.ndarray) -> np.ndarray:
+    def toolToWorld(self, q: np.ndarray) -> np.ndarray:
         """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad.
 
         Rotations follow Rodrigues' formula R = I + sin a K + (1 − cos a) K².
@@ -116,7 +116,7 @@ class ArmChain:
         return poses
 
 
-def read_arm_chain(urdf: Path) -> ArmChain:
+def readArmChain(urdf: Path) -> ArmChain:
     """Read the chain of a robot without branches.
 
     Raises:
