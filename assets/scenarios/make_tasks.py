@@ -137,7 +137,7 @@ def entry(proposal: Proposal, bench: Workbench) -> dict[str, Any]:
 def table_of(proposals: list[Proposal], center: np.ndarray) -> str:
     """Return the numbers of the tasks as a table in Markdown."""
     rows = [
-        "| task | path, mm | turning, ° | hidden points | re-orientation, ° | complexity index | "
+        "| task | path, mm | turning, ° | hidden fiducials | reorientation, ° | complexity index | "
         "expected TRE / FLE |",
         "|---|---|---|---|---|---|---|",
     ]
