@@ -52,6 +52,7 @@ LAYERS = {
         rastrainer_simulator.core
         rastrainer_simulator.record, rastrainer_simulator.scene
         rastrainer_simulator.loop, rastrainer_simulator.rendering
+        rastrainer_simulator.viewpoint
         rastrainer_simulator.authoring, rastrainer_simulator.virtual
         rastrainer_simulator.net
         rastrainer_simulator.net.igtl, rastrainer_simulator.net.views

@@ -278,21 +278,29 @@ class StreamTrainee:
         if self.menu is not None and self.menu.name == "trial":
             # The simulator pauses where a busy machine keeps the window from drawing.
             self.choose("resume")
-        axes = self._stick_axes()
         slow, least = (FINE_M, LEAST_FINE_PUSH) if fine else (COARSE_M, LEAST_PUSH)
         give_up = self.view.state["time"] + LONGEST_WAY_S
         while np.linalg.norm(away := place - self.tip) > near:
             if self.view.state["time"] > give_up:
                 break
             far = float(np.linalg.norm(away))
-            wanted = axes @ away / far * max(least, min(1.0, far / slow))
+            wanted = self._stick_axes() @ away / far * max(least, min(1.0, far / slow))
             self.hands.push(*wanted.tolist(), fine)
             self.view.next_state()
 
+    def use_camera(self, name: str) -> None:
+        """Change to a camera; from a view that was turned the first press leads to the front."""
+        while (shown := self.view.state)["camera"] != name:
+            before = shown["camera"], shown["view"]
+            self.press("camera", lambda b=before: self._looked_from != b, f"the {name} camera")
+
+    @property
+    def _looked_from(self) -> tuple:
+        return self.view.state["camera"], self.view.state["view"]
+
     def _stick_axes(self) -> np.ndarray:
-        """Return (3, 3) float: right, forward and up as the camera sees them, as rows."""
-        value = self.view.scene["cameras"][self.view.state["camera"]]
-        camera = Viewpoint.from_json(value)
+        """Return (3, 3) float: right, forward and up as the picture shows them, as rows."""
+        camera = Viewpoint.from_json(self.view.state["view"])
         line = tuple((camera.focal_point - camera.position).tolist())
         axes = camera_axes(line, tuple(camera.view_up.tolist()))
         return np.array([axes.right, axes.forward, axes.up])

@@ -146,7 +146,7 @@ def to_experiment(trainee: StreamTrainee, photographer: Photographer) -> None:
 def practice(trainee: StreamTrainee, photographer: Photographer) -> None:
     """Begin the trial run, look around, and end it."""
     trainee.begin_task("trial-run")
-    trainee.press("camera", lambda: trainee.view.state["camera"] == "far", "the far camera")
+    trainee.use_camera("far")
     photographer.keep("far-view")
     trainee.press("menu", lambda: trainee.menu is not None, "the menu")
     trainee.choose("finish")
@@ -155,9 +155,7 @@ def practice(trainee: StreamTrainee, photographer: Photographer) -> None:
 
 def play(trainee: StreamTrainee, photographer: Photographer, numbers: range) -> None:
     """Touch fiducials in their order; before the first one touch nothing, to be told so."""
-    if trainee.view.state["camera"] != "close-up":
-        is_close = lambda: trainee.view.state["camera"] == "close-up"  # noqa: E731
-        trainee.press("camera", is_close, "the close camera")
+    trainee.use_camera("close-up")
     if numbers.start == 1:
         trainee.press("touch", lambda: "error" in kinds(trainee.view.events), "an error")
     for number in numbers:

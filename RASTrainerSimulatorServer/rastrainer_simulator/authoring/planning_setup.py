@@ -18,6 +18,7 @@ from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.viewpoint.touch_views import TouchViews
 
 
 def touchable(
@@ -88,6 +89,11 @@ class PlanningSetup:
         """(3,) float, RAS mm: where the default view looks from at the head in its nominal pose."""
         to_head = transforms.inverse(self.scenario.head_to_world)
         return transforms.apply(to_head, self.scenario.cameras["close-up"].position)
+
+    @cached_property
+    def views(self) -> TouchViews:
+        """Finds from where touches are seen best."""
+        return TouchViews(self.setup, self.mesh)
 
     def poses(self, seeds: range, wider: float = 1.0) -> list[np.ndarray]:
         """Return the nominal HeadToWorld (4, 4), mm, and one for each seed."""

@@ -16,6 +16,7 @@ from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_proposal import target_spread
 from rastrainer_simulator.scene.skin import Skin
 from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.viewpoint.best_view import WIDEST_DEG
 
 ON_SKIN_MM = 1.0
 APART_MM = 20.0
@@ -44,7 +45,7 @@ def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int 
     wrong = []
     for task in tasks:
         wrong += _wrong_places(planning, task) or [
-            *_untouchable(planning, task, first_seed),
+            *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
             *_unreadable(skin, task),
             *_wrong_measures(task, measured(planning, task)),
         ]
@@ -103,6 +104,16 @@ def _untouchable(planning: PlanningSetup, task: Task, first_seed: int) -> list[s
                 "clearance; move them, or the head."
             )
     return sentences
+
+
+def _unseen(planning: PlanningSetup, task: Task) -> list[str]:
+    """Return which fiducials no view shows together with their number and the tip."""
+    views = planning.views.of(task, planning.scenario.head_to_world)
+    missed = [label for label, view in views if view is None]
+    return missed and [
+        f"{task.title}: {_listed(missed)} cannot be seen within {WIDEST_DEG:.0f}° of the skin's "
+        "normal while the robot touches; move them, or the head."
+    ]
 
 
 def _unreadable(skin: Skin, task: Task) -> list[str]:

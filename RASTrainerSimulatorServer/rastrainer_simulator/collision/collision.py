@@ -13,6 +13,7 @@ from rastrainer_simulator.collision.capsules import segment_distance
 from rastrainer_simulator.collision.clearance import SHAFT_NEAR, Clearance, DistanceBounds, Nearest
 from rastrainer_simulator.collision.head_clearance import HeadClearance
 from rastrainer_simulator.collision.head_surface import HeadSurface
+from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, RobotShape
 from rastrainer_simulator.vectors import Vector
 
@@ -206,6 +207,10 @@ class Collision:
         self._ends = posed.ends
         self._travelled += math.sqrt(np.einsum("ijk,ijk->ij", moved, moved).max())
         return self._travelled
+
+    def line_of_sight(self, link_to_world: Mapping[str, np.ndarray]) -> LineOfSight:
+        """Return what tells which places are seen while the arm has such a posture."""
+        return LineOfSight(self._head, self._arm, self._arm.pose(link_to_world), self.table_height)
 
     def nearest_to_point(self, point: Vector) -> Nearest:
         """Return the place of the head nearest to a point, World, m."""

@@ -64,6 +64,11 @@ class HeadClearance:
         """Return the place of the head nearest to a point, World, m."""
         return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
 
+    def is_crossed(self, start: Vector, end: Vector) -> bool:
+        """Return whether the head's surface is between two points, World, m."""
+        rows = self._world_to_head_rows
+        return self._head.is_crossed(_moved(rows, start), _moved(rows, end))
+
     def nearest_to_shaft(self, posed: PosedArm, limit: float) -> Nearest | None:
         """Return the place of the head nearest to the tool behind its tip, World, m.
 

@@ -14,6 +14,7 @@ from rastrainer_simulator.collision.closed_surface import ClosedSurface
 from rastrainer_simulator.vectors import Vector
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
+_ANY = fcl.CollisionRequest()
 # Nearer than this, the line to the nearest point has no direction of its own.
 _TOUCHING = 1e-9
 _BASE_THICKNESS = 0.001
@@ -68,6 +69,11 @@ class HeadSurface:
             point, normal = self._surface.crossing(triangle, start, end)
             return Nearest(-radius, point, normal, triangle)
         return self._signed(_foot(start, end, on_head), distance, on_head, triangle, radius)
+
+    def is_crossed(self, start: Vector, end: Vector) -> bool:
+        """Return whether the segment between two points goes through the surface."""
+        segment = thin_segment(np.array(start), np.array(end))
+        return fcl.collide(self._head, segment, _ANY, fcl.CollisionResult()) > 0
 
     def _query(self, other: fcl.CollisionObject) -> tuple[float, np.ndarray, int]:
         result = fcl.DistanceResult()

@@ -34,6 +34,7 @@ from rastrainer_simulator.desktop.screenshot import (
     write_picture,
 )
 from rastrainer_simulator.desktop.sounds import Sounds
+from rastrainer_simulator.desktop.view_mouse import ViewMouse
 from rastrainer_simulator.net.views.messages import FRAMES, ITEM
 
 POLL_S = 0.004
@@ -98,6 +99,7 @@ class DesktopWindow:
             options.url, options.key, self._inbox, self._window.refresh_hz
         )
         self._keys = OperatorKeys(self._connection)
+        self._view_mouse = ViewMouse(self._connection)
         self._frames = FrameCount(self._report_frames, time.monotonic())
         self._own_held: set[int] = set()
         self._screenshots: set[asyncio.Task[None]] = set()
@@ -125,6 +127,7 @@ class DesktopWindow:
         for event in without_late_repeats(pygame.event.get(), self._keys.is_held):
             self._take(event)
         self._keys.keep_alive()
+        self._view_mouse.tell(not self._has_menu)
         while self._inbox.sounds:
             sound = self._inbox.sounds.popleft()
             self._sounds.play(sound.name, sound.volume)
@@ -153,11 +156,17 @@ class DesktopWindow:
             self._picture.pointer.move(event.pos, time.monotonic())
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button == LEFT_BUTTON:
             self._click(event.pos)
-        elif event.type == pygame.MOUSEWHEEL and event.y:
+        elif event.type == pygame.MOUSEWHEEL and event.y and self._has_menu:
             self._keys.tap("ArrowUp" if event.y > 0 else "ArrowDown")
         elif event.type in (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED):
             self._picture.redraw()
+        self._view_mouse.take(event, self._window.size[1])
         self._keys.take(event)
+
+    @property
+    def _has_menu(self) -> bool:
+        screen = self._inbox.screen
+        return screen is not None and screen.menu is not None
 
     def _take_own_key(self, event: pygame.event.Event) -> None:
         """Do what a key of the window does, once for as long as it is held."""

@@ -26,7 +26,7 @@ class Viewpoint:
 
     @classmethod
     def from_json(cls, value: Mapping) -> Viewpoint:
-        """Return a camera of the stream's `scene`."""
+        """Return a camera of the stream."""
         return cls(
             np.array(value["position"], dtype=float),
             np.array(value["focalPoint"], dtype=float),
@@ -66,6 +66,10 @@ class CameraTransition:
     def start(self, to: Viewpoint, now: float) -> None:
         """Move to a viewpoint from wherever the camera is at `now` (s)."""
         self._from, self._to, self._since = self.at(now), to, now
+
+    def follow(self, to: Viewpoint) -> None:
+        """Have a viewpoint that moves itself as the end of the way, or be there already."""
+        self._to = to
 
     def is_moving(self, now: float) -> bool:
         """Return whether the camera is still moving."""

@@ -13,6 +13,7 @@ import pygame
 
 from rastrainer.protocol import Phase
 from rastrainer.units import MM_PER_M
+from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.overlay import Content, Overlay
@@ -141,11 +142,14 @@ class Picture:
     def _choose_camera(self, state: Mapping[str, Any], now: float) -> None:
         """Look as the simulator says; beside a menu, and from afar while no trial is open."""
         screen = self._inbox.screen
+        view = Viewpoint.from_json(state["view"])
+        beside = None if state["inset"] is None else Viewpoint.from_json(state["inset"])
         if screen is None or screen.menu is None:
-            self.viewports.choose(state["camera"], now)
-            return
-        is_idle = state["phase"] == Phase.IDLE and FAR in self.viewports.cameras
-        self.viewports.choose(FAR if is_idle else state["camera"], now, BESIDE_MENU)
+            self.viewports.choose(state["camera"], now, view=view, beside=beside)
+        elif state["phase"] == Phase.IDLE and FAR in self.viewports.cameras:
+            self.viewports.choose(FAR, now, BESIDE_MENU)
+        else:
+            self.viewports.choose(state["camera"], now, BESIDE_MENU, view, beside)
 
     def _mark(self, now: float) -> None:
         """Color what the state says; the next fiducial grows brighter and darker again."""
@@ -196,5 +200,5 @@ class Picture:
 
 def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
     """Return whether two states look different."""
-    names = ("poses", "proximity", "next", "touched", "camera")
+    names = ("poses", "proximity", "next", "touched", "camera", "view", "inset")
     return other is None or any(state[name] != other[name] for name in names)

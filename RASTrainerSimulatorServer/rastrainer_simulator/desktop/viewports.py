@@ -43,6 +43,7 @@ class Viewports:
         self._cameras: dict[str, Viewpoint] = {}
         self._chosen = ("", 0.0)
         self._transition: CameraTransition | None = None
+        self._beside: Viewpoint | None = None
         self.quality = quality
         self.wants_inset = True
         self._light()
@@ -63,18 +64,29 @@ class Viewports:
         if self._scene is not None:
             self._scene.finish(quality.is_physical)
 
-    def choose(self, camera: str, now: float, aside: float = 0.0) -> None:
+    def choose(
+        self,
+        camera: str,
+        now: float,
+        aside: float = 0.0,
+        view: Viewpoint | None = None,
+        beside: Viewpoint | None = None,
+    ) -> None:
         """Have the main view go to a camera, and the inset show another.
 
-        `aside` pushes the main picture to the right, in halves of its width.
+        `aside` pushes the main picture to the right, in halves of its width. `view` is where the
+        camera stands while it is turned, `beside` what the inset shows in place of another camera.
         """
         if camera not in self._cameras:
             return
-        viewpoint = replace(self._cameras[camera], aside=aside)
+        self._beside = beside
+        viewpoint = replace(view or self._cameras[camera], aside=aside)
         if self._transition is None:
             self._transition = CameraTransition(viewpoint)
         elif (camera, aside) != self._chosen:
             self._transition.start(viewpoint, now)
+        else:
+            self._transition.follow(viewpoint)
         self._chosen = (camera, aside)
 
     def is_moving(self, now: float) -> bool:
@@ -116,7 +128,7 @@ class Viewports:
             1.0 - box.top / height,
         )
         other = next((name for name in self._cameras if name != self._chosen[0]), self._chosen[0])
-        self._cameras[other].look(self._inset)
+        (self._beside or self._cameras[other]).look(self._inset)
 
     def _light(self) -> None:
         for renderer in (self.main, self._inset):

@@ -159,7 +159,9 @@ class Flow:
         if training.phase is not Phase.PAUSED:
             self._unseen = ""
         if training.trial_id and training.trial_id != previous_id:
-            self._trial_screen.begin(*points_in_world(self._control_loop.truth))
+            truth = self._control_loop.truth
+            self._trial_screen.begin(*points_in_world(truth))
+            session.view.begin(session.setup, truth, session.state)
             session.trainee = training.trainee
             session.mode = training.mode
         if training.phase is Phase.COMPLETE and training.task == TRIAL_RUN:

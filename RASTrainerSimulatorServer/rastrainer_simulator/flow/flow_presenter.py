@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
+from rastrainer_simulator.flow.operated_view import OperatedView
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.session import FlowServices, TrainingSession
 from rastrainer_simulator.input.bindings import Bindings
@@ -27,7 +28,8 @@ from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
-from rastrainer_simulator.state import StepResult
+from rastrainer_simulator.state import SimulationState, StepResult
+from rastrainer_simulator.viewpoint.view_control import Pictures
 
 REFRESH_S = 0.1
 """How often a screen is made anew though nothing was pressed: its clock, distances and axes."""
@@ -64,6 +66,7 @@ class FlowPresenter:
             control_loop, self.controls, services, preferences, self.happened
         )
         self._flow = Flow(self._session, control_loop)
+        self._view = OperatedView(self._session, self.controls, control_loop, self.shown)
         self.rumble: Callable[[float, float], None] = _nothing_vibrates
         self._results: deque[StepResult] = deque()
         self._subscribers: Subscribers[ViewUpdate] = Subscribers()
@@ -82,6 +85,7 @@ class FlowPresenter:
         """Let go of the sticks and of the control loop."""
         self._unsubscribe()
         self._flow.close()
+        self._session.view.close()
         self.shown.close()
         self._control_loop.hold_sticks(HANDS_OFF)
 
@@ -92,10 +96,15 @@ class FlowPresenter:
             self._is_changed = True
         self.controls.advance(dt)
         self._flow.advance(dt, self._control_loop.latest)
+        self._view.advance(dt)
         self._settle()
         self._since_refresh += dt
         if self._is_changed or self._since_refresh >= REFRESH_S:
             self._refresh()
+
+    def pictures(self, now: SimulationState) -> Pictures:
+        """Return where the pictures of a state are looked from."""
+        return self._view.pictures(now)
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control."""
@@ -111,6 +120,7 @@ class FlowPresenter:
         self._lose_sight(view, "unseen.left")
         self._choose_mode(self._views.pop(view, None))
         self._silent.discard(view)
+        self._view.look(view, None)
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -134,11 +144,18 @@ class FlowPresenter:
         translation: tuple[float, float, float],
         rotation: tuple[float, float],
         is_fine: bool,
+        yaw_deg: float,
     ) -> None:
-        """Take the sticks of XR controllers."""
+        """Take the sticks of XR controllers, and where the eyes above them look."""
         sticks = OperatorInput(translation, rotation, is_fine)
+        self._view.look(view, yaw_deg)
         self.controls.set_sticks(self._source(SourceKind.XR, view), sticks)
         self._settle()
+
+    def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
+        """Turn the view for the operator; nobody else may."""
+        source = self._source(SourceKind.MOUSE, view)
+        self._view.turn(source, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
         """Take one press of a control; a name that is none does nothing."""
@@ -290,7 +307,7 @@ class FlowPresenter:
         """Pass on what follows at once: what is shown, the situation, the sticks, the control."""
         self.shown.show(self._flow.playback)
         self.controls.enter(self._flow.situation)
-        sticks = self.controls.sticks
+        sticks = self._view.turned(self.controls.sticks)
         if sticks != self._sent_sticks:
             self._sent_sticks = sticks
             self._control_loop.hold_sticks(sticks)

@@ -18,11 +18,13 @@ from rastrainer_simulator.flow.path_arc import (
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.viewpoint.orbit import FRONT
 
 TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
@@ -99,8 +101,9 @@ class TrialScreen:
         session = self._session
         phase = session.training.phase
         if control is ControlName.CAMERA:
-            camera = "far" if session.state.camera == "close-up" else "close-up"
-            session.do(CommandName.SET_CAMERA, {"camera": camera})
+            self._change_camera()
+        elif control is ControlName.BEST_VIEW:
+            session.view.want_best()
         elif control is ControlName.UNDO:
             session.do(CommandName.UNDO)
         elif control is ControlName.TOUCH and phase is Phase.COMPLETE:
@@ -115,6 +118,15 @@ class TrialScreen:
         """Return whether the trainee has requested the menu since this was last asked."""
         has_requested, self._has_requested_menu = self._has_requested_menu, False
         return has_requested
+
+    def _change_camera(self) -> None:
+        """Look from the front again; from there already, change between near and far."""
+        session = self._session
+        if session.view.control.is_moved:
+            session.view.control.go(FRONT)
+        else:
+            camera = "far" if session.state.camera == "close-up" else "close-up"
+            session.do(CommandName.SET_CAMERA, {"camera": camera})
 
     def open_menu(self) -> None:
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""
@@ -184,9 +196,13 @@ class TrialScreen:
             ControlName.TOUCH: "hint.register" if is_complete else "hint.touch",
             ControlName.UNDO: "hint.undo",
             ControlName.FINE: "hint.fine",
-            ControlName.CAMERA: "hint.camera",
+            ControlName.BEST_VIEW: "hint.best_view",
+            ControlName.CAMERA: "hint.front",
             ControlName.MENU: "hint.menu",
         }
+        if session.is_typing_possible((SourceKind.XR,)):
+            # In a headset one looks around with the head.
+            del names[ControlName.BEST_VIEW]
         return tuple(
             Hint(session.label(control), session.texts.say(key)) for control, key in names.items()
         )
@@ -216,7 +232,8 @@ class TrialScreen:
             return ROBOT_AXES
         view = session.scenario.cameras[session.state.camera]
         line = tuple((view.focal_point - view.position).tolist())
-        return camera_axes(line, tuple(view.view_up.tolist()))
+        axes = camera_axes(line, tuple(view.view_up.tolist()))
+        return axes.turned(math.radians(session.view.stick_turn_deg))
 
     def _is_off_the_way(self) -> bool:
         """Return whether the tip is beside the way between the last point and the next."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import string
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,8 +13,8 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
-from rastrainer_simulator.input.control_name import SITUATIONS, ControlContext, ControlName
-from rastrainer_simulator.input.inputs import InputDevice, is_input
+from rastrainer_simulator.input.control_name import SITUATIONS, VIEW, ControlContext, ControlName
+from rastrainer_simulator.input.inputs import BUTTONS, InputDevice, is_input
 
 Table = Mapping[ControlName, tuple[str, ...]]
 BINDINGS_FILE = "controls.json"
@@ -111,6 +112,13 @@ _GAMEPAD: Mapping[str, tuple[str, ...]] = {
     "turn_right": ("+rightx",),
     "turn_down": ("dpdown",),
     "turn_up": ("dpup",),
+    "best_view": ("x",),
+    "view_left": ("dpleft",),
+    "view_right": ("dpright",),
+    "view_lower": ("leftshoulder",),
+    "view_higher": ("rightshoulder",),
+    "view_farther": ("leftstick",),
+    "view_nearer": ("rightstick",),
     "accept": ("a",),
     "back": ("b",),
     "up": ("dpup", "-lefty"),
@@ -136,12 +144,27 @@ _KEYBOARD: Mapping[str, tuple[str, ...]] = {
     "turn_right": ("ArrowRight",),
     "turn_down": ("ArrowDown",),
     "turn_up": ("ArrowUp",),
+    "best_view": ("KeyB",),
+    "view_left": ("KeyQ",),
+    "view_right": ("KeyE",),
+    "view_lower": ("KeyG",),
+    "view_higher": ("KeyT",),
+    "view_farther": ("KeyZ",),
+    "view_nearer": ("KeyX",),
     "accept": ("Enter", "Space", "NumpadEnter"),
     "back": ("Escape",),
     "up": ("ArrowUp",),
     "down": ("ArrowDown", "Tab"),
     "left": ("ArrowLeft",),
     "right": ("ArrowRight",),
+}
+
+
+_ADDED_LATER = frozenset({ControlName.BEST_VIEW, *(name for pair in VIEW for name in pair)})
+"""Files of earlier versions do not know these, and may use their inputs for something else."""
+_SPARE = {
+    InputDevice.GAMEPAD: BUTTONS,
+    InputDevice.KEYBOARD: tuple(f"Key{letter}" for letter in string.ascii_uppercase),
 }
 
 
@@ -190,7 +213,7 @@ def write_bindings(path: Path, bindings: Bindings) -> None:
 
 
 def _read_table(values: dict[str, Any], device: InputDevice) -> Table:
-    table = dict(DEFAULT_BINDINGS.table(device))
+    table: dict[ControlName, tuple[str, ...]] = {}
     fields = values.get(device.value, {})
     if not isinstance(fields, dict):
         raise InputError(f"the field {device.value} must be an object.")
@@ -201,7 +224,27 @@ def _read_table(values: dict[str, Any], device: InputDevice) -> Table:
             known = ", ".join(each.value for each in ControlName)
             raise InputError(f"{device.value} has an unknown control; known are {known}.") from None
         table[control] = _read_inputs(device, name, inputs)
-    return MappingProxyType(table)
+    for control, usual in DEFAULT_BINDINGS.table(device).items():
+        if control not in table:
+            is_new = control in _ADDED_LATER
+            table[control] = _free_inputs(device, table, control, usual) if is_new else usual
+    return MappingProxyType({control: table[control] for control in ControlName})
+
+
+def _free_inputs(
+    device: InputDevice, table: Table, control: ControlName, usual: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return inputs for a control that a file leaves out, of those that the file leaves free."""
+    taken = {
+        name
+        for other, inputs in table.items()
+        if SITUATIONS[other] & SITUATIONS[control]
+        for name in inputs
+    }
+    free = tuple(name for name in usual if name not in taken)
+    others = {name for inputs in DEFAULT_BINDINGS.table(device).values() for name in inputs}
+    spare = (name for name in _SPARE[device] if name not in taken)
+    return free or tuple(sorted(spare, key=lambda name: name in others))[:1] or usual
 
 
 def _read_inputs(device: InputDevice, control: str, inputs: Any) -> tuple[str, ...]:

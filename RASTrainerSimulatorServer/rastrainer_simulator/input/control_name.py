@@ -24,6 +24,13 @@ class ControlName(str, Enum):
     TURN_RIGHT = "turn_right"
     TURN_DOWN = "turn_down"
     TURN_UP = "turn_up"
+    BEST_VIEW = "best_view"
+    VIEW_LEFT = "view_left"
+    VIEW_RIGHT = "view_right"
+    VIEW_LOWER = "view_lower"
+    VIEW_HIGHER = "view_higher"
+    VIEW_FARTHER = "view_farther"
+    VIEW_NEARER = "view_nearer"
     ACCEPT = "accept"
     BACK = "back"
     UP = "up"
@@ -50,6 +57,13 @@ ROTATION = (
     (ControlName.TURN_LEFT, ControlName.TURN_RIGHT),
     (ControlName.TURN_DOWN, ControlName.TURN_UP),
 )
+
+VIEW = (
+    (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT),
+    (ControlName.VIEW_LOWER, ControlName.VIEW_HIGHER),
+    (ControlName.VIEW_FARTHER, ControlName.VIEW_NEARER),
+)
+"""Around to the right, higher and nearer: what moves the view while it is held."""
 
 STICKS = frozenset(name for pair in (*TRANSLATION, *ROTATION) for name in pair)
 

@@ -76,6 +76,18 @@ class Controls:
         return HANDS_OFF if state is None else state.sticks(self.bindings)
 
     @property
+    def view(self) -> tuple[float, float, float]:
+        """What the holder asks of the view: around to the right, higher, nearer; −1…1 each."""
+        state = self._held_state
+        if state is None or self.situation is ControlContext.MENU:
+            return 0.0, 0.0, 0.0
+        return state.view(self.bindings)
+
+    def is_operator(self, source: Source) -> bool:
+        """Return whether a source is at the seat of who holds the control, or nobody does."""
+        return self.holder is None or self.holder.seat == source.seat
+
+    @property
     def _held_state(self) -> InputState | None:
         """The inputs of the holder; None where nobody holds the control or they are not known."""
         return None if self.holder is None else self._states.get(self.holder)
@@ -114,7 +126,7 @@ class Controls:
 
     def allows(self, source: Source, control: ControlName | None = None) -> bool:
         """Return whether a source may act, and let it hold the control if so."""
-        if self.holder is None or self.holder.seat == source.seat:
+        if self.is_operator(source):
             self._hold(source)
             return True
         if control is ControlName.MENU and self._idle >= IDLE_S:
@@ -158,8 +170,7 @@ class Controls:
 
     def _press_all(self, source: Source, state: InputState, names: list[str]) -> None:
         for name in names:
-            is_operator = self.holder is None or self.holder.seat == source.seat
-            if is_operator and self._listener.input_pressed(state.device, name):
+            if self.is_operator(source) and self._listener.input_pressed(state.device, name):
                 continue
             control = self.bindings.control(state.device, name, self.situation)
             if control is None or not self.allows(source, control):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rastrainer_simulator.input.bindings import Bindings
-from rastrainer_simulator.input.control_name import ROTATION, TRANSLATION, ControlName
+from rastrainer_simulator.input.bindings import Bindings, Table
+from rastrainer_simulator.input.control_name import ROTATION, TRANSLATION, VIEW, ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.operator_input import OperatorInput
 
@@ -105,12 +105,8 @@ class InputState:
         """Return what the sticks and keys ask of the arm."""
         table = bindings.table(self.device)
 
-        def value(control: ControlName) -> float:
-            names = (name for name in table[control] if name not in self._blocked)
-            return max((self._inputs.get(name, 0.0) for name in names), default=0.0)
-
         def deflection(below: ControlName, above: ControlName, direct: float) -> float:
-            return max(-1.0, min(1.0, value(above) - value(below) + direct))
+            return max(-1.0, min(1.0, self._deflection(table, below, above) + direct))
 
         is_fine = any(self.is_down(name) for name in table[ControlName.FINE])
         direct = _UNUSED if self._sticks_blocked else self._sticks
@@ -126,6 +122,20 @@ class InputState:
             ),
             fine=is_fine or direct.fine,
         )
+
+    def view(self, bindings: Bindings) -> tuple[float, float, float]:
+        """Return what is held to move the view: around to the right, higher, nearer; −1…1 each."""
+        table = bindings.table(self.device)
+        around, higher, nearer = (self._deflection(table, below, above) for below, above in VIEW)
+        return around, higher, nearer
+
+    def _deflection(self, table: Table, below: ControlName, above: ControlName) -> float:
+        return self._value(table[above]) - self._value(table[below])
+
+    def _value(self, names: tuple[str, ...]) -> float:
+        """Return how far the farthest of some inputs is pushed that are not blocked."""
+        free = (name for name in names if name not in self._blocked)
+        return max((self._inputs.get(name, 0.0) for name in free), default=0.0)
 
     def _pressed(self) -> list[str]:
         pressed = []

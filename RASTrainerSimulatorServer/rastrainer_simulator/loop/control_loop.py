@@ -34,6 +34,7 @@ from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.durable_results import DurableResults
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.record.view_report import ViewReport
 from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
 from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
@@ -111,7 +112,7 @@ class ControlLoop:
         self._held = DurableResults(self._state.training)
         self._sticks = HANDS_OFF
         self._arrived: deque[OperatorCommand] = deque()
-        self._displayed: deque[DisplayReport] = deque()
+        self._displayed: deque[DisplayReport | ViewReport] = deque()
         self._answers = PendingAnswers()
         limits = trial_limits or TrialLimits()
         self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
@@ -182,8 +183,8 @@ class ControlLoop:
         """Take the sticks as they are from now on; the commands in it are ignored."""
         self._sticks = replace(sticks, commands=())
 
-    def note_display(self, report: DisplayReport) -> None:
-        """Have the trial's journal tell how a view draws it; the simulation takes no note."""
+    def note_display(self, report: DisplayReport | ViewReport) -> None:
+        """Have the trial's journal tell what is seen of it; the simulation takes no note."""
         self._displayed.append(report)
 
     def submit(

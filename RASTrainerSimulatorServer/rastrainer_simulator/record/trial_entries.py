@@ -20,6 +20,7 @@ from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
 from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
+from rastrainer_simulator.record.view_report import ViewReport
 from rastrainer_simulator.state import (
     Event,
     EventKind,
@@ -172,9 +173,10 @@ class TrialEntries:
         # Of the whole tick: the tip may have touched the head after the command in it.
         return UnmeasuredRecord(self._record(state), self._recording.trajectory(), registered)
 
-    def add_display(self, report: DisplayReport, state: SimulationState) -> None:
-        """Take note of how a view draws: it is recorded, but nothing follows from it."""
-        self._display.add(report)
+    def add_display(self, report: DisplayReport | ViewReport, state: SimulationState) -> None:
+        """Take note of what is seen, and how: it is recorded, but nothing follows from it."""
+        if isinstance(report, DisplayReport):
+            self._display.add(report)
         self._append(report.entry() | stamp(state.tick, state.sim_time))
 
     def _append(self, entry: dict[str, Any]) -> None:

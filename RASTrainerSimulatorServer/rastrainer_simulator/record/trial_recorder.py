@@ -18,6 +18,7 @@ from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
+from rastrainer_simulator.record.view_report import ViewReport
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
 
@@ -112,8 +113,8 @@ class TrialRecorder:
         is_due = trial.entries.pending and result.state.tick % FLUSH_TICKS == 0
         return self._hand_over(trial, is_awaited=False) if is_due and not self._is_stuck else None
 
-    def note_display(self, report: DisplayReport, state: SimulationState) -> None:
-        """Take note of how a view draws the trial, if one is open."""
+    def note_display(self, report: DisplayReport | ViewReport, state: SimulationState) -> None:
+        """Take note of what is seen of the trial, if one is open, and how it is drawn."""
         if self._open is not None and self._registering is None:
             self._open.entries.add_display(report, state)
 

@@ -13,7 +13,8 @@ from rastrainer_simulator.net.views.screen import Hint, Screen
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.player import ACTIONS, Player, PlayerAction
-from rastrainer_simulator.state import StepResult
+from rastrainer_simulator.state import SimulationState, StepResult
+from rastrainer_simulator.viewpoint.view_control import Pictures, ViewControl
 
 _KEYS = {
     "Space": PlayerAction.PLAY,
@@ -71,10 +72,21 @@ class ReplayPresenter:
         self._subscribers: Subscribers[ViewUpdate] = Subscribers()
         self._count = 0
         self._held: dict[int, frozenset[int]] = {}
+        self._view = ViewControl()
         self._player = Player(playback, end)
         self.screen = self._make_screen()
         playback.changed = self._refresh
         playback.subscribe(self._feel)
+
+    def pictures(self, now: SimulationState) -> Pictures:
+        """Return where the picture of a state is looked from."""
+        self._view.use(now.camera)
+        return Pictures(self._view.pose(self._playback.setup.scenario.cameras[now.camera]))
+
+    def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
+        """Turn the view."""
+        camera = self._playback.setup.scenario.cameras[self._playback.latest.camera]
+        self._view.turn(camera, around_deg, higher_deg, zoom)
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen and event; returns what ends that."""

@@ -23,7 +23,16 @@ LONGEST_TRIAL_TICKS = 10_000_000
 SHORTEST_TICK_S, LONGEST_TICK_S = 1e-4, 0.1
 
 _NOT_SIMULATED = frozenset(
-    {"header", "display", "stopped", "attempt", "registration", "scored", "acknowledged"}
+    {
+        "header",
+        "display",
+        "view",
+        "stopped",
+        "attempt",
+        "registration",
+        "scored",
+        "acknowledged",
+    }
 )
 _ADDED_LATER = frozenset({"depthMm"})
 """Keys that older journals lack; where a part of a journal has one it is compared there."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from rastrainer_simulator.vectors import Vector, cross, length, reject, scale, unit, vector
+from rastrainer_simulator.vectors import Vector, cross, length, reject, rotated, scale, unit, vector
 
 WORLD_UP: Vector = (0.0, 0.0, 1.0)
 
@@ -31,6 +31,12 @@ class Axes:
         return vector(
             sideways * r + ahead * f + above * u
             for r, f, u in zip(self.right, self.forward, self.up, strict=True)
+        )
+
+    def turned(self, turn: float) -> Axes:
+        """Return the axes turned about the vertical, counterclockwise from above, by rad."""
+        return Axes(
+            *(rotated(axis, WORLD_UP, turn) for axis in (self.right, self.forward, self.up))
         )
 
 

@@ -2,11 +2,13 @@
 
 import { PerspectiveCamera, Vector2 } from "three";
 
-import type { SceneNews } from "./messages";
+import type { SceneNews, StateNews } from "./messages";
 import type { Stage } from "./stage";
 import { Flight, Viewpoint } from "./viewpoint";
 
 export const INSET_SHARE = 0.22;
+/** Name of the view along the skin. */
+export const BESIDE = "beside";
 const NEAR = 0.05;
 const FAR = 12;
 
@@ -18,6 +20,7 @@ export class FlatView {
   private readonly size = new Vector2();
   private scene: SceneNews | null = null;
   private chosen = "";
+  private isBeside = false;
 
   constructor(
     private readonly stage: Stage,
@@ -29,18 +32,22 @@ export class FlatView {
     this.chosen = "";
   }
 
-  /** Name of the camera in the corner, "" without one. */
+  /** Name of what is in the corner, "" without anything. */
   get insetName(): string {
+    return this.isBeside ? BESIDE : this.otherCamera;
+  }
+
+  private get otherCamera(): string {
     return Object.keys(this.scene?.cameras ?? {}).find((name) => name !== this.chosen) ?? "";
   }
 
-  /** Look through a camera of the simulator. */
-  choose(name: string, now: number): void {
-    const place = this.scene?.cameras[name];
-    if (place === undefined || name === this.chosen) return;
-    this.chosen = name;
-    this.flight.go(name, place, now);
-    const other = this.scene?.cameras[this.insetName];
+  /** Look as the simulator says. */
+  choose(state: StateNews, now: number): void {
+    if (this.scene?.cameras[state.camera] === undefined) return;
+    this.chosen = state.camera;
+    this.flight.go(state.camera, state.view, now);
+    this.isBeside = state.inset !== null;
+    const other = state.inset ?? this.scene.cameras[this.otherCamera];
     if (other !== undefined) this.inset.take(other);
   }
 

@@ -15,6 +15,7 @@ import { Sounds } from "./sounds";
 import { Stage } from "./stage";
 import { TargetArrow } from "./target_arrow";
 import { say, useLanguage } from "./texts";
+import { ViewMouse } from "./view_mouse";
 import { Headset } from "./xr/headset";
 
 export class Page {
@@ -27,6 +28,7 @@ export class Page {
   private readonly flat = new FlatView(this.stage, byId("inset"));
   private readonly overlay = new Overlay(this.connection);
   private readonly keyboard = new Keyboard(this.connection);
+  private readonly mouse = new ViewMouse(byId("picture"), this.connection);
   private readonly pads = new Gamepads(this.connection);
   private readonly sounds = new Sounds();
   private readonly frames = new FrameCount(this.connection);
@@ -183,7 +185,7 @@ export class Page {
       this.poses.place(model.bodies, performance.now() / 1000);
       model.mark(state);
       model.pulse(now);
-      this.headset.draw(now, frame, model, state);
+      this.headset.draw(now, frame, model);
       this.frames.drawn();
     } else {
       this.drawFlat(now, model, state);
@@ -191,7 +193,8 @@ export class Page {
   }
 
   private drawFlat(now: number, model: SceneModel, state: StateNews): void {
-    this.flat.choose(state.camera, now);
+    if (this.screen?.menu == null) this.mouse.tell();
+    this.flat.choose(state, now);
     const hasMoved = this.flat.fit() || this.flat.advance(now) || this.isDue;
     if (!model.pulse(now) && !hasMoved) return;
     this.isDue = false;

@@ -85,6 +85,10 @@ export interface StateNews {
   readonly clearanceMm: number;
   readonly proximity: "free" | "near" | "contact";
   readonly camera: string;
+  /** Where the main picture is looked from: the camera of that name, as it is turned now. */
+  readonly view: CameraPlace;
+  /** Where the corner's picture looks along the skin; null while no touch is to be judged. */
+  readonly inset: CameraPlace | null;
   readonly phase: string;
   readonly next: string | null;
   readonly touched: readonly string[];

@@ -1,5 +1,6 @@
 /** The simulator's screen over a flat picture: each part is made anew when it has changed. */
 
+import { BESIDE } from "./flat_view";
 import type { Connection } from "./connection";
 import type { ControlNews, Item, Menu, Message, PairingNews, Screen } from "./messages";
 import { controlsPicture, inputsOf } from "./panels/controls_picture";
@@ -66,7 +67,7 @@ export class Overlay {
   showInset(name: string): void {
     const frame = byId("inset");
     frame.hidden = name === "";
-    frame.dataset.name = name === "close-up" ? say("closeUp") : say("far");
+    frame.dataset.name = say(name === "close-up" ? "closeUp" : name === BESIDE ? "beside" : "far");
   }
 
   private showWarnings(): void {

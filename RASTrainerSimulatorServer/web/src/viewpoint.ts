@@ -63,9 +63,12 @@ export class Flight {
   private began = -Infinity;
   private target = "";
 
-  /** Go to a place by its name; the first one at once. */
+  /** Go to a place by its name, the first one at once; a place that moves is followed. */
   go(name: string, place: CameraPlace, now: number): void {
-    if (name === this.target) return;
+    if (name === this.target) {
+      this.to.take(place);
+      return;
+    }
     const isFirst = this.target === "";
     this.target = name;
     this.to.take(place);

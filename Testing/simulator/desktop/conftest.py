@@ -63,6 +63,8 @@ def state_text(**changes):
         "poses": poses,
         "proximity": "free",
         "camera": "close-up",
+        "view": CAMERAS[changes.get("camera", "close-up")],
+        "inset": None,
         "phase": "running",
         "next": "2",
         "touched": ["1"],

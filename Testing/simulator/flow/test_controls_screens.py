@@ -143,7 +143,7 @@ def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(t
     presenter.on_press(5, "undo")
     trainee.until_menu("start")
     trainee.start("task-1")
-    presenter.on_sticks(5, (0.9, 0.0, 0.0), (0.0, 0.0), False)
+    presenter.on_sticks(5, (0.9, 0.0, 0.0), (0.0, 0.0), False, 90.0)
     trainee.step(10)
     presenter.on_visibility(5, False)
     trainee.until_menu("trial")
@@ -166,13 +166,13 @@ def test_a_control_is_given_a_free_key_and_keeps_it(trainee, outside):
     open_the_bindings(trainee)
     trainee.choose("touch")
     trainee.until_menu("listen")
-    trainee.hands.key("KeyT")
+    trainee.hands.key("KeyY")
     trainee.until_menu("bindings")
     trainee.step(20)
-    assert trainee.item("touch").value == "T"
-    assert trainee.presenter.screen.warnings[0].text == "Touch is now T."
+    assert trainee.item("touch").value == "Y"
+    assert trainee.presenter.screen.warnings[0].text == "Touch is now Y."
     saved = read_bindings(outside.services.config / BINDINGS_FILE)
-    assert saved.keyboard[ControlName.TOUCH] == ("KeyT",)
+    assert saved.keyboard[ControlName.TOUCH] == ("KeyY",)
     trainee.choose("defaults")
     trainee.step()
     assert read_bindings(outside.services.config / BINDINGS_FILE) == DEFAULT_BINDINGS
@@ -185,7 +185,7 @@ def test_a_key_that_is_taken_is_exchanged_only_on_request(trainee, answer):
     trainee.until_menu("listen")
     trainee.hands.key("KeyC")
     trainee.until_menu("conflict")
-    assert trainee.menu.paragraphs == ("C is Camera now. Exchange it with Touch?",)
+    assert trainee.menu.paragraphs == ("C is Front view now. Exchange it with Touch?",)
     trainee.choose(answer)
     trainee.until_menu("bindings")
     trainee.step(20)
@@ -212,7 +212,7 @@ def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):
     values = [item.value for item in pilot.menu.items if item.kind == "axis"]
     assert values == ["0.50", "-1.00", "0.25", "0.00", "0.00"]
     assert pilot.menu.facts[0].value == "On"
-    assert ("X", "nothing") in [(fact.label, fact.value) for fact in pilot.menu.facts]
+    assert ("X", "Best view") in [(fact.label, fact.value) for fact in pilot.menu.facts]
     pilot.tap("back")
     assert pilot.menu.name == "test"
     pilot.tap("menu")

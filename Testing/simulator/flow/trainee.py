@@ -14,7 +14,7 @@ from rastrainer.units import MM_PER_M
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.teleoperation.axes import camera_axes
-from rastrainer_simulator.vectors import dot
+from rastrainer_simulator.vectors import dot, subtract
 
 PATIENCE_S = 40.0
 TICKS_A_STEP = 2
@@ -184,9 +184,8 @@ class Trainee:
         self, place: np.ndarray, near: float, fine: bool = False, ends_in_contact: bool = False
     ) -> None:
         """Push the sticks toward a place (3,) World, m, until the tip is near it, or in contact."""
-        view = self.loop.setup.scenario.cameras[self.state.camera]
-        line = tuple((view.focal_point - view.position).tolist())
-        axes = camera_axes(line, tuple(view.view_up.tolist()))
+        view = self.presenter.pictures(self.state).main
+        axes = camera_axes(subtract(view.focal_point, view.position), view.view_up)
         give_up = self.state.sim_time + 6.0
         full = 0.01 if fine else 0.03
         while True:

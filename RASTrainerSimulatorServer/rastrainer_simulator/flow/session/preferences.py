@@ -36,6 +36,7 @@ class Preferences:
         axes: whose right, forward and up the sticks follow.
         direction: who decides the tool's direction.
         touch: whether a touch has to be on the skin.
+        view: when the view goes to each next point by itself: "practice" is outside of a study.
     """
 
     language: str = "en"
@@ -47,6 +48,7 @@ class Preferences:
     axes: str = AxesChoice.CAMERA.value
     direction: str = ToolDirection.CLEAR.value
     touch: str = TouchRule.ON_SKIN.value
+    view: str = "practice"
 
     def stepped(self, name: str, direction: int) -> Preferences:
         """Return the preferences with one of them moved to its next or previous option."""
@@ -82,6 +84,7 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
     "axes": tuple(choice.value for choice in AxesChoice),
     "direction": tuple(choice.value for choice in ToolDirection),
     "touch": tuple(rule.value for rule in TouchRule),
+    "view": ("practice", "always", "never"),
 }
 
 OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch")

@@ -27,6 +27,7 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.flow.session.progress import DoneTasks
 from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
+from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.controls import Controls
@@ -91,6 +92,7 @@ class TrainingSession:
         is_slicer_connected: says whether Slicer is connected.
         quit: ends the simulator.
         study: knows what a study asks of each trainee next.
+        view: where the pictures of the trial are looked from.
     """
 
     def __init__(
@@ -120,6 +122,7 @@ class TrainingSession:
         )
         self.happened = happened
         self.pages = OpenPages(happened)
+        self.view = TrialView()
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
@@ -181,6 +184,16 @@ class TrainingSession:
     def is_being_set_up(self) -> bool:
         """Whether other settings of the simulation, or another scenario, are on their way."""
         return self._setting_up is not None or self._wanted_settings is not None
+
+    @property
+    def does_view_follow(self) -> bool:
+        """Whether the view goes to the best view of each next point by itself."""
+        if self.training.mode == Mode.HMD.value:
+            # In a headset one looks around with the head.
+            return False
+        choice = self.preferences.view
+        is_led = self.study.step_of(self.training.trainee) is not None
+        return choice == "always" or (choice == "practice" and not is_led)
 
     def is_typing_possible(self, kinds: tuple[SourceKind, ...]) -> bool:
         """Return whether what the operator uses is one of these."""

@@ -22,6 +22,7 @@ PAD = "pad"
 STICKS = "sticks"
 PRESS = "press"
 ITEM = "item"
+ORBIT = "orbit"
 TEXT = "text"
 FRAMES = "frames"
 VISIBILITY = "visibility"
@@ -67,7 +68,17 @@ MEMBERS: Mapping[str, Mapping[str, Callable[[Any], Any]]] = {
     HELLO: {"kind": one_of(*VIEW_KINDS), "device": _maybe_empty(80), "refreshHz": _RATE},
     KEY: {"code": text(32), "isDown": yes_or_no, "text": _maybe_empty(16)},
     PAD: {"axes": _positions(MOST_AXES, -1.0), "buttons": _positions(MOST_BUTTONS, 0.0)},
-    STICKS: {"translation": numbers(3, 1), "rotation": numbers(2, 1), "fine": yes_or_no},
+    STICKS: {
+        "translation": numbers(3, 1),
+        "rotation": numbers(2, 1),
+        "fine": yes_or_no,
+        "yawDeg": number(-360, 360, "degrees"),
+    },
+    ORBIT: {
+        "aroundDeg": number(-180, 180, "degrees"),
+        "higherDeg": number(-180, 180, "degrees"),
+        "zoom": number(0.1, 10),
+    },
     PRESS: {"control": text(40)},
     ITEM: {"name": text(80)},
     TEXT: {"name": text(80), "value": _maybe_empty(200)},

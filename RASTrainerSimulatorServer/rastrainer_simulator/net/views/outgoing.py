@@ -16,6 +16,8 @@ from rastrainer_simulator.net.views.presenter import Control, Feedback
 from rastrainer_simulator.net.views.screen import Screen, screen_to_json
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.viewpoint.orbit import CameraPose, camera_pose
+from rastrainer_simulator.viewpoint.view_control import Pictures
 
 WELCOME = "welcome"
 SCENE = "scene"
@@ -37,15 +39,7 @@ def welcome(view: int) -> str:
 
 def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
     """Return where the scene is, and what goes with it; `axes` are those of the sticks."""
-    cameras = {
-        name: {
-            "position": (camera.position / MM_PER_M).tolist(),
-            "focalPoint": (camera.focal_point / MM_PER_M).tolist(),
-            "viewUp": camera.view_up.tolist(),
-            "viewAngleDeg": camera.view_angle_deg,
-        }
-        for name, camera in scenario.cameras.items()
-    }
+    cameras = {name: _camera(camera_pose(camera)) for name, camera in scenario.cameras.items()}
     fiducials = {}
     if task:
         chosen = scenario.task(task)
@@ -55,7 +49,7 @@ def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
     return _text(SCENE, url=url, task=task, sticks=axes.value, cameras=cameras, fiducials=fiducials)
 
 
-def state(now: SimulationState, delayed: int) -> str:
+def state(now: SimulationState, delayed: int, pictures: Pictures) -> str:
     """Return what moves; `delayed` counts the control loop's late and skipped ticks."""
     training, planned = now.training, now.planned_target
     matrices = (
@@ -72,6 +66,8 @@ def state(now: SimulationState, delayed: int) -> str:
         clearanceMm=round(now.clearance * MM_PER_M, 3),
         proximity=now.proximity.value,
         camera=now.camera,
+        view=_camera(pictures.main),
+        inset=None if pictures.inset is None else _camera(pictures.inset),
         phase=training.phase.value,
         next=training.next_point,
         touched=[touch.label for touch in training.touches],
@@ -107,6 +103,15 @@ def control(now: Control, view: int) -> str:
 def pairing(code: str, addresses: Sequence[str]) -> str:
     """Return how another view is paired; for this computer's own views only."""
     return _text(PAIRING, code=code, addresses=addresses)
+
+
+def _camera(pose: CameraPose) -> dict[str, Any]:
+    return {
+        "position": [round(value, DECIMALS) for value in pose.position],
+        "focalPoint": [round(value, DECIMALS) for value in pose.focal_point],
+        "viewUp": [round(value, DECIMALS) for value in pose.view_up],
+        "viewAngleDeg": round(pose.angle_deg, DECIMALS),
+    }
 
 
 def _pose(matrix: np.ndarray) -> list[float]:

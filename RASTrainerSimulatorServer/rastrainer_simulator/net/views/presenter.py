@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.viewpoint.view_control import Pictures
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,9 @@ class Presenter(Protocol):
     def control(self) -> Control:
         """What drives the arm now."""
 
+    def pictures(self, now: SimulationState) -> Pictures:
+        """Return where the pictures of a state are looked from."""
+
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control.
 
@@ -118,11 +123,17 @@ class Presenter(Protocol):
         translation: tuple[float, float, float],
         rotation: tuple[float, float],
         is_fine: bool,
+        yaw_deg: float,
     ) -> None:
         """Take the sticks of XR controllers, −1…1, as in `OperatorInput`.
 
+        `yaw_deg` is where the eyes look, counterclockwise from World's x: forward is there.
+
         A view that leaves or falls silent lets them go: zeros.
         """
+
+    def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
+        """Take a turn of the view: around to the right, higher, and its distance multiplied."""
 
     def on_press(self, view: int, control: str) -> None:
         """Take one press of a control by its name in the settings of the controls; any name."""

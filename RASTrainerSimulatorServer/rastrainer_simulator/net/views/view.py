@@ -125,6 +125,7 @@ class View:
             messages.KEY: self.held.key,
             messages.PAD: self.held.pad,
             messages.STICKS: self.held.sticks,
+            messages.ORBIT: to_presenter(presenter.on_orbit),
             messages.PRESS: to_presenter(presenter.on_press),
             messages.ITEM: to_presenter(presenter.on_item),
             messages.TEXT: to_presenter(presenter.on_text),
@@ -178,10 +179,11 @@ class HeldInput:
         translation: tuple[float, float, float],
         rotation: tuple[float, float],
         is_fine: bool,
+        yaw_deg: float,
     ) -> None:
         """Take the sticks of XR controllers."""
         self._has_sticks = any(translation) or any(rotation) or is_fine
-        self._presenter.on_sticks(self._view, translation, rotation, is_fine)
+        self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
 
     def release(self) -> None:
         """Let go of everything."""
@@ -191,7 +193,7 @@ class HeldInput:
             axes, buttons = self._pad
             self.pad((0.0,) * axes, (0.0,) * buttons)
         if self._has_sticks:
-            self.sticks((0.0, 0.0, 0.0), (0.0, 0.0), False)
+            self.sticks((0.0, 0.0, 0.0), (0.0, 0.0), False, 0.0)
 
 
 class Outbox:

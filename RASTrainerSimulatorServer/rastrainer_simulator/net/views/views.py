@@ -116,7 +116,8 @@ class Views:
 
     def _state_text(self, now: SimulationState) -> str:
         statistics = self._source.statistics
-        return outgoing.state(now, statistics.late + statistics.skipped)
+        delayed = statistics.late + statistics.skipped
+        return outgoing.state(now, delayed, self._presenter.pictures(now))
 
     def _send_update(self, update: ViewUpdate) -> None:
         if isinstance(update, Screen):

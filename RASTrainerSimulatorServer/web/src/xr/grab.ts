@@ -2,9 +2,6 @@
 
 import { Vector3, type Object3D } from "three";
 
-import type { SceneNews } from "../messages";
-import { yUp } from "../viewpoint";
-
 /** The tip's speed while the stick is fully pushed; a lag is made up in so long. */
 const FULL_M_S = 0.15;
 const CATCH_UP_S = 0.27;
@@ -19,7 +16,7 @@ const EXPONENT = 2;
 export class Grab {
   isAllowed = true;
   private hand: Object3D | null = null;
-  private readonly axes = [new Vector3(), new Vector3(), new Vector3(0, 1, 0)] as const;
+  private readonly axes = [new Vector3(0, 0, 1), new Vector3(1, 0, 0), new Vector3(0, 1, 0)] as const;
   private readonly handBegan = new Vector3();
   private readonly tipBegan = new Vector3();
   private readonly lag = new Vector3();
@@ -28,18 +25,16 @@ export class Grab {
   /** From one picture to the next, s. */
   private interval = 0;
 
-  /** Know the tool's node, and where right, forward and up of the sticks point. */
-  take(tool: Object3D | undefined, scene: SceneNews, camera: string): void {
+  /** Know the tool's node. */
+  take(tool: Object3D | undefined): void {
     this.tool = tool;
-    const [right, forward] = this.axes;
-    const place = scene.cameras[camera];
-    if (scene.sticks === "robot" || place === undefined) {
-      forward.set(1, 0, 0);
-    } else {
-      yUp(forward.fromArray(place.focalPoint).sub(right.fromArray(place.position)));
-      forward.setY(0).normalize();
-    }
-    right.crossVectors(forward, this.axes[2]);
+  }
+
+  /** Know where forward of the sticks points, a level unit vector: by default along the robot's x. */
+  turn(ahead: Vector3): void {
+    const [right, forward, up] = this.axes;
+    forward.copy(ahead);
+    right.crossVectors(forward, up);
   }
 
   begin(hand: Object3D): void {

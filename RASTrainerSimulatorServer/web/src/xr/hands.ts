@@ -22,6 +22,7 @@ import type { Grab } from "./grab";
 
 const DEAD = 0.12;
 const CHANGE = 0.01;
+const YAW_CHANGE_DEG = 1;
 const PRESSED = 0.6;
 const RELEASED = 0.4;
 const REPEAT_AFTER_S = 0.4;
@@ -60,12 +61,16 @@ export class Hands {
     translation: [0, 0, 0],
     rotation: [0, 0],
     fine: false,
+    yawDeg: 0,
   };
   private readonly told = new Float32Array(6);
+  private toldYaw = 0;
   private hovered = "";
   private repeated = "";
   private repeatIn = 0;
   isHolding = false;
+  /** Where the eyes look, counterclockwise from World's x: the sticks' forward is there. */
+  yawDeg = 0;
   /** Whether sticks step, as through a menu. */
   isStepped = false;
 
@@ -181,7 +186,9 @@ export class Hands {
       if (value !== 0) isPushed = true;
     }
     this.isHolding = isPushed;
-    if (!differs) return;
+    const hasTurned = isPushed && Math.abs(this.yawDeg - this.toldYaw) > YAW_CHANGE_DEG;
+    if (!differs && !hasTurned) return;
+    this.message.yawDeg = this.toldYaw = this.yawDeg;
     this.told.set(translation);
     this.told.set(rotation, 3);
     this.told[5] = Number(fine);

@@ -4,7 +4,7 @@ import { PerspectiveCamera, Vector3 } from "three";
 
 import type { Connection } from "../connection";
 import type { FrameCount } from "../frame_count";
-import type { ControlNews, EventNews, Hello, SceneNews, Screen, StateNews } from "../messages";
+import type { ControlNews, EventNews, Hello, SceneNews, Screen } from "../messages";
 import type { SceneModel } from "../scene_model";
 import type { Sounds } from "../sounds";
 import type { Stage } from "../stage";
@@ -16,6 +16,8 @@ import { Placement } from "./placement";
 
 const HIGHEST_HZ = 90;
 const MOST_FOVEATION = 1;
+/** Beyond this the direction of the eyes has no way ahead of its own. */
+const STEEP = 0.9;
 
 export class Headset {
   private readonly camera = new PerspectiveCamera(70, 1, 0.05, 20);
@@ -27,7 +29,6 @@ export class Headset {
   private mustRecenter = false;
   private looked = 0;
   private shownNews: SceneNews | null = null;
-  private shownCamera = "";
   private readonly ears = { place: new Vector3(), forward: new Vector3(), up: new Vector3() };
   private readonly tip = new Vector3();
 
@@ -100,22 +101,22 @@ export class Headset {
   }
 
   /** Take a scene that is new to it. */
-  takeScene(model: SceneModel, state: StateNews): void {
+  takeScene(model: SceneModel): void {
     const camera = model.news.cameras["close-up"] ?? Object.values(model.news.cameras)[0];
     if (camera === undefined) return;
     this.placement.take(camera);
     this.boards.arrange(this.placement);
-    this.grab.take(model.node("tool"), model.news, state.camera);
+    this.grab.take(model.node("tool"));
   }
 
   /** Draw for both eyes, `now` in s. */
-  draw(now: number, frame: XRFrame, model: SceneModel, state: StateNews): void {
-    if (model.news !== this.shownNews || state.camera !== this.shownCamera) {
+  draw(now: number, frame: XRFrame, model: SceneModel): void {
+    if (model.news !== this.shownNews) {
       this.shownNews = model.news;
-      this.shownCamera = state.camera;
-      this.takeScene(model, state);
+      this.takeScene(model);
     }
     this.lookAround(frame);
+    this.turnSticks(model.news);
     this.hands.poll(Math.min(1, now - this.looked));
     this.looked = now;
     this.hear(model);
@@ -130,6 +131,19 @@ export class Headset {
     this.mustRecenter = false;
     this.placement.recenter(pose);
     this.boards.arrange(this.placement);
+  }
+
+  /** Have the sticks, and what is grabbed, follow the eyes. */
+  private turnSticks(news: SceneNews): void {
+    const { forward, up } = this.ears;
+    this.camera.getWorldDirection(forward);
+    // Who looks down or up has the way ahead at the top or the bottom of the picture.
+    if (Math.abs(forward.y) > STEEP) {
+      forward.copy(up.setFromMatrixColumn(this.camera.matrixWorld, 1)).multiplyScalar(-Math.sign(forward.y));
+    }
+    forward.setY(0).normalize();
+    this.hands.yawDeg = (Math.atan2(-forward.z, forward.x) * 180) / Math.PI;
+    if (news.sticks === "camera") this.grab.turn(forward);
   }
 
   private hear(model: SceneModel): void {

@@ -13,11 +13,14 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.presenter import Control
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.net.views.view_server import ViewServer
+from rastrainer_simulator.viewpoint.orbit import CameraPose
+from rastrainer_simulator.viewpoint.view_control import Pictures
 from Testing.simulator.net.igtl.servers import HOST, LoopThread
 
 SUBPROTOCOL = "rastrainer.views.1"
 HELLO = {"type": "hello", "kind": "page", "device": "Quest 2", "refreshHz": 72}
 PATIENCE_S = 20
+LOOKED_FROM = CameraPose((0.5, -0.5, 0.4), (0.5, 0.0, 0.25), (0.0, 0.0, 1.0), 30.0)
 
 
 class RecordingPresenter:
@@ -32,6 +35,10 @@ class RecordingPresenter:
     def subscribe(self, listener):
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
+
+    def pictures(self, _now):
+        """Look through a camera that no scenario has, with nothing beside it."""
+        return Pictures(LOOKED_FROM)
 
     def tell(self, *news):
         for one in news:

@@ -17,7 +17,14 @@ def changed(message: dict, **changes) -> str:
     return json.dumps({**message, **changes})
 
 
-STICKS = {"type": "sticks", "translation": [0, 0, 0], "rotation": [0, 0], "fine": False}
+STICKS = {
+    "type": "sticks",
+    "translation": [0, 0, 0],
+    "rotation": [0, 0],
+    "fine": False,
+    "yawDeg": 0,
+}
+ORBIT = {"type": "orbit", "aroundDeg": 5, "higherDeg": 0, "zoom": 1}
 GARBAGE = {
     "no JSON": "{",
     "no object": "[]",
@@ -37,6 +44,9 @@ GARBAGE = {
     "too many axes": json.dumps({"type": "pad", "axes": [0] * 17, "buttons": []}),
     "axes are a text": '{"type":"pad","axes":"0000","buttons":[]}',
     "stick out of range": changed(STICKS, translation=[0, 0, 1.1]),
+    "yaw out of range": changed(STICKS, yawDeg=1e9),
+    "turn out of range": changed(ORBIT, aroundDeg=181),
+    "zoom is nothing": changed(ORBIT, zoom=0),
     "stick is true": changed(STICKS, rotation=[True, 0]),
     "flag is a number": changed(STICKS, fine=1),
     "code is a number": changed(KEY, code=7),

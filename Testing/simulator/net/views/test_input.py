@@ -4,12 +4,22 @@ from rastrainer_simulator.net.views.presenter import Frames
 
 KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
 PAD = {"type": "pad", "axes": [0.5, -1.0, 0, 0], "buttons": [0, 1, 0.25]}
-STICKS = {"type": "sticks", "translation": [1, 0, -0.5], "rotation": [0, 0.5], "fine": True}
+STICKS = {
+    "type": "sticks",
+    "translation": [1, 0, -0.5],
+    "rotation": [0, 0.5],
+    "fine": True,
+    "yawDeg": 90,
+}
 
 MESSAGES = [
     (KEY, ("on_key", "KeyW", True, "w")),
     (PAD, ("on_pad", (0.5, -1.0, 0.0, 0.0), (0.0, 1.0, 0.25))),
-    (STICKS, ("on_sticks", (1.0, 0.0, -0.5), (0.0, 0.5), True)),
+    (STICKS, ("on_sticks", (1.0, 0.0, -0.5), (0.0, 0.5), True, 90.0)),
+    (
+        {"type": "orbit", "aroundDeg": -12.5, "higherDeg": 3, "zoom": 0.9},
+        ("on_orbit", -12.5, 3.0, 0.9),
+    ),
     ({"type": "press", "control": "touch"}, ("on_press", "touch")),
     ({"type": "item", "name": "task-1"}, ("on_item", "task-1")),
     ({"type": "text", "name": "trainee", "value": "T 01"}, ("on_text", "trainee", "T 01")),
@@ -41,7 +51,7 @@ def test_what_is_a_little_beyond_the_end_of_a_pad_is_its_end(served, connect):
 RELEASED = [
     (KEY, ("on_key", "KeyW", False, "")),
     (PAD, ("on_pad", (0.0,) * 4, (0.0,) * 3)),
-    (STICKS, ("on_sticks", (0.0, 0.0, 0.0), (0.0, 0.0), False)),
+    (STICKS, ("on_sticks", (0.0, 0.0, 0.0), (0.0, 0.0), False, 0.0)),
 ]
 
 

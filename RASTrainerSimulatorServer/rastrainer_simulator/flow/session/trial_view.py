@@ -1,0 +1,134 @@
+"""The trainee's view of a trial: turned by hand, or led to where the next touch is seen best."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+from rastrainer.protocol import OPEN_PHASES
+from rastrainer.scenario.scenario import Camera, Scenario
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.vectors import vector
+from rastrainer_simulator.viewpoint.best_view import BestView
+from rastrainer_simulator.viewpoint.best_views import BestViews
+from rastrainer_simulator.viewpoint.orbit import heading_deg, orbit_to
+from rastrainer_simulator.viewpoint.view_control import (
+    Pictures,
+    ViewControl,
+    ViewMotion,
+    along_skin,
+)
+
+
+class TrialView:
+    """Where the pictures of the present trial are looked from, and what the sticks mean by it.
+
+    Attributes:
+        control: the view.
+        stick_turn_deg: by how much right and forward of the sticks are turned against those of the
+            scenario's camera, counterclockwise from above.
+    """
+
+    def __init__(self) -> None:
+        self.control = ViewControl()
+        self.stick_turn_deg = 0.0
+        self._best: BestViews | None = None
+        self._trial_id = ""
+        self._went_for: str | None = None
+        self._is_wanted = False
+
+    def begin(self, setup: SimulationSetup, truth: Truth, state: SimulationState) -> None:
+        """Look from the front again, and begin to look for the best views of a trial."""
+        self.close()
+        training = state.training
+        self._trial_id = training.trial_id
+        self._best = BestViews(setup, training.task, truth.head_to_world)
+        self.control.reset()
+
+    def close(self) -> None:
+        """Forget the trial."""
+        if self._best is not None:
+            self._best.end()
+        self._best, self._went_for, self._is_wanted = None, None, False
+
+    def want_best(self) -> None:
+        """Go to the best view of the next point as soon as it is known."""
+        self._is_wanted = True
+
+    def advance(
+        self,
+        dt: float,
+        state: SimulationState,
+        scenario: Scenario,
+        motion: ViewMotion,
+        sticks: OperatorInput,
+        follows: bool,
+    ) -> None:
+        """Move the view by `dt` seconds; `follows` has it go to each next point by itself."""
+        camera = scenario.cameras[state.camera]
+        self.control.use(state.camera)
+        label = state.training.next_point
+        view = self._view_of(state)
+        if view is not None and self._is_wanted:
+            self._go(camera, view, label, is_automatic=False)
+        elif view is not None and follows and label != self._went_for:
+            self._go(camera, view, label, is_automatic=True)
+        is_still = not any((*sticks.translation, *sticks.rotation))
+        self.control.advance(dt, camera, motion, is_still)
+
+    def pictures(self, now: SimulationState, cameras: Mapping[str, Camera]) -> Pictures:
+        """Return where the pictures of a state are looked from."""
+        self.control.use(now.camera)
+        main = self.control.pose(cameras[now.camera])
+        view = self._view_of(now)
+        if view is None or view.beside is None:
+            return Pictures(main)
+        tip = vector(now.tool_tip_to_world[:3, 3].tolist())
+        return Pictures(main, along_skin(view.beside, view.fiducial, view.normal, tip))
+
+    def look_along(self, camera: Camera, yaw_deg: float | None) -> None:
+        """Have the sticks follow the picture, or eyes that look to `yaw_deg` from World's x."""
+        if yaw_deg is None:
+            self.stick_turn_deg = self.control.orbit.azimuth_deg
+        else:
+            self.stick_turn_deg = yaw_deg - heading_deg(camera)
+
+    def _view_of(self, state: SimulationState) -> BestView | None:
+        training = state.training
+        if self._best is None or training.phase not in OPEN_PHASES:
+            return None
+        return self._best.of(training.next_point) if training.trial_id == self._trial_id else None
+
+    def _go(self, camera: Camera, view: BestView, label: str | None, is_automatic: bool) -> None:
+        self._went_for, self._is_wanted = label, False
+        self.control.go(orbit_to(camera, view.eye, view.fiducial), is_automatic)
+
+
+def turned(sticks: OperatorInput, turn_deg: float) -> OperatorInput:
+    """Return sticks whose right and forward are turned counterclockwise from above.
+
+    Not turned at all they stay as they are, bit by bit. The second stick turns the tool as seen
+    from behind it, which is right for a tool that points down.
+    """
+    if turn_deg == 0.0:
+        return sticks
+    c, s = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
+    right, forward, up = sticks.translation
+    # The corner of a square stick is beyond the round one's end, and turned it would be more than
+    # a stick can say.
+    long = max(1.0, math.hypot(right, forward, up))
+    sideways, ahead = sticks.rotation
+    far = max(1.0, math.hypot(sideways, ahead))
+    return replace(
+        sticks,
+        translation=(
+            (c * right - s * forward) / long,
+            (s * right + c * forward) / long,
+            up / long,
+        ),
+        rotation=((c * sideways - s * ahead) / far, (s * sideways + c * ahead) / far),
+    )

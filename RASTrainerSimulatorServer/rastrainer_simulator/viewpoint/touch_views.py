@@ -1,0 +1,72 @@
+"""The best views of a task's touches in one pose of the head."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.surface_queries import outward_normals
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.tasks import Task
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.touch_planner import TouchPlanner
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.scene.skin import Skin
+from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.vectors import Vector, subtract, unit, vector
+from rastrainer_simulator.viewpoint.best_view import BestView, ViewedTouch, best_view
+
+
+class TouchViews:
+    """Looks for best views; it has its own collision shapes, so that a thread may use it alone."""
+
+    def __init__(self, setup: SimulationSetup, head: HeadMesh | None = None) -> None:
+        """Take what a simulation is made from; the head is read where it is not given.
+
+        Raises:
+            InputError: the head cannot be read.
+        """
+        self._scenario: Scenario = setup.scenario
+        self._head = head or read_head_mesh(setup.scenario.head_mesh)
+        stand = setup.scenario.furniture.stand_diameter / 2.0 / MM_PER_M
+        self._collision = Collision(
+            setup.shape,
+            self._head.vertices / MM_PER_M,
+            self._head.triangles,
+            Surroundings(stand_radius=stand),
+        )
+        self._kinematics = make_kinematics(setup.robot)
+        self._planner = TouchPlanner(setup.robot, self._collision)
+
+    def of(self, task: Task, head_to_world: np.ndarray) -> Iterator[tuple[str, BestView | None]]:
+        """Yield each fiducial's label and best view, None where there is none.
+
+        HeadToWorld is (4, 4) float, mm. A fiducial that the robot cannot touch has no view.
+        """
+        pose = np.array(head_to_world, dtype=float)
+        pose[:3, 3] /= MM_PER_M
+        self._collision.set_head_pose(pose)
+        normals = outward_normals(self._head, task.fiducials) @ pose[:3, :3].T
+        numbers = np.array(place_marks(Skin(self._head), task.fiducials, task.labels).places)
+        places, beside = (
+            transforms.apply(pose, points / MM_PER_M) for points in (task.fiducials, numbers)
+        )
+        camera = self._scenario.cameras["close-up"]
+        front = unit(subtract(_vector(camera.position), _vector(camera.focal_point)))
+        for label, place, normal, number in zip(task.labels, places, normals, beside, strict=True):
+            planned = self._planner.touch(place, normal)
+            if planned is None:
+                yield label, None
+                continue
+            sight = self._collision.line_of_sight(self._kinematics.links(planned.q))
+            touch = ViewedTouch(*map(_vector, (place, normal, number, planned.direction)))
+            yield label, best_view(touch, sight, front)
+
+
+def _vector(array: np.ndarray) -> Vector:
+    return vector(array.tolist())

@@ -1,0 +1,88 @@
+"""Every touch has a view that shows target, number and tip; rays against the collision shapes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.surface_queries import hides, outward_normals
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.task_check import check_tasks
+from rastrainer_simulator.viewpoint.best_view import BESIDE_DEG, WIDEST_DEG
+from rastrainer_simulator.viewpoint.touch_views import TouchViews
+from Testing.simulator.authoring.planned_heads import HEADS, setup_of
+
+SEEDS = (None, 11, 12)
+"""Of the poses of the head: the nominal one, and two of trials."""
+TASKS = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
+
+
+@pytest.fixture(scope="module", params=["colin27", *HEADS])
+def made(request, tmp_path_factory):
+    return setup_of(request.param, tmp_path_factory.mktemp("heads"))
+
+
+@pytest.fixture(scope="module")
+def views(made):
+    return TouchViews(made)
+
+
+def pose_of(scenario, seed):
+    return scenario.head_to_world if seed is None else scenario.perturbed_head_to_world(seed)
+
+
+def seen_in_ras(head_to_world, point):
+    return np.linalg.solve(head_to_world, [*(MM_PER_M * np.array(point)), 1.0])[:3]
+
+
+@pytest.mark.parametrize("seed", SEEDS, ids=str)
+@pytest.mark.parametrize("task", TASKS)
+def test_every_touch_is_seen_within_60_degrees_of_the_normal(made, views, task, seed):
+    scenario = made.scenario
+    head_to_world = pose_of(scenario, seed)
+    mesh = read_head_mesh(scenario.head_mesh)
+    chosen = scenario.task(task)
+    normals = outward_normals(mesh, chosen.fiducials)
+    found = dict(views.of(chosen, head_to_world))
+    assert [label for label, view in found.items() if view is None] == []
+    for label, point, normal in zip(chosen.labels, chosen.fiducials, normals, strict=True):
+        view = found[label]
+        # In the head's own frame, and by another computation than the one that has found it.
+        eye = seen_in_ras(head_to_world, view.eye)
+        assert not hides(mesh, eye, point + 2.0 * normal, slack_mm=0.0), label
+        assert degrees(eye - point, normal) <= WIDEST_DEG + 1e-6, label
+        beside = seen_in_ras(head_to_world, view.beside)
+        assert not hides(mesh, beside, point + 2.0 * normal, slack_mm=0.0), label
+        assert BESIDE_DEG[-1] - 1e-6 <= degrees(beside - point, normal) < 90.0, label
+
+
+def degrees(a, b):
+    return math.degrees(math.acos(np.dot(a, b) / np.linalg.norm(a) / np.linalg.norm(b)))
+
+
+def test_the_usual_camera_alone_leaves_many_touches_hidden(setup):
+    scenario = setup.scenario
+    mesh = read_head_mesh(scenario.head_mesh)
+    hidden = 0
+    for task in scenario.tasks:
+        normals = outward_normals(mesh, task.fiducials)
+        for point, normal in zip(task.fiducials, normals, strict=True):
+            eyes = [
+                seen_in_ras(scenario.head_to_world, camera.position / MM_PER_M)
+                for camera in scenario.cameras.values()
+            ]
+            hidden += all(hides(mesh, eye, point + 2.0 * normal, 0.0) for eye in eyes)
+    assert hidden > 15
+
+
+def test_the_check_of_a_scenario_names_what_no_view_shows(setup, monkeypatch):
+    scenario = setup.scenario
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh), setup)
+    task = scenario.task("task-1")
+    assert check_tasks(planning, [task]) == []
+    monkeypatch.setattr("rastrainer_simulator.viewpoint.best_view.WIDEST_DEG", 0.0)
+    (sentence,) = check_tasks(planning, [task])
+    assert sentence.startswith("Task 1: fiducials 1, 2, 3,")
+    assert "cannot be seen within 60° of the skin's normal" in sentence

@@ -1,0 +1,132 @@
+"""The view that is turned by hand, or goes to a place by itself."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rastrainer.units import MM_PER_M
+from rastrainer_simulator.viewpoint.orbit import (
+    FARTHEST_M,
+    FRONT,
+    HIGHEST_DEG,
+    LOWEST_DEG,
+    NEAREST_M,
+    Orbit,
+    camera_pose,
+    heading_deg,
+    limited,
+    orbit_to,
+)
+from rastrainer_simulator.viewpoint.view_control import (
+    STILL,
+    ViewControl,
+    ViewMotion,
+    along_skin,
+)
+
+EYE, FIDUCIAL = (0.55, 0.4, 0.35), (0.5, 0.1, 0.25)
+
+
+@pytest.fixture(params=["close-up", "far"])
+def camera(scenario, request):
+    return scenario.cameras[request.param]
+
+
+def test_a_view_that_is_not_turned_is_the_scenarios_camera_bit_by_bit(camera):
+    pose = camera_pose(camera)
+    assert pose.position == tuple((camera.position / MM_PER_M).tolist())
+    assert pose.focal_point == tuple((camera.focal_point / MM_PER_M).tolist())
+    assert pose.angle_deg == camera.view_angle_deg
+
+
+def test_an_orbit_leads_to_the_eye_it_was_made_for(camera):
+    pose = camera_pose(camera, orbit_to(camera, EYE, FIDUCIAL))
+    np.testing.assert_allclose(pose.position, EYE, atol=1e-12)
+    np.testing.assert_allclose(pose.focal_point, FIDUCIAL, atol=1e-12)
+
+
+def test_a_turn_to_the_right_brings_the_eye_to_the_right_of_the_picture(scenario):
+    camera = scenario.cameras["close-up"]
+    before, after = camera_pose(camera), camera_pose(camera, Orbit(azimuth_deg=10.0))
+    # This camera looks along World's y: x is to the right.
+    assert after.position[0] > before.position[0] + 0.05
+    assert after.position[2] == pytest.approx(before.position[2])
+    assert heading_deg(camera) == pytest.approx(90.0)
+
+
+def test_no_turn_leads_under_the_table_overhead_into_the_head_or_out_of_the_room(camera):
+    for orbit in (Orbit(elevation_deg=-180.0, zoom=1e-6), Orbit(elevation_deg=180.0, zoom=1e6)):
+        pose = camera_pose(camera, limited(camera, orbit))
+        line = np.subtract(pose.position, pose.focal_point)
+        away = np.linalg.norm(line)
+        assert NEAREST_M - 1e-9 <= away <= FARTHEST_M + 1e-9
+        elevation = math.degrees(math.asin(line[2] / away))
+        assert LOWEST_DEG - 1e-9 <= elevation <= HIGHEST_DEG + 1e-9
+
+
+def test_held_buttons_turn_the_view_for_as_long_as_they_are_held(scenario):
+    camera, control = scenario.cameras["close-up"], ViewControl()
+    for _ in range(100):
+        control.advance(0.01, camera, ViewMotion(around=1.0, nearer=1.0), is_arm_still=False)
+    assert control.orbit.azimuth_deg == pytest.approx(70.0)
+    assert control.orbit.zoom == pytest.approx(0.5)
+    stopped = control.orbit
+    control.advance(1.0, camera, STILL, is_arm_still=True)
+    assert control.orbit == stopped
+
+
+def test_the_view_goes_gently_by_the_shorter_way_and_arrives(scenario):
+    camera, control = scenario.cameras["close-up"], ViewControl()
+    control.turn(camera, 170.0, 0.0, 1.0)
+    goal = Orbit(azimuth_deg=-170.0, zoom=0.5)
+    control.go(goal)
+    turns = []
+    while control.orbit != goal:
+        control.advance(0.02, camera, STILL, is_arm_still=False)
+        turns.append(math.remainder(control.orbit.azimuth_deg - 170.0, 360.0))
+    assert turns == sorted(turns)
+    assert max(np.diff(turns)) < 3.0
+    assert turns[-1] == pytest.approx(20.0)
+
+
+def test_a_way_taken_by_itself_waits_while_a_stick_is_deflected(scenario):
+    camera, control = scenario.cameras["close-up"], ViewControl()
+    control.go(Orbit(azimuth_deg=90.0), is_automatic=True)
+    control.advance(0.2, camera, STILL, is_arm_still=True)
+    waiting = control.orbit
+    assert waiting != FRONT
+    control.advance(5.0, camera, STILL, is_arm_still=False)
+    assert control.orbit == waiting
+    control.advance(5.0, camera, STILL, is_arm_still=True)
+    assert control.orbit == Orbit(azimuth_deg=90.0)
+    assert control.is_automatic
+
+
+def test_a_hand_on_the_view_ends_its_way(scenario):
+    camera, control = scenario.cameras["close-up"], ViewControl()
+    control.go(Orbit(azimuth_deg=90.0), is_automatic=True)
+    control.turn(camera, 5.0, 0.0, 1.0)
+    control.advance(5.0, camera, STILL, is_arm_still=True)
+    assert control.orbit == Orbit(azimuth_deg=5.0)
+    assert not control.is_automatic
+
+
+def test_another_camera_begins_as_it_is(scenario):
+    control = ViewControl()
+    control.use("close-up")
+    control.turn(scenario.cameras["close-up"], 30.0, 10.0, 0.8)
+    control.use("close-up")
+    assert control.is_moved
+    control.use("far")
+    assert control.orbit == FRONT
+
+
+def test_the_picture_along_the_skin_shows_more_the_farther_the_tip_is():
+    eye, normal = (0.72, 0.1, 0.25), (0.0, 1.0, 0.0)
+    near, far, farther = (
+        along_skin(eye, FIDUCIAL, normal, (0.5, 0.1 + away, 0.25)) for away in (0.0, 0.1, 5.0)
+    )
+    assert near.angle_deg < far.angle_deg < farther.angle_deg < 90.0
+    assert near.view_up == normal
+    assert (near.position, near.focal_point) == (eye, FIDUCIAL)
