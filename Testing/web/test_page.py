@@ -77,8 +77,9 @@ def test_the_introduction_shows_a_picture_of_what_is_held_with_its_inputs_colore
         assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") == 1000
         drawing = unquote(picture.get_attribute("src"))
         colored[hands] = drawing.count(f'fill="{ACCENT}"')
-    # W, A, S, D, R, F, Shift, Space, Backspace, C, P and M; two sticks, RT, Back and Start.
-    assert colored == {PageKeys: 12, BrowserPad: 5}
+    # W, A, S, D, R, F, Shift, Space, Backspace, C, P and M, and B, Q, E, T, G, X, Z for the view;
+    # two sticks, RT, Back and Start, and for the view two ways of the D-pad, LB and RB.
+    assert colored == {PageKeys: 19, BrowserPad: 9}
 
 
 def test_the_menu_of_heads_shows_the_picture_of_the_one_in_focus(place, page):

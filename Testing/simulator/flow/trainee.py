@@ -224,6 +224,7 @@ class Keys:
         "touch": "Space",
         "undo": "KeyU",
         "camera": "KeyC",
+        "best_view": "KeyB",
         "pause": "KeyP",
         "menu": "KeyM",
     }

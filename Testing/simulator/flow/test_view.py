@@ -1,0 +1,165 @@
+"""The trainee's view: what moves it, what the sticks mean by it, and what the record says."""
+
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer.protocol import StepKind
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.flow.session.trial_view import turned
+from rastrainer_simulator.net.views.presenter import Hello
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.viewpoint.orbit import FRONT
+
+LEFT = OperatorInput((-1.0, 0.0, 0.0), operator="keyboard")
+
+
+@pytest.fixture
+def by_hand(trainee):
+    """Return a trainee whose view does not move by itself."""
+    preferences = trainee.presenter._session.preferences
+    trainee.presenter._session.preferences = preferences.__class__(view="never")
+    return trainee
+
+
+def orbit(trainee):
+    return trainee.presenter._session.view.control.orbit
+
+
+def wait_for_views(trainee):
+    """Let the trial's best views be found."""
+    is_found = lambda: trainee.presenter.pictures(trainee.state).inset is not None  # noqa: E731
+    trainee.until(is_found, "the best view")
+
+
+def moved(trainee, steps=40):
+    """Return by how much the tip moves in the main picture, (3,): right, up, toward the eye."""
+    view = trainee.presenter.pictures(trainee.state).main
+    before = np.array(trainee.tip)
+    trainee.step(steps)
+    ahead = np.subtract(view.focal_point, view.position)
+    right = np.cross(ahead, view.view_up)
+    frame = np.array([right, np.cross(right, ahead), -ahead])
+    frame /= np.linalg.norm(frame, axis=1)[:, None]
+    return frame @ (trainee.tip - before)
+
+
+@pytest.mark.parametrize("around", [0.0, 37.0, 90.0, 180.0, -120.0])
+def test_left_on_the_stick_is_left_in_the_picture_however_the_view_is_turned(by_hand, around):
+    by_hand.start("task-1")
+    by_hand.presenter.on_orbit(1, around, 0.0, 1.0)
+    by_hand.step()
+    by_hand.hands.push(-0.7, 0.0, 0.0, False)
+    right, up, _near = moved(by_hand)
+    assert right < -0.01
+    assert abs(up) < 0.1 * abs(right)
+
+
+def test_the_view_of_the_scenarios_camera_leaves_the_sticks_bit_by_bit_as_they_are(by_hand):
+    sticks = OperatorInput((0.1, -0.7, 0.3), (0.2, 0.9), True, operator="gamepad")
+    assert turned(sticks, 0.0) is sticks
+    assert turned(sticks, 90.0).translation == pytest.approx((0.7, 0.1, 0.3))
+    by_hand.start("task-1")
+    held = []
+    by_hand.presenter._control_loop.hold_sticks = held.append
+    by_hand.hands.push(-0.7, 0.0, 0.0, False)
+    by_hand.step(60)
+    assert held[-1].translation == (-1.0, 0.0, 0.0)
+
+
+def test_a_square_sticks_corner_stays_within_what_a_stick_can_say():
+    corner = turned(OperatorInput((1.0, 1.0, 1.0), (1.0, -1.0)), 45.0)
+    assert np.linalg.norm(corner.translation) == pytest.approx(1.0)
+    assert np.linalg.norm(corner.rotation) == pytest.approx(1.0)
+
+
+def test_the_sticks_of_a_headset_follow_the_eyes(by_hand):
+    presenter = by_hand.presenter
+    presenter.view_left(1)
+    presenter.view_joined(5, Hello("headset", "Quest 3", 90.0))
+    by_hand.start("task-1")
+    for yaw_deg, ahead in ((90.0, (0, 1, 0)), (0.0, (1, 0, 0)), (-90.0, (0, -1, 0))):
+        presenter.on_sticks(5, (0.0, 0.8, 0.0), (0.0, 0.0), False, yaw_deg)
+        before = np.array(by_hand.tip)
+        by_hand.step(25)
+        way = by_hand.tip - before
+        assert way @ ahead > 0.9 * np.linalg.norm(way) > 0.0
+
+
+def test_the_view_goes_to_each_next_point_by_itself_and_waits_for_the_sticks(trainee):
+    trainee.start("task-1")
+    trainee.hands.push(0.0, 0.0, 0.4, True)
+    wait_for_views(trainee)
+    trainee.step(50)
+    assert orbit(trainee) == FRONT
+    trainee.hands.push(0.0, 0.0, 0.0, False)
+    trainee.until(lambda: orbit(trainee) != FRONT, "the way to the best view")
+    trainee.step(400)
+    pictures = trainee.presenter.pictures(trainee.state)
+    assert pictures.main.focal_point == pytest.approx(pictures.inset.focal_point)
+
+
+def test_the_best_view_comes_by_its_control_where_it_does_not_come_by_itself(by_hand):
+    by_hand.start("task-1")
+    wait_for_views(by_hand)
+    by_hand.step(100)
+    assert orbit(by_hand) == FRONT
+    by_hand.tap("best_view")
+    by_hand.step(400)
+    pictures = by_hand.presenter.pictures(by_hand.state)
+    assert pictures.main.focal_point == pytest.approx(pictures.inset.focal_point)
+    by_hand.tap("camera")
+    by_hand.step(400)
+    assert orbit(by_hand) == FRONT
+
+
+def test_held_keys_turn_the_view(by_hand):
+    by_hand.start("task-1")
+    for key, is_so in (
+        ("KeyE", lambda: orbit(by_hand).azimuth_deg > 5.0),
+        ("KeyT", lambda: orbit(by_hand).elevation_deg > 5.0),
+        ("KeyX", lambda: orbit(by_hand).zoom < 0.9),
+    ):
+        by_hand.presenter.on_key(1, key, True, "")
+        by_hand.until(is_so, key)
+        by_hand.presenter.on_key(1, key, False, "")
+
+
+def test_only_the_operators_view_turns_the_view(by_hand):
+    presenter = by_hand.presenter
+    presenter.view_joined(7, Hello("page", "Firefox", 0.0))
+    by_hand.start("task-1")
+    by_hand.tap("undo")
+    presenter.on_orbit(7, 40.0, 0.0, 1.0)
+    by_hand.step()
+    assert orbit(by_hand) == FRONT
+    presenter.on_orbit(1, 40.0, 0.0, 1.0)
+    assert orbit(by_hand).azimuth_deg == pytest.approx(40.0)
+
+
+def test_in_a_study_the_view_follows_only_where_that_is_set(trainee):
+    session = trainee.presenter._session
+    trainee.start("task-1")
+    assert session.does_view_follow
+    session.study.take(StudyStep(trainee="P07", kind=StepKind.TRIAL.value, task="task-1"))
+    assert not session.does_view_follow
+    session.preferences = session.preferences.__class__(view="always")
+    assert session.does_view_follow
+    session.preferences = session.preferences.__class__(view="never")
+    assert not session.does_view_follow
+
+
+def test_the_journal_says_how_the_view_was_turned_and_whether_it_follows(by_hand, outside):
+    by_hand.start("task-1")
+    by_hand.presenter.on_orbit(1, 40.0, -5.0, 0.5)
+    by_hand.step(60)
+    by_hand.submit("Abort")
+    (journal,) = outside.services.records.glob(f"*{SUFFIX}")
+    by_hand.until(lambda: '"view"' in journal.read_text(encoding="utf-8"), "the entry")
+    entries = map(json.loads, journal.read_text(encoding="utf-8").splitlines())
+    views = [entry for entry in entries if entry["kind"] == "view"]
+    assert views[-1]["azimuthDeg"] == 40.0
+    assert views[-1]["zoom"] == 0.5
+    assert not any(entry["follows"] or entry["isAutomatic"] for entry in views)
