@@ -38,12 +38,7 @@ TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
 HEADS = ("colin27", "egg", "small")
 USUAL, SLOW = "usual", "slow"
 SLOW_SKILL = Skill(
-    speed_mm_s=70.0,
-    gain_per_s=2.0,
-    aim_sd_mm=1.2,
-    tremor_mm_s=6.0,
-    reaction_s=0.4,
-    dwell_s=0.5,
+    speed_mm_s=70.0, gain_per_s=2.0, aim_sd_mm=1.2, tremor_mm_s=6.0, reaction_s=0.4, dwell_s=0.5
 )
 """Slower hands, and less exact ones: FLE 1.7 mm."""
 Play = Callable[[SimulationSetup, str, int], PlayedTrial]

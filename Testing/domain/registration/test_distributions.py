@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from rastrainer.registration.distributions import (
-    _quantile,
-    f_tail,
-    incomplete_beta,
-    ratio_quantile,
-)
+from rastrainer.registration.distributions import _quantile, f_tail, incomplete_beta, ratio_quantile
 
 
 def test_the_tail_of_f_agrees_with_scipy_down_to_the_smallest_probabilities():

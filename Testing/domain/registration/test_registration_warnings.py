@@ -149,8 +149,4 @@ def test_sentences_name_the_points_and_the_gain(touched_head):
     (warning,) = register(moving, fixed).warnings
     assert warning.message.startswith("Points 4 and 11 seem to be exchanged")
     assert warning.message.endswith("mm).")
-    assert warning.to_json() == {
-        "code": "order",
-        "points": ["4", "11"],
-        "message": warning.message,
-    }
+    assert warning.to_json() == {"code": "order", "points": ["4", "11"], "message": warning.message}

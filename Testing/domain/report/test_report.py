@@ -15,11 +15,7 @@ from scipy.stats import pearsonr
 from rastrainer.errors import InputError
 from rastrainer.report.report import report_html, write_report
 from rastrainer.report.results.comparisons import compare_modes, mode_delays, paired_means
-from rastrainer.report.results.scores import (
-    cohort_scores,
-    complexity_correlation,
-    with_ctps,
-)
+from rastrainer.report.results.scores import cohort_scores, complexity_correlation, with_ctps
 from rastrainer.report.sections.published_tables import performance_color
 from rastrainer.study.database.study import Study
 from rastrainer.study.outcomes import MAIN_OUTCOMES
@@ -383,13 +379,7 @@ def test_who_reached_the_pass_mark_and_whom_lc_cusum_calls_competent_is_counted(
 def scored(trainee, number, score, version, acceptable=True):
     values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": score}
     return TrialRow(
-        trainee,
-        "hmd",
-        "task-1",
-        number,
-        values,
-        score_version=version,
-        acceptable=acceptable,
+        trainee, "hmd", "task-1", number, values, score_version=version, acceptable=acceptable
     )
 
 

@@ -147,11 +147,7 @@ def test_a_mesh_that_is_huge_or_open_is_refused(folder, library, monkeypatch):
         ("scenario.json", b'{"formatVersion": 1}', "must be"),
         ("tasks/task-1.mrk.json", b"{}", "task-1.mrk.json"),
         ("head.ply", b"ply", "head.ply"),
-        (
-            "volume.nrrd",
-            b"NRRD0004\ntype: float\n\n",
-            r"volume volume\.nrrd must have the type",
-        ),
+        ("volume.nrrd", b"NRRD0004\ntype: float\n\n", r"volume volume\.nrrd must have the type"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_named(folder, library, name, content, sentence):

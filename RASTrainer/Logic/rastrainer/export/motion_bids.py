@@ -85,9 +85,7 @@ def _write_trial(
     start, end = f"sub-{label}_task-{task}", f"acq-{trial.mode}_run-{run:02d}"
     whole = f"{start}_tracksys-{TRACKING}_{end}"
     values = resample(
-        trajectory.times_s,
-        np.column_stack([trajectory.tip_mm, trajectory.clearance_mm]),
-        RATE_HZ,
+        trajectory.times_s, np.column_stack([trajectory.tip_mm, trajectory.clearance_mm]), RATE_HZ
     )
     lines = ["\t".join(f"{value:.4f}" for value in row) for row in values]
     write_text(place / f"{whole}_motion.tsv", "\n".join(lines) + "\n")

@@ -73,10 +73,7 @@ def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
         "verb": _verb("completed"),
         "object": _activity(f"{home_page}/tasks/{trial.task}", task_title(trial.task), SIMULATION),
         "result": result,
-        "context": {
-            "platform": f"RASTrainer, {mode_title(trial.mode)}",
-            "extensions": context,
-        },
+        "context": {"platform": f"RASTrainer, {mode_title(trial.mode)}", "extensions": context},
         "timestamp": trial.completed_utc,
     }
 

@@ -37,11 +37,7 @@ def read_points(path: str | os.PathLike[str]) -> PointList:
 
 
 def read_point_numbers(
-    path: str | os.PathLike[str],
-    column: str,
-    labels: Sequence[str],
-    lowest: float,
-    highest: float,
+    path: str | os.PathLike[str], column: str, labels: Sequence[str], lowest: float, highest: float
 ) -> np.ndarray:
     """Return the numbers of a column for points of these labels, (n,) float, in their order.
 

@@ -8,13 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar, TypeVar
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.wire import (
-    check_float32,
-    decode_text,
-    encode_text,
-    pack_name,
-    unpack_name,
-)
+from rastrainer.igtl.wire import check_float32, decode_text, encode_text, pack_name, unpack_name
 
 _TRANSFORM = struct.Struct(">12f")
 _STRING = struct.Struct(">HH")

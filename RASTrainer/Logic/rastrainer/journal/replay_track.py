@@ -16,17 +16,7 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
 
 EVENTS = frozenset(
-    {
-        "phase",
-        "touch",
-        "undo",
-        "rejected",
-        "proximity",
-        "camera",
-        "plan",
-        "registered",
-        "aborted",
-    }
+    {"phase", "touch", "undo", "rejected", "proximity", "camera", "plan", "registered", "aborted"}
 )
 """Kinds of entries that change what is seen besides the arm."""
 

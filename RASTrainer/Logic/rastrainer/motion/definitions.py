@@ -80,20 +80,10 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             1,
         ),
         MetricDefinition(
-            "mean_speed_mm_s",
-            "Mean speed",
-            "mm/s",
-            f"Mean speed of the tip ({FILTER}).",
-            OWN,
-            0,
+            "mean_speed_mm_s", "Mean speed", "mm/s", f"Mean speed of the tip ({FILTER}).", OWN, 0
         ),
         MetricDefinition(
-            "peak_speed_mm_s",
-            "Peak speed",
-            "mm/s",
-            f"Highest speed of the tip ({FILTER}).",
-            OWN,
-            0,
+            "peak_speed_mm_s", "Peak speed", "mm/s", f"Highest speed of the tip ({FILTER}).", OWN, 0
         ),
         MetricDefinition(
             "sparc",
@@ -114,12 +104,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             1,
         ),
         MetricDefinition(
-            "movement_time_s",
-            "Movement time",
-            "s",
-            "Time from touch to touch, median.",
-            OWN,
-            -1,
+            "movement_time_s", "Movement time", "s", "Time from touch to touch, median.", OWN, -1
         ),
         MetricDefinition(
             "time_to_peak_speed",
@@ -223,12 +208,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             -1,
         ),
         MetricDefinition(
-            "contact_time_s",
-            "Contact time",
-            "s",
-            "Time in contact with the head.",
-            OWN,
-            -1,
+            "contact_time_s", "Contact time", "s", "Time in contact with the head.", OWN, -1
         ),
         MetricDefinition(
             "deepest_contact_mm",
@@ -272,12 +252,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             0,
         ),
         MetricDefinition(
-            "camera_switches",
-            "Camera switches",
-            "",
-            "How often the view was changed.",
-            OWN,
-            0,
+            "camera_switches", "Camera switches", "", "How often the view was changed.", OWN, 0
         ),
         MetricDefinition("pauses", "Pauses", "", "How often the trial was paused.", OWN, 0),
         MetricDefinition(

@@ -97,10 +97,7 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
 
 
 def _quantile(
-    probability_up_to: Callable[[float], float],
-    probability: float,
-    guess: float,
-    tolerance: float,
+    probability_up_to: Callable[[float], float], probability: float, guess: float, tolerance: float
 ) -> float:
     """Return, by bisection, the value above 0 up to which a distribution has a probability.
 

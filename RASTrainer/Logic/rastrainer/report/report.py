@@ -24,11 +24,7 @@ from rastrainer.report.sections.limits import limits
 from rastrainer.report.sections.methods import methods
 from rastrainer.report.sections.mode_comparison import mode_comparison
 from rastrainer.report.sections.motion import motion
-from rastrainer.report.sections.paired_statistics import (
-    findings,
-    order_caveat,
-    paired_statistics,
-)
+from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
 from rastrainer.report.sections.passing import passing
 from rastrainer.report.sections.published_tables import paper_notes, published_tables
 from rastrainer.report.sections.questionnaires import questionnaires

@@ -84,10 +84,7 @@ def paired_power(
 
 
 def subjects_needed(
-    effect_dz: float,
-    power: float = TARGET_POWER,
-    alpha: float = ALPHA,
-    with_period: bool = False,
+    effect_dz: float, power: float = TARGET_POWER, alpha: float = ALPHA, with_period: bool = False
 ) -> int:
     """Return the least number of subjects with this power; arguments as of `paired_power`.
 

@@ -133,10 +133,7 @@ class TreCalibration:
                 f"{old} of the intervals were computed before they allowed for an offset that all "
                 "touches share, and are narrower."
             )
-        for missing, what in (
-            (self.without_truth, "true"),
-            (self.without_expectation, "expected"),
-        ):
+        for missing, what in ((self.without_truth, "true"), (self.without_expectation, "expected")):
             if missing:
                 trials = "1 trial has" if missing == 1 else f"{missing} trials have"
                 found.append(f"{trials} no {what} target error and cannot be shown.")

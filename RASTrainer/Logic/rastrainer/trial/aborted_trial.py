@@ -11,13 +11,7 @@ from typing import Any
 
 from rastrainer import json_checks
 from rastrainer.json_checks import Argument
-from rastrainer.protocol import (
-    FIDUCIAL_COUNT,
-    KEPT_AFTER_S,
-    OPEN_PHASES,
-    TRIAL_RUN,
-    Phase,
-)
+from rastrainer.protocol import FIDUCIAL_COUNT, KEPT_AFTER_S, OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer.trial.record import (
     SHARED_CHECKS,
     TIME_LIMIT_S,

@@ -49,10 +49,7 @@ def advise(
     """
     if score is None or score.version != SCORE_VERSION:
         return tuple(_contacts(motion, 0.0))
-    candidates = [
-        *_accuracy(score, findings),
-        *_time(score, motion),
-    ]
+    candidates = [*_accuracy(score, findings), *_time(score, motion)]
     ranked = sorted(candidates, key=lambda advice: -advice.gain)
     worth = [advice for advice in ranked if advice.gain >= LEAST_GAIN]
     return (*_safety(score, motion), *worth)[:MOST]
@@ -144,10 +141,7 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
 
 
 def _gain(
-    score: TrialScore,
-    time_s: float | None = None,
-    error_factor: float = 1.0,
-    **safety: float,
+    score: TrialScore, time_s: float | None = None, error_factor: float = 1.0, **safety: float
 ) -> float:
     measures = replace(
         score.measures,

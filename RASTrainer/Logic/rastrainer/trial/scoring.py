@@ -126,11 +126,7 @@ class ScoreMeasures:
         return self.safety
 
 
-SAFETY_METRICS = (
-    "unintended_contact_time_s",
-    "unintended_contact_path_mm",
-    "pressing_depth_mm",
-)
+SAFETY_METRICS = ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm")
 """Motion metrics of `rastrainer.motion` that are scored."""
 
 

@@ -78,9 +78,7 @@ def compare_modes(
     return tuple(found)
 
 
-def tested(
-    comparisons: Sequence[ModeComparison],
-) -> list[tuple[ModeComparison, PairedComparison]]:
+def tested(comparisons: Sequence[ModeComparison]) -> list[tuple[ModeComparison, PairedComparison]]:
     """Return the comparisons that could be computed, each with its result."""
     return [(one, one.result) for one in comparisons if one.result is not None]
 

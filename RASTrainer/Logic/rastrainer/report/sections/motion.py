@@ -49,8 +49,7 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         ),
         table([["Metric", *modes, "trials", "n", "g_z [95 %]"]], rows),
         table(
-            [["Metric", Cell("Definition", kind="text"), Cell("Source", kind="text")]],
-            definitions,
+            [["Metric", Cell("Definition", kind="text"), Cell("Source", kind="text")]], definitions
         ),
     )
 

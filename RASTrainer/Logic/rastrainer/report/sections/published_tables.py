@@ -69,10 +69,7 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
             line += (
                 ["–", "–"]
                 if values is None
-                else [
-                    f"{values['completion_time_s']:.2f}",
-                    f"{values['rmse_mm']:.2f}",
-                ]
+                else [f"{values['completion_time_s']:.2f}", f"{values['rmse_mm']:.2f}"]
             )
         rows.append([*line, _performance(scores.tasks[task], scores.tasks.values())])
     last: Line = [Cell("User Perf.", kind="total")]
@@ -170,12 +167,7 @@ def paper_notes(data: StudyData) -> str:
     if notes is None:
         return ""
     rows = [
-        [
-            printed.what,
-            _count(data, printed),
-            printed.printed,
-            _ours(data, printed),
-        ]
+        [printed.what, _count(data, printed), printed.printed, _ours(data, printed)]
         for printed in notes.printed
     ]
     claims = [[Cell(claim, kind="text"), Cell(words, kind="text")] for claim, words in notes.claims]

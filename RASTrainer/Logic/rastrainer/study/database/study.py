@@ -19,12 +19,7 @@ from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.database import Patience, StudyBusyError, StudyDatabase
 from rastrainer.study.database.reading import ReadOnlyStudyDatabase
 from rastrainer.study.database.study_trainees import DeletedTrialError
-from rastrainer.study.database.values import (
-    StoredRegistration,
-    StoredTrial,
-    Trainee,
-    TrialOutcome,
-)
+from rastrainer.study.database.values import StoredRegistration, StoredTrial, Trainee, TrialOutcome
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore

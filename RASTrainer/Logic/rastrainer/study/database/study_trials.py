@@ -254,13 +254,7 @@ def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTri
 def _past_trial(trial_id: str, task: str, mode: str, seconds: float, latest: str) -> PastTrial:
     score = decoded(latest, TrialScore.from_json)
     return PastTrial(
-        trial_id,
-        task,
-        mode,
-        seconds,
-        score.score,
-        score.acceptable,
-        score_version=score.version,
+        trial_id, task, mode, seconds, score.score, score.acceptable, score_version=score.version
     )
 
 

@@ -55,10 +55,7 @@ class Progress:
 
     @classmethod
     def of(
-        cls,
-        steps: Sequence[Step],
-        entries: Sequence[StepEntry],
-        enrolled_utc: str = "",
+        cls, steps: Sequence[Step], entries: Sequence[StepEntry], enrolled_utc: str = ""
     ) -> Progress:
         """Return the progress that a log describes.
 
