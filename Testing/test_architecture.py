@@ -22,16 +22,15 @@ FOLDERS = {
 # know each other.
 LAYERS = {
     "the domain": """
-        rastrainer, rastrainer.processes
-        rastrainer.files, rastrainer.igtl, rastrainer.statistics, rastrainer.study.questionnaires
+        rastrainer
+        rastrainer.files, rastrainer.igtl, rastrainer.statistics
         rastrainer.head, rastrainer.registration
         rastrainer.motion, rastrainer.scenario
         rastrainer.journal, rastrainer.trial
         rastrainer.study.database
         rastrainer.study.protocol
         rastrainer.study
-        rastrainer.export, rastrainer.report.html, rastrainer.report.results
-        rastrainer.report.charts
+        rastrainer.export, rastrainer.report.elements
         rastrainer.report.sections
         rastrainer.report
     """,
@@ -174,7 +173,7 @@ def test_only_the_checksum_may_look_for_a_package_that_slicer_lacks():
     users = [module for module in FILES if "fastcrc" in " ".join(IMPORTS[module])]
     assert [user for user in users if user.startswith("rastrainer.")] in (
         [],
-        ["rastrainer.igtl.checksum"],
+        ["rastrainer.igtl.wire"],
     )
 
 

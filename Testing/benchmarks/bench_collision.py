@@ -13,7 +13,7 @@ import trimesh
 
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import APART, Collision
 from rastrainer_simulator.collision.contact import Contact
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, robot_shape

@@ -11,7 +11,7 @@ import sys
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-from rastrainer.processes.private_folder import private_words
+from rastrainer.python_environment import private_words
 from rastrainer.slicer.program.simulator_package import LOCK, SimulatorPackage
 from rastrainer.slicer.program.trim_packages import SIZES
 

@@ -18,7 +18,7 @@ from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
-from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.trial_records import make_aborted
 from Testing.end_to_end.faulty_proxy import FaultyProxy
 from Testing.end_to_end.slicer_side import SlicerSide
 from Testing.end_to_end.test_delivery import Server

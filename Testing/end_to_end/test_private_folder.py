@@ -13,7 +13,7 @@ import pytest
 
 import rastrainer
 import rastrainer_simulator as simulator
-from rastrainer.processes.private_folder import private_words
+from rastrainer.python_environment import private_words
 from rastrainer.slicer.program.child_process import ChildProcess
 from rastrainer.slicer.program.simulator_setup import CHECKOUT, PROGRAM
 from Testing.end_to_end.virtual_display import VirtualDisplay

@@ -11,8 +11,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.scenario.draft import HeadDraft
-from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
 from rastrainer.slicer.head.own_process import buildScenario
 from rastrainer_simulator.authoring.head_process import head_process
 from Testing.domain.head.spheres import sphere_mesh

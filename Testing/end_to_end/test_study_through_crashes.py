@@ -11,9 +11,9 @@ import pytest
 
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.questionnaires import NASA_TLX, SUS
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import study_protocol_from_json
-from rastrainer.study.questionnaires.catalog import NASA_TLX, SUS
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.study_side import RECORDS, STUDY, StudySide
 from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer

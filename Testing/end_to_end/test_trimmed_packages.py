@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from rastrainer.igtl.client import Client
-from rastrainer.processes.private_folder import private_words
 from rastrainer.protocol import DEFAULT_HOST
+from rastrainer.python_environment import private_words
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello

@@ -1,4 +1,4 @@
-"""What cheating pays: the scores of trials that were played honestly and otherwise."""
+"""What cheating pays: scores, aborted bad trials, and the throughput of touches with an offset."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rastrainer.motion.trial_motion import WIDTH_FACTOR, effective_throughput
 from rastrainer.number_text import fixed
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import PASS_MARK, TrialScore, passes, score_trial
 from rastrainer.trial.trainee_progress import TRAINING_TRIALS, competence_of
 from rastrainer_simulator.core.setup import load_setup
+from Testing.error_rates.measured import Measured, share_of
 from Testing.error_rates.played import TASKS, stored
 
 MOST = 40.0
@@ -110,3 +112,98 @@ def scores_of(way: str, tasks: Sequence[str] = TASKS) -> dict[str, list[TrialSco
 def played(_sets: int) -> list[Scored]:
     """Return what each way to play was worth."""
     return [Scored(words, scores_of(way, tasks), most) for words, way, tasks, most in ROWS]
+
+
+ABORTED_HEADER = (
+    "trainee, 30 trials started",
+    "called competent",
+    "aborted trials not counted (previous method)",
+    "not counted, until 30 are finished (previous method)",
+    "trials finished of 30, mean",
+)
+TRIALS = 30
+
+
+def competence(sets: int, seed: int = 23) -> list[Measured]:
+    """Return how often trainees are called competent who abort each trial that they have seen fail.
+
+    Whoever passes with a probability below that of an adequate trainee is to be called so seldom.
+    """
+    random = np.random.default_rng(seed)
+    return [
+        _trainees("passes 50 %, aborts every bad trial", 0.5, 1.0, sets, random, at_most=0.05),
+        _trainees("passes 50 %, aborts every second bad trial", 0.5, 0.5, sets, random, 0.05),
+        _trainees("passes 50 %, aborts none", 0.5, 0.0, sets, random, at_most=0.05),
+        _trainees("passes 60 %, aborts every bad trial", 0.6, 1.0, sets, random, at_most=0.05),
+        _trainees("passes 95 %, aborts none", 0.95, 0.0, sets, random, at_least=0.9),
+    ]
+
+
+def _trainees(
+    case: str,
+    passing: float,
+    aborting: float,
+    sets: int,
+    random: np.random.Generator,
+    at_most: float | None = None,
+    at_least: float | None = None,
+) -> Measured:
+    """Simulate trainees; `aborting` is the share of the bad trials that they abort."""
+    counted, uncounted, until_finished, finished = [], [], [], []
+    for _ in range(sets):
+        # Enough for 30 finished ones, however many are aborted.
+        failed = random.random(20 * TRIALS) >= passing
+        aborted = failed & (random.random(len(failed)) < aborting)
+        counted.append(_is_competent(failed[:TRIALS]))
+        uncounted.append(_is_competent(failed[:TRIALS][~aborted[:TRIALS]]))
+        until_finished.append(_is_competent(failed[~aborted][:TRIALS]))
+        finished.append(int(np.sum(~aborted[:TRIALS])))
+    beside = (
+        *(f"{fixed(100 * share_of(each), 1)} %" for each in (uncounted, until_finished)),
+        fixed(float(np.mean(finished)), 1),
+    )
+    return Measured(case, share_of(counted), sets, at_most, at_least, beside)
+
+
+def _is_competent(failed: np.ndarray) -> bool:
+    return competence_of([bool(each) for each in failed]).competent_at is not None
+
+
+THROUGHPUT_HEADER = (
+    "offset of all end points, scatter 0.05 mm",
+    "trials above 8 bit/s",
+    "mean, bit/s",
+    "mean by SD about the mean (ISO), bit/s",
+)
+DISTANCE_MM, TOUCHES = 80.0, 15
+
+
+def offsets(sets: int, seed: int = 8) -> list[Measured]:
+    """Return the throughput of trials with a touch a second, each `DISTANCE_MM` from the last."""
+    random = np.random.default_rng(seed)
+    found = []
+    for offset in (0.0, 0.5, 2.0, 5.0):
+        rates, by_sd = [], []
+        for _ in range(sets):
+            ours, standard = _throughputs(offset, random)
+            rates.append(ours)
+            by_sd.append(standard)
+        beside = fixed(float(np.mean(rates)), 2), fixed(float(np.mean(by_sd)), 2)
+        above = share_of(np.array(rates) > 8)
+        limit = 0.0 if offset else None
+        found.append(Measured(f"{offset:g} mm", above, sets, at_most=limit, beside=beside))
+    return found
+
+
+def _throughputs(offset: float, random: np.random.Generator) -> tuple[float, float]:
+    """Return our throughput and the standard's, of targets on a line that is gone to and fro."""
+    there = DISTANCE_MM * (np.arange(TOUCHES) % 2)
+    ahead = np.where(np.arange(TOUCHES) % 2, 1.0, -1.0)
+    beside = (offset + random.normal(0, 0.05, TOUCHES)) * ahead
+    targets, touches = (
+        np.column_stack([x, np.zeros((TOUCHES, 2))]) for x in (there, there + beside)
+    )
+    result = effective_throughput(targets, touches, np.arange(float(TOUCHES)))
+    width = WIDTH_FACTOR * np.std((beside * ahead)[1:], ddof=1)
+    standard = np.log2(np.array(result.effective_distances_mm) / width + 1).mean()
+    return result.bits_per_s, float(standard)

@@ -10,10 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.number_text import fixed
-from rastrainer.scenario.fiducial_normals import fiducial_normals
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.brain_region import Region, region_of
-from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.score_reference import Region, fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
 from rastrainer_simulator.core.setup import SimulationSetup
 from Testing.error_rates.played import HEADS, SLOW, TASKS, USUAL, stored

@@ -7,16 +7,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from Testing.error_rates import (
-    aborted_trials,
     cheats,
-    effect_sizes,
     equal_hands,
     groups,
     learning,
     modes,
     recovery,
     target_errors,
-    throughput,
 )
 from Testing.error_rates.measured import Row, markdown
 
@@ -29,10 +26,10 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "several groups": (groups.POWER_HEADER, groups.several_populations),
     "sequences": (modes.HEADER, modes.sequences),
     "studies": (modes.STUDY_HEADER, modes.studies),
-    "effect sizes": (effect_sizes.HEADER, effect_sizes.coverage),
+    "effect sizes": (modes.EFFECT_HEADER, modes.coverage),
     "recovery": (recovery.HEADER, recovery.parameters),
-    "throughput": (throughput.HEADER, throughput.offsets),
-    "aborted trials": (aborted_trials.HEADER, aborted_trials.competence),
+    "throughput": (cheats.THROUGHPUT_HEADER, cheats.offsets),
+    "aborted trials": (cheats.ABORTED_HEADER, cheats.competence),
     "target errors": (target_errors.HEADER, target_errors.intervals),
     "cheats": (cheats.HEADER, cheats.played),
     "equal hands": (equal_hands.HEADER, equal_hands.usual),

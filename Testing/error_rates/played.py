@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.registration.registration import register
-from rastrainer.trial.brain_region import region_of
-from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.score_reference import region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, TrialScore, score_trial
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.virtual.scripted_trainee import Skill

@@ -1,10 +1,27 @@
 """The statistics of a report err as seldom as docs/error-rates.md says, and find what it says."""
 
+from __future__ import annotations
+
+import dataclasses
+import json
 import re
 
+import numpy as np
 import pytest
 
+from rastrainer.registration.registration import register
+from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
+from Testing.error_rates import played
+from Testing.error_rates.equal_hands import (
+    HEADS,
+    registered_errors,
+    scenario_of,
+    setup,
+    true_errors,
+)
 from Testing.error_rates.page import PAGE, SETS, TABLES, printed, with_table
+from Testing.error_rates.played import SEEDS, SLOW, TASKS, USUAL, all_keys, play, stored
+from Testing.simulator.authoring import planned_heads
 
 FEW = {"several groups": 40, "target errors": 50, "learning": 100}
 """Fewer data sets of what is costly."""
@@ -57,3 +74,83 @@ def test_everything_asked_holds_and_the_page_tells_the_shares(name):
         # Other versions of numpy and scipy may round a p-value at the level otherwise.
         told = one.cells()[1].removesuffix(" %")
         assert float(share.removesuffix(" %")) == pytest.approx(float(told), abs=0.3)
+
+
+@pytest.mark.parametrize("task", ["trial-run", "task-5"])
+@pytest.mark.parametrize("head", HEADS)
+def test_the_reference_error_is_what_errors_along_the_skin_leave(head, task):
+    scenario = scenario_of(head)
+    errors = true_errors(scenario, task, 1.0, 1500, np.random.default_rng(3))
+    fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
+    normals = fiducial_normals(scenario, task)
+    expected = region_of(scenario).tre_per_fle(fiducials, normals)
+    assert np.sqrt(np.mean(errors**2)) == pytest.approx(expected, rel=0.05)
+
+
+def test_many_registrations_at_once_are_those_of_the_program():
+    scenario, random = scenario_of("colin27"), np.random.default_rng(4)
+    fiducials = np.asarray(scenario.task("task-3").fiducials, dtype=float)
+    moving = fiducials + random.normal(0.0, 2.0, (20, 15, 3)) + [5.0, -3.0, 8.0]
+    region = region_of(scenario)
+    expected = [region.tre_mm(register(one, fiducials).matrix, np.eye(4)) for one in moving]
+    assert registered_errors(region, fiducials, moving) == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_tasks_of_colin27_are_to_take_the_published_mean_time():
+    scenario = scenario_of("colin27")
+    times_s = [score_reference(scenario, task).time_s for task in TASKS[1:]]
+    assert np.mean(times_s) == pytest.approx(127.0, abs=1.0)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("head", planned_heads.HEADS)
+def test_the_heads_have_the_tasks_that_the_planner_proposes(head):
+    kept = json.loads(planned_heads.FILE.read_text(encoding="utf-8"))[head]
+    again = planned_heads.as_json(planned_heads.proposed(head))
+    for one, other in zip(kept, again, strict=True):
+        assert one["name"] == other["name"]
+        assert np.allclose(one["fiducials"], other["fiducials"], atol=1e-3)
+
+
+def assert_is_as_stored(key):
+    """Other versions of the libraries may round otherwise, and hands meet the skin elsewhere."""
+    kept = {one.key: one for one in stored()}[key]
+    again = play(setup(key[0]), *key)
+    assert again.measures.completion_time_s == pytest.approx(
+        kept.measures.completion_time_s, rel=0.1
+    )
+    assert again.measures.tre_mm == pytest.approx(kept.measures.tre_mm, abs=0.4)
+    assert again.measures.pressing_depth_mm == pytest.approx(
+        kept.measures.pressing_depth_mm, abs=0.3
+    )
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_the_usual_hands_play_a_task_of_each_head_as_they_did(head):
+    assert_is_as_stored((head, USUAL, "task-1", SEEDS[USUAL][0]))
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize("way", [USUAL, SLOW])
+def test_hands_play_every_task_of_every_head_as_they_did(way, head, task):
+    for seed in SEEDS[way]:
+        assert_is_as_stored((head, way, task, seed))
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("way", [way for way in SEEDS if way not in (USUAL, SLOW)])
+def test_every_cheat_goes_as_it_went(way, task):
+    for seed in SEEDS[way]:
+        assert_is_as_stored(("colin27", way, task, seed))
+
+
+def test_the_file_holds_every_trial_once_and_is_written_as_it_is_read(tmp_path, monkeypatch):
+    trials = stored()
+    assert [one.key for one in trials] == list(all_keys())
+    before = played.FILE.read_bytes()
+    monkeypatch.setattr(played, "FILE", tmp_path / "trials.csv")
+    played.write([dataclasses.replace(one) for one in reversed(trials)])
+    assert played.FILE.read_bytes() == before

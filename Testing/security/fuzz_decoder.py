@@ -19,10 +19,10 @@ except ImportError:
 
 with atheris.instrument_imports(include=["rastrainer.igtl", "rastrainer.protocol"]):
     from rastrainer.errors import InputError
-    from rastrainer.igtl.checksum import plain_crc64
     from rastrainer.igtl.content import Command
     from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, pack
     from rastrainer.igtl.stream import MessageReader
+    from rastrainer.igtl.wire import plain_crc64
     from rastrainer.protocol import check_arguments, decode_json_object
 
 from Testing.security.mutated_messages import valid_messages

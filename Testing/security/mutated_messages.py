@@ -7,10 +7,10 @@ import random
 import struct
 from collections.abc import Callable
 
-from rastrainer.igtl.checksum import crc64
 from rastrainer.igtl.content import Command, CommandReply, Status, String, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
 from rastrainer.igtl.points import Point, Points
+from rastrainer.igtl.wire import crc64
 from Testing.security.hostile_content import HOSTILE_JSON
 
 TRIAL = "6b8f2f1e-6a60-4c0e-9a37-111111111111"

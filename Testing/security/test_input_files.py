@@ -16,10 +16,9 @@ import pytest
 import trimesh
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_markups
+from rastrainer.files.markups import read_markups, read_points
 from rastrainer.files.nrrd import read_nrrd, write_nrrd
-from rastrainer.files.plain_xml import DEEPEST, MOST_ELEMENTS
-from rastrainer.files.point_files import read_points
+from rastrainer.files.reading import DEEPEST, MOST_ELEMENTS
 from rastrainer.scenario.package import checked_scenario, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import read_setup

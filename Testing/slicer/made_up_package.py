@@ -14,9 +14,7 @@ from rastrainer.slicer.program.simulator_package import LOCK, WHEEL, SimulatorPa
 NOTHING = "# Nothing of others.\n"
 OURS = (
     "__init__.py",
-    "processes/__init__.py",
-    "processes/clean_environment.py",
-    "processes/private_folder.py",
+    "python_environment.py",
     "slicer/__init__.py",
     "slicer/program/__init__.py",
     "slicer/program/trim_packages.py",

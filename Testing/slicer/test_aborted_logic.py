@@ -9,7 +9,7 @@ from rastrainer.slicer.logic.trial_delivery import MOST_WAITING, AbortedTrialsLo
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
-from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.trial_records import make_aborted
 from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until
 
 TRIAL = make_aborted()["trialId"]

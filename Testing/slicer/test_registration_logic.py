@@ -27,7 +27,7 @@ from rastrainer.slicer.scene.registration_nodes import (
 )
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.scene import Role, findNode
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
 

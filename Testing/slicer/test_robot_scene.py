@@ -11,7 +11,7 @@ from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import followPlacement, setApplied, showPlannedPlace
 from rastrainer.slicer.scene.robot_scene import robotNode, setRobotVisible, showRobot
 from rastrainer.slicer.scene.scenario_nodes import showTask
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot

@@ -15,7 +15,7 @@ from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.trial_records import make_aborted
 from Testing.slicer.training_room import Room
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"

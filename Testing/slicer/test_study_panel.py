@@ -8,11 +8,11 @@ import pytest
 
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.questionnaires.catalog import SSQ
 from rastrainer.trial.aborted_trial import AbortedTrial
-from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.trial_records import make_aborted
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 

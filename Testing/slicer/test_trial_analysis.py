@@ -11,9 +11,9 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
-from rastrainer.trial.brain_region import region_of
 from rastrainer.trial.ctps import read_trials
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer_headless.output import results_json
 

@@ -8,7 +8,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 
 ALL = ", ".join(LABELS)

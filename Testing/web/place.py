@@ -17,7 +17,7 @@ from playwright.sync_api import Page
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.onto_skin import lowered
 from Testing.end_to_end.simulator_process import SimulatorProcess

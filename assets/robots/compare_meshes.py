@@ -19,7 +19,7 @@ import trimesh
 from iiwa7_dimensions import LINK_NAMES, link_origins
 from make_iiwa7 import visual_parts
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 DIRECTIONS = 128
 OPEN_FRACTION = 0.05

@@ -19,7 +19,7 @@ from iiwa7_sections import (
 from loft import Station, loft
 from solids import box, cylinder, difference, enclosing, hull, moved, revolve, trim
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 Parts = dict[str, trimesh.Trimesh]
 

@@ -16,7 +16,7 @@ from iiwa7_shells import plain_shells, shells
 from iiwa7_urdf import LinkBody, urdf_text
 from pointer_tool import plain_tool, tip, tool
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.core.setup import model_to_json, shape_to_json, write_prepared
 from rastrainer_simulator.robot.model import load_robot

@@ -9,7 +9,7 @@ import trimesh
 from iiwa7_dimensions import TOOL_LENGTH
 from solids import enclosing, revolve
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 SHAFT_RADIUS = 3.0
 TIP_LENGTH = 22.0

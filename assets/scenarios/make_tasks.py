@@ -26,7 +26,7 @@ from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer.head.surface_queries import outward_normal
 from rastrainer.scenario.scenario import FILE_NAME
 from rastrainer.scenario.tasks import LABELS
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import touchable
 from rastrainer_simulator.authoring.task_proposal import (
     PLANS,

@@ -1,8 +1,13 @@
-"""Homogeneous transforms as (4, 4) float arrays; `FromToTo` maps points of the first frame."""
+"""Units and homogeneous transforms: (4, 4) float arrays; `FromToTo` maps points of the first frame.
+
+Lengths are in meters inside the simulator, and in millimeters on the wire, in Slicer and in files.
+"""
 
 from __future__ import annotations
 
 import numpy as np
+
+MM_PER_M = 1000.0
 
 
 def apply(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:

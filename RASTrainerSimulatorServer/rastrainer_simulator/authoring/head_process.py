@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TextIO
 
 from rastrainer.errors import InputError
-from rastrainer.processes.private_folder import python_words
 from rastrainer.progress import HEAD_MADE, Progress, Warn, report_line
-from rastrainer.scenario.draft import HeadDraft, read_draft
+from rastrainer.python_environment import python_words
+from rastrainer.scenario.writer import HeadDraft, read_draft
 
 
 class HeadProcess:

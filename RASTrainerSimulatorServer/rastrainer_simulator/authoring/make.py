@@ -12,13 +12,11 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
 from rastrainer.progress import Progress, Warn
-from rastrainer.scenario.draft import HeadDraft
 from rastrainer.scenario.package import checked_scenario
-from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
 from rastrainer.scenario.setup import SetUp
-from rastrainer.scenario.tasks import Task
-from rastrainer.scenario.writer import new_folder, scenario_name, write_scenario
+from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory, Task
+from rastrainer.scenario.writer import HeadDraft, new_folder, scenario_name, write_scenario
 from rastrainer_simulator.authoring.placed_tasks import read_placed_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.preview import draw_preview

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_check import check_tasks
 from rastrainer_simulator.collision.touch_planner import PlanReach

@@ -8,8 +8,8 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import RAS_LIMIT_MM
-from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.setup import SetUp, read_setup
+from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.writer import scenario_name
 from rastrainer_simulator.authoring.make import ScenarioOptions
 

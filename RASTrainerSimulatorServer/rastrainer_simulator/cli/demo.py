@@ -21,8 +21,8 @@ import numpy as np
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.igtl.client import Client
-from rastrainer.processes.private_folder import python_words
 from rastrainer.protocol import DEFAULT_HOST, FIDUCIAL_COUNT, TRIAL_RUN, Proximity
+from rastrainer.python_environment import python_words
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.demo_summary import trial_summary

@@ -20,7 +20,7 @@ from rastrainer.export.tidy_csv import (
 from rastrainer.export.xapi import HOME_PAGE, statements_text
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
-from rastrainer.report.results.scores import with_ctps
+from rastrainer.report.elements.scores import with_ctps
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow

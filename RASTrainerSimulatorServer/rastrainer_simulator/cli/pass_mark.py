@@ -11,7 +11,7 @@ from statistics import fmean
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.number_text import percent
-from rastrainer.statistics.contrasting_groups import PassMark, pass_mark
+from rastrainer.statistics.competence import PassMark, pass_mark
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol

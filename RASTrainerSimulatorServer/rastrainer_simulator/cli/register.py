@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_files import read_point_numbers, read_points
+from rastrainer.files.markups import read_point_numbers, read_points
 from rastrainer.files.point_list import pair
 from rastrainer.registration.localization_error import (
     LocalizationError,

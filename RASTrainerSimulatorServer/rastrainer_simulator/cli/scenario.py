@@ -158,7 +158,7 @@ def _build(arguments: argparse.Namespace) -> int:
 
 
 def _tasks(arguments: argparse.Namespace) -> int:
-    from rastrainer.scenario.draft import read_draft
+    from rastrainer.scenario.writer import read_draft
     from rastrainer_simulator.authoring.make import check_wishes, make_scenario
     from rastrainer_simulator.authoring.scenario_options import options_of
 

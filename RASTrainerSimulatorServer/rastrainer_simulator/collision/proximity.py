@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.protocol import Proximity
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.clearance import Clearance
 from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.vectors import Vector, dot, subtract

@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.clearance import Clearance
 from rastrainer_simulator.collision.contact import Moved
 from rastrainer_simulator.robot.fabrik import Fabrik

@@ -18,7 +18,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.folder import newest_journal
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName, Proximity, check_arguments
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import StartingPoint
 from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED

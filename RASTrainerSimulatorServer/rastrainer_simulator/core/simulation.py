@@ -11,7 +11,7 @@ import numpy as np
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity

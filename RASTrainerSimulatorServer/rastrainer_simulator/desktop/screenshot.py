@@ -18,7 +18,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_private_folder
-from rastrainer.processes.private_folder import python_words
+from rastrainer.python_environment import python_words
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.net.views.screen import Screen

@@ -6,7 +6,7 @@ import math
 
 from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, Proximity, StepKind
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
 from rastrainer_simulator.flow.path_arc import (

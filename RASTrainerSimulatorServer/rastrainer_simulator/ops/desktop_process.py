@@ -9,7 +9,7 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
-from rastrainer.processes.private_folder import python_words
+from rastrainer.python_environment import python_words
 
 VIEW_KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
 """Holds a key that views are served for, agreed on by who starts a simulator and a window."""

@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkWindowT
 
 from rastrainer.errors import InputError
 from rastrainer.scenario.scenario import Camera
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 
 def look_through(camera: Camera, renderer: vtkRenderer) -> None:

@@ -12,7 +12,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.scenario import Camera
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 from rastrainer_simulator.rendering.offscreen import OffscreenWindow, write_png
 from rastrainer_simulator.robot.model import RobotModel

@@ -14,9 +14,9 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.replay_track import RecordedEvent, ReplayTrack, read_track
 from rastrainer.protocol import Phase, Proximity
+from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
-from rastrainer.units import MM_PER_M
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import stand_pose

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.plain_xml import plain_xml
-from rastrainer.files.reading import read_bytes
+from rastrainer.files.reading import plain_xml, read_bytes
 from rastrainer.finite_json import decode_finite_json
 from rastrainer_simulator.robot.mesh_files import MeshPart
 from rastrainer_simulator.robot.model import RobotModel

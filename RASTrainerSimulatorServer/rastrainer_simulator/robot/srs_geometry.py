@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 # URDFs often round π/2 to a few digits; the solver corrects what such rounding leaves.
 _MEETING_TOLERANCE = 1e-3

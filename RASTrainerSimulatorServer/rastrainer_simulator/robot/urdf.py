@@ -11,8 +11,7 @@ import numpy as np
 import yourdfpy
 
 from rastrainer.errors import InputError
-from rastrainer.files.plain_xml import plain_xml
-from rastrainer.files.reading import read_bytes
+from rastrainer.files.reading import plain_xml, read_bytes
 
 LARGEST_FILE = 4 * 2**20
 FARTHEST = 100.0

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.processes.private_folder import python_words
+from rastrainer.python_environment import python_words
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.ops.desktop_process import BELOW_NORMAL, environment_without_secrets
 from rastrainer_simulator.robot.model import RobotModel

@@ -10,7 +10,7 @@ from trimesh.visual.material import PBRMaterial
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import RobotLink, RobotModel
 from rastrainer_simulator.scene.nodes import (

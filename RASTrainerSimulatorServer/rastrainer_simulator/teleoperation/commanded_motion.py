@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import CommandName
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import Motion
 from rastrainer_simulator.teleoperation.axes import Axes

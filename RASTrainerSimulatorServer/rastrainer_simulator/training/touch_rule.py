@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rastrainer.protocol import TouchRule
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.vectors import Vector, distance
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import (

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.scenario.scenario import Camera
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.teleoperation.axes import camera_axes
 from rastrainer_simulator.vectors import ZERO, Vector, add, length, scale, subtract, vector
 

@@ -11,7 +11,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import outward_normals
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.report.results.comparisons import CONFIRMATORY
+from rastrainer.report.elements.comparisons import CONFIRMATORY
 from rastrainer.statistics.crossover import fit_differences, is_separable
-from rastrainer.statistics.effect_size import ALPHA
+from rastrainer.statistics.intervals import ALPHA
 from rastrainer.statistics.paired import holm, rank_test
 from rastrainer.statistics.scipy_modules import scipy_module
 from rastrainer_simulator.virtual.outcome_model import (

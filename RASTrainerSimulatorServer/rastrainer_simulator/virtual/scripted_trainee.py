@@ -14,8 +14,8 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.protocol import SPEED_LIMIT_MM_S, CommandName, Phase
-from rastrainer.scenario.fiducial_normals import fiducial_normals
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.trial.score_reference import fiducial_normals
 
 LIFT_MM = 35.0
 """How far the tip is taken off the skin before it travels to the next fiducial."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.protocol import CommandName, Mode, Phase, Proximity, check_arguments
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.state import SimulationState, StepResult

@@ -12,12 +12,11 @@ from rastrainer.export.tidy_csv import answers_csv, scores_csv, trials_csv
 from rastrainer.export.xapi import HOME_PAGE, statements
 from rastrainer.report.report import report_html
 from rastrainer.study.database.study import Study
-from rastrainer.study.questionnaires.catalog import SSQ
+from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from Testing.domain.study.played_study import study_with_trials
-from Testing.domain.trial.made_up_scores import first_score
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import first_score, make_record
 
 OLD = "0 of a pilot"
 

@@ -7,11 +7,11 @@ import struct
 
 import pytest
 
-from rastrainer.igtl.checksum import crc64
 from rastrainer.igtl.content import Command, Status, String, Transform
 from rastrainer.igtl.message import LARGEST_BODY, Message, pack
 from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.stream import LARGEST_KEPT, MOST_GARBAGE, MessageReader, StreamError
+from rastrainer.igtl.wire import crc64
 
 TIP = Message("Tip", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 6, 7)), {"seq": "1"}, timestamp=1)
 STATE = Message("SimState", String('{"phase": "idle"}'), timestamp=1)

@@ -8,8 +8,14 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.recording import Recording
-from rastrainer.motion.contact_metrics import INTENDED_MM, pressing_depth, unintended_contact
-from rastrainer.motion.trajectory import Interval, Touch, Trajectory
+from rastrainer.motion.trajectory import (
+    INTENDED_MM,
+    Interval,
+    Touch,
+    Trajectory,
+    pressing_depth,
+    unintended_contact,
+)
 from rastrainer.motion.trial_motion import trial_motion
 
 RATE_HZ = 50.0

@@ -15,7 +15,7 @@ from rastrainer.motion.path_metrics import (
     sparc,
     speeds,
 )
-from rastrainer.motion.throughput import effective_throughput
+from rastrainer.motion.trial_motion import effective_throughput
 
 RATE_HZ = 100.0
 BELL = np.exp(-5 * np.arange(-1, 1, 0.01) ** 2)

@@ -19,7 +19,7 @@ from rastrainer.trial.trainee_progress import competence_of
 from rastrainer_simulator.cli.main import main
 from Testing.domain.report.test_report import words_of
 from Testing.domain.study.played_study import study_with_trials
-from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.trial_records import make_aborted
 
 REASON = "the head had slipped from its stand"
 

@@ -10,11 +10,17 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.pose import Perturbation
 from rastrainer.head.volume import read_head_volume
-from rastrainer.scenario.draft import HeadDraft, read_draft, write_draft
 from rastrainer.scenario.library import list_scenarios
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import SetUp, read_setup, write_setup
-from rastrainer.scenario.writer import new_folder, scenario_name, write_scenario
+from rastrainer.scenario.writer import (
+    HeadDraft,
+    new_folder,
+    read_draft,
+    scenario_name,
+    write_draft,
+    write_scenario,
+)
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rastrainer.report.results.comparisons import CONFIRMATORY, compare_modes
-from rastrainer.report.results.scores import with_ctps
+from rastrainer.report.elements.comparisons import CONFIRMATORY, compare_modes
+from rastrainer.report.elements.scores import with_ctps
 from rastrainer.statistics import paired
+from rastrainer.statistics.competence import lc_cusum, lc_cusum_limit
 from rastrainer.statistics.intervals import correlation
-from rastrainer.statistics.lc_cusum import lc_cusum, lc_cusum_limit
 from rastrainer.statistics.paired import compare_paired, equivalence_margin
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, draw_study

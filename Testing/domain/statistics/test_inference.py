@@ -7,15 +7,15 @@ import pytest
 import scipy.stats
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.effect_size import (
+from rastrainer.statistics.few_subjects import what_cannot_be_concluded, what_it_shows
+from rastrainer.statistics.intervals import (
+    correlation,
     detectable_effect,
     noncentrality_interval,
     paired_power,
     small_sample_factor,
     subjects_needed,
 )
-from rastrainer.statistics.few_subjects import what_cannot_be_concluded, what_it_shows
-from rastrainer.statistics.intervals import correlation
 from rastrainer.statistics.paired import compare_paired, equivalence_margin, holm
 from rastrainer.statistics.rank_tests import signed_rank_test
 

@@ -8,13 +8,13 @@ import scipy.optimize
 import scipy.stats
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.contrasting_groups import pass_mark
-from rastrainer.statistics.lc_cusum import (
+from rastrainer.statistics.competence import (
     FALSE_DISCOVERY,
     chance_of_successes,
     fewest_trials,
     lc_cusum,
     lc_cusum_limit,
+    pass_mark,
     signal_probability,
 )
 from rastrainer.statistics.learning_curve import fit_learning_curve

@@ -9,8 +9,7 @@ from rastrainer.report.report import report_html
 from rastrainer.report.sections.variation import study_variation, variation
 from rastrainer.statistics.variation import Trials, fit_variation, trade_off
 from rastrainer_simulator.virtual.outcome_model import draw_outcomes, expected_outcomes
-from Testing.error_rates.drawn_study import draw_protocol_study
-from Testing.error_rates.recovery import MODEL, PROTOCOL
+from Testing.error_rates.recovery import MODEL, PROTOCOL, draw_protocol_study
 
 NOISELESS = {"trainee_time_sd": 0.0, "interaction_sd": 0.0, "trial_time_sd": 0.0}
 

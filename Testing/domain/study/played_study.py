@@ -4,12 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
-from rastrainer.study.questionnaires.catalog import find_questionnaire
-from Testing.domain.trial.made_up_scores import gentle_score
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import gentle_score, make_record
 
 STUDIES = Path(__file__).parents[3] / "assets" / "studies"
 

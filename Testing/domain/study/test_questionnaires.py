@@ -3,7 +3,7 @@
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.questionnaires.catalog import (
+from rastrainer.study.protocol.questionnaires import (
     NASA_TLX,
     QUESTIONNAIRES,
     SSQ,

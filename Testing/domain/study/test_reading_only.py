@@ -20,8 +20,7 @@ from rastrainer_simulator.cli import export as export_command
 from rastrainer_simulator.cli import pass_mark as pass_mark_command
 from rastrainer_simulator.cli import report as report_command
 from Testing.domain.study.played_study import play, study_with_trials
-from Testing.domain.trial.made_up_scores import gentle_score
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import gentle_score, make_record
 
 
 def run(*words):

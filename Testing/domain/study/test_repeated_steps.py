@@ -14,8 +14,7 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.protocol.study_step import StudyStep
 from Testing.domain.study.played_study import STUDIES
-from Testing.domain.trial.aborted_records import make_aborted
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import make_aborted, make_record
 
 SHIPPED = STUDIES / "published-protocol.json"
 REASON = "a phone rang in the middle of it"

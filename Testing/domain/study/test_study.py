@@ -17,8 +17,7 @@ from rastrainer.registration.target_error import target_error
 from rastrainer.study.database.study import DeletedTrialError, StoredRegistration, Study
 from rastrainer.study.database.study_trials import find
 from rastrainer.trial.record import TrialRecord
-from Testing.domain.trial.made_up_scores import gentle_score
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import gentle_score, make_record
 
 
 @pytest.fixture

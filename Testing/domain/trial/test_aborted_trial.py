@@ -13,9 +13,7 @@ from rastrainer.study.database.study import DeletedTrialError, Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trainee_progress import competence_of, progress_of
-from Testing.domain.trial.aborted_records import make_aborted
-from Testing.domain.trial.made_up_scores import gentle_score
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from rastrainer.trial.advice import advise
 from rastrainer.trial.touch_findings import Reason, touch_findings
 from rastrainer.trial.trainee_progress import PastTrial, progress_of
 from rastrainer.trial.trial_feedback import MOST_SHORT, trial_feedback
-from Testing.domain.trial.made_up_scores import gentle_score
+from Testing.domain.trial.trial_records import gentle_score
 from Testing.touched_head import head_points
 
 LABELS = tuple(str(i + 1) for i in range(15))

@@ -22,7 +22,7 @@ from rastrainer.trial.scoring import (
     passes,
     score_trial,
 )
-from Testing.domain.trial.made_up_scores import gentle_score
+from Testing.domain.trial.trial_records import gentle_score
 
 REFERENCES = (ScoreReference(105.0, 0.6), ScoreReference(150.0, 0.43), ScoreReference(30.0, 0.9))
 references = st.sampled_from(REFERENCES)

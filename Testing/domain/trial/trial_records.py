@@ -1,6 +1,17 @@
-"""A trial record as the simulator delivers it."""
+"""Records of finished and aborted trials as the simulator delivers them, and scores of trials."""
+
+from __future__ import annotations
 
 import uuid
+from dataclasses import replace
+
+from rastrainer.trial.scoring import (
+    FIRST_SCORE_VERSION,
+    ScoreMeasures,
+    ScoreReference,
+    TrialScore,
+    score_trial,
+)
 
 
 def make_record(**changes):
@@ -29,3 +40,40 @@ def make_record(**changes):
         "seed": 3,
     }
     return {**record, **changes}
+
+
+def make_aborted(number=900, touches=3, **changes):
+    whole = make_record()
+    record = {
+        "trialId": str(uuid.UUID(int=number)),
+        **{key: whole[key] for key in ("trainee", "task", "mode", "scenario", "startedUtc")},
+        "abortedUtc": "2024-05-17T09:31:00Z",
+        "elapsedS": 60.0,
+        "phase": "complete" if touches == 15 else "running",
+        "reason": "trainee",
+        "points": whole["points"][:touches],
+        "rejectedTouches": 1,
+        "undoneTouches": 0,
+        "versions": {"simulator": "0.1.0"},
+        "touchRule": "on skin",
+    }
+    return {**record, **changes}
+
+
+REFERENCE = ScoreReference(time_s=105.0, tre_mm=0.4)
+
+
+def gentle_score(time_s: float, tre_mm: float, reference: ScoreReference = REFERENCE) -> TrialScore:
+    """Return the score of a trial without unintended contact in which nothing was pressed."""
+    return score_trial(ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0), reference)
+
+
+def first_score(time_s: float, tre_mm: float) -> TrialScore:
+    """Return a score as version 1 made them: of time and expected TRE alone."""
+    return replace(
+        gentle_score(time_s, tre_mm),
+        safety_desirability=None,
+        is_safe=None,
+        measures=ScoreMeasures(time_s, tre_mm, None, None, None),
+        version=FIRST_SCORE_VERSION,
+    )

@@ -14,7 +14,7 @@ from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import tre_covariances
 from rastrainer.scenario.complexity import complexity
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.planning_setup import touchable
 from rastrainer_simulator.authoring.task_proposal import target_spread

@@ -8,9 +8,9 @@ from scipy.spatial import cKDTree
 
 from rastrainer import transforms
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
-from rastrainer.scenario.draft import HeadDraft
 from rastrainer.scenario.tasks import LABELS
-from rastrainer.units import MM_PER_M
+from rastrainer.scenario.writer import HeadDraft
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_set import TaskSetProposer

@@ -8,8 +8,8 @@ import pytest
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
-from rastrainer.scenario.draft import HeadDraft
 from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.placed_tasks import read_placed_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

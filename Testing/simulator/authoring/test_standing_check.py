@@ -7,9 +7,9 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.head.pose import Perturbation
-from rastrainer.scenario.draft import HeadDraft
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

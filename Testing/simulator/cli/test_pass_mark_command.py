@@ -10,9 +10,7 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.cli.main import main
-from Testing.domain.trial.aborted_records import make_aborted
-from Testing.domain.trial.made_up_scores import first_score, gentle_score
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import first_score, gentle_score, make_aborted, make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol.json"
 NOVICES, EXPERTS = [f"N{n}" for n in range(5)], [f"E{n}" for n in range(5)]

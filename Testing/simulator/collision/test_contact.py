@@ -7,7 +7,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.collision.touch_planner import TouchPlanner

@@ -3,7 +3,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.capsules import thin_segment
 from rastrainer_simulator.collision.head_surface import HeadSurface
 from Testing.simulator.collision.brute_force import point_to_triangles, segment_to_triangles

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import Proximity
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.clearance import FAR, Clearance, Nearest
 from rastrainer_simulator.collision.proximity import ProximitySettings, next_proximity
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import touchable
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import robot_shape

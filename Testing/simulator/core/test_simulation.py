@@ -11,8 +11,8 @@ import pytest
 
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity, TouchRule, check_arguments
-from rastrainer.scenario.fiducial_normals import fiducial_normals
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput

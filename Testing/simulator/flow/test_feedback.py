@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import TouchRule
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.net.views.feedback_event import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.flow.session.progress import DoneTasks

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from rastrainer.protocol import Phase, Proximity, check_arguments
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.teleoperation.axes import camera_axes

@@ -14,8 +14,8 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
+from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
-from rastrainer.units import MM_PER_M
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput

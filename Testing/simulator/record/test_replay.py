@@ -9,7 +9,7 @@ import pytest
 
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, check_arguments
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop

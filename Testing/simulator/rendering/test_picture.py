@@ -7,7 +7,7 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.scenario import Camera, Furniture
 from rastrainer.scenario.tasks import Task
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
 from rastrainer_simulator.rendering.offscreen import write_png
 from rastrainer_simulator.rendering.picture import SceneMoment, render_picture

@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.urdf import readArmChain
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot

@@ -13,7 +13,7 @@ import trimesh
 import yourdfpy
 
 from rastrainer.errors import InputError
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import load_robot

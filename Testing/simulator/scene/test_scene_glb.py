@@ -7,7 +7,7 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the importer makes actors)
 from vtkmodules.vtkIOImport import vtkGLTFImporter
 
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.scene.nodes import Material

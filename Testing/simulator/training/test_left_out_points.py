@@ -11,9 +11,9 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.registration.registration import register
+from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
-from rastrainer.units import MM_PER_M
 from Testing.domain.trial.trial_records import make_record
 from Testing.simulator.training.test_training import Trial
 

@@ -9,7 +9,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName, Phase, TouchRule, check_arguments
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.texts import Texts

@@ -7,7 +7,7 @@ import pytest
 
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.surface_queries import hides, outward_normals
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_check import check_tasks
 from rastrainer_simulator.viewpoint.best_view import BESIDE_DEG, WIDEST_DEG

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.viewpoint.orbit import (
     FARTHEST_M,
     FRONT,

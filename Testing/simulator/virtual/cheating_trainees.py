@@ -17,9 +17,9 @@ from rastrainer.head.surface_queries import outward_normal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import CommandName, Proximity, TouchRule, check_arguments
-from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
-from rastrainer.units import MM_PER_M
+from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput

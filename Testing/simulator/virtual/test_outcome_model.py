@@ -5,8 +5,8 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.report.results.comparisons import compare_modes
-from rastrainer.statistics.effect_size import paired_power
+from rastrainer.report.elements.comparisons import compare_modes
+from rastrainer.statistics.intervals import paired_power
 from rastrainer.statistics.learning_curve import fit_learning_curve
 from rastrainer.statistics.trend import TrendVerdict, falling_trend
 from rastrainer.study.outcomes import MAIN_OUTCOMES

@@ -50,8 +50,8 @@ def main() -> int:
 def _places(folder: Path, records: Path) -> list[tuple[Any, Any]]:
     """Return each fiducial with the outward direction there: (3,) float, World, mm."""
     from rastrainer import transforms
-    from rastrainer.scenario.fiducial_normals import fiducial_normals
     from rastrainer.scenario.scenario import load_scenario
+    from rastrainer.trial.score_reference import fiducial_normals
 
     journal = max(records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
     with journal.open(encoding="utf-8") as lines:

@@ -13,8 +13,8 @@ from rastrainer.registration.registration import RIGID
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
-from rastrainer.study.questionnaires.catalog import find_questionnaire
 from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
 
 FIRST_COLUMNS = (

@@ -1,10 +1,16 @@
-"""Reading files that may hold anything: only regular files, of limited size, as text or JSON."""
+"""Read untrusted files: only regular ones of limited size, as text, JSON, XML or CSV."""
 
 from __future__ import annotations
 
+import csv
+import io
+import math
 import os
+import re
 import stat
+from collections.abc import Sequence
 from typing import Any
+from xml.parsers import expat
 
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
@@ -101,3 +107,120 @@ def failure_reason(error: Exception) -> str:
 def printable_name(path: object) -> str:
     """Return a path for a sentence, escaped where it holds what cannot be printed."""
     return ascii(str(path)) if not str(path).isprintable() else str(path)
+
+
+MOST_ELEMENTS = 20_000
+DEEPEST = 64
+
+_DECLARATION = re.compile(r"\s*<\?xml\s[^>]*\?>")
+
+
+def plain_xml(content: bytes, what: str) -> str:
+    """Return XML as it can be given to any parser, without its declaration.
+
+    The declaration goes because it may name an encoding in which the rest reads differently.
+    `what` begins the sentence of an error, such as "The URDF robot.urdf".
+
+    Raises:
+        InputError: not UTF-8, not well-formed, with a document type or entities (they could expand
+            without end, or name other files), too deeply nested, or too many elements.
+    """
+    text = decode_text(content, what)
+    declaration = _DECLARATION.match(text)
+    body = text[declaration.end() :] if declaration else text
+    try:
+        _Check(what).parse(body.encode())
+    except expat.ExpatError as error:
+        raise InputError(f"{what} is not well-formed XML: {error}.") from None
+    return body
+
+
+class _Check:
+    """Looks at every element as it comes, and stops at the first that is one too many."""
+
+    def __init__(self, what: str) -> None:
+        self._what = what
+        self._elements = 0
+        self._depth = 0
+
+    def parse(self, body: bytes) -> None:
+        parser = expat.ParserCreate("utf-8")
+        parser.StartElementHandler = self._begin
+        parser.EndElementHandler = self._end
+        parser.StartDoctypeDeclHandler = self._refuse_type
+        parser.Parse(body, True)
+
+    def _begin(self, _name: str, _attributes: Any) -> None:
+        self._elements += 1
+        self._depth += 1
+        if self._elements > MOST_ELEMENTS:
+            raise InputError(f"{self._what} has more than {MOST_ELEMENTS} elements.")
+        if self._depth > DEEPEST:
+            raise InputError(f"{self._what} nests its elements more than {DEEPEST} deep.")
+
+    def _end(self, _name: str) -> None:
+        self._depth -= 1
+
+    def _refuse_type(self, *_declaration: Any) -> None:
+        raise InputError(f"{self._what} declares a document type or entities; remove them.")
+
+
+CSV_LIMIT_BYTES = 4 * 2**20
+
+
+def read_rows(
+    path: str | os.PathLike[str], required: Sequence[str], optional: Sequence[str] = ()
+) -> list[tuple[int, dict[str, str]]]:
+    """Return the line number and the named cells of each row, stripped of spaces.
+
+    Args:
+        path: A CSV file in UTF-8, comma separated, of at most 4 MiB. Empty lines do not count.
+        required: Columns that the header must name, in any order.
+        optional: Columns that it may name; further ones are ignored.
+
+    Raises:
+        InputError: the file cannot be read, its header is another, a row has other cells than the
+            header, or there is no row.
+    """
+    reader = csv.reader(io.StringIO(read_text(path, CSV_LIMIT_BYTES)), strict=True)
+    try:
+        lines = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+    except csv.Error as error:
+        raise InputError(
+            f"The file {path} is not a CSV file: line {reader.line_num}: {error}."
+        ) from None
+    lines = [(number, cells) for number, cells in lines if any(cells)]
+    wanted = ",".join([*optional, *required] if optional else required)
+    header = [name.lower() for name in lines[0][1]] if lines else []
+    if not set(required) <= set(header) or len(set(header)) < len(header):
+        raise InputError(f"The file {path} must be a CSV file with the header {wanted}.")
+    if len(lines) == 1:
+        raise InputError(f"The file {path} has a header but no rows.")
+    rows = []
+    for number, cells in lines[1:]:
+        if len(cells) != len(header):
+            raise InputError(
+                f"Line {number} of {path} has {len(cells)} cells; the header has {len(header)}."
+            )
+        rows.append((number, dict(zip(header, cells, strict=True))))
+    return rows
+
+
+def number_in(
+    path: object, line: int, cells: dict[str, str], column: str, lowest: float, highest: float
+) -> float:
+    """Return the number in a cell.
+
+    Raises:
+        InputError: it is no finite number from `lowest` to `highest`.
+    """
+    try:
+        value = float(cells[column])
+    except ValueError:
+        value = math.nan
+    if not lowest <= value <= highest:
+        raise InputError(
+            f"Line {line} of {path}: {column} must be a number from {lowest:g} to {highest:g}, "
+            f"not {cells[column][:40]!r}."
+        )
+    return value

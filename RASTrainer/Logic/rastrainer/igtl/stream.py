@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from enum import Enum
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.checksum import crc64
 from rastrainer.igtl.message import (
     CONTENTS,
     HEADER_BYTES,
@@ -18,6 +17,7 @@ from rastrainer.igtl.message import (
     read_header,
     unpack,
 )
+from rastrainer.igtl.wire import crc64
 
 LARGEST_KEPT = 2**20
 """Bytes of a body that are held in memory until it is whole; longer ones are passed over."""

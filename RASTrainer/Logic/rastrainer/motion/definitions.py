@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rastrainer.motion.contact_metrics import INTENDED_MM
 from rastrainer.motion.path_metrics import (
     CUTOFF_HZ,
     IDLE_DURATION_S,
@@ -13,7 +12,7 @@ from rastrainer.motion.path_metrics import (
     SPARC_PAD_LEVEL,
     SPARC_THRESHOLD,
 )
-from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
+from rastrainer.motion.trajectory import FAR_MM, INTENDED_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.motion.trial_motion import ACCEPTANCE_MM, DWELL_RADIUS_MM, RATE_HZ
 
 OWN = "RASTrainer"

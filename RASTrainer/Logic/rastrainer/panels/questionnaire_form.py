@@ -9,7 +9,7 @@ import qt
 from rastrainer.errors import InputError
 from rastrainer.panels.widgets import chosenData, textLabel
 from rastrainer.slicer.translation import _
-from rastrainer.study.questionnaires.questionnaire import Questionnaire, QuestionnaireItem
+from rastrainer.study.protocol.questionnaires import Questionnaire, QuestionnaireItem
 
 
 class QuestionnaireForm:

@@ -20,8 +20,8 @@ from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.progress import SKIPPED, Progress, StepEntry
+from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind
-from rastrainer.study.questionnaires.catalog import find_questionnaire
 
 TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
 

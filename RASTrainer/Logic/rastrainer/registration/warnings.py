@@ -19,7 +19,7 @@ from rastrainer.registration.faults import (
     rigid_fre,
 )
 from rastrainer.registration.fits import AFFINE, RIGID, fit
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 SAME_PLACE = 1e-3
 """Points nearer than this part of the set's extent count as one place (0.1 mm on a head)."""

@@ -12,22 +12,18 @@ from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files.writing import write_text
 from rastrainer.number_text import counted
-from rastrainer.report.html.markup import bullets, page, paragraph, section
-from rastrainer.report.results.comparisons import ModeComparison, compare_modes
-from rastrainer.report.results.scores import versions_note, with_ctps, with_one_score_version
-from rastrainer.report.sections.begun import begun
+from rastrainer.report.elements.comparisons import ModeComparison, compare_modes
+from rastrainer.report.elements.markup import bullets, page, paragraph, section
+from rastrainer.report.elements.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.calibration import calibration
-from rastrainer.report.sections.distributions import spread
-from rastrainer.report.sections.groups import groups
 from rastrainer.report.sections.learning import learning
-from rastrainer.report.sections.limits import limits
-from rastrainer.report.sections.methods import methods
-from rastrainer.report.sections.mode_comparison import mode_comparison
-from rastrainer.report.sections.motion import motion
+from rastrainer.report.sections.methods import limits, methods
+from rastrainer.report.sections.mode_comparison import distributions, mode_comparison, motion
 from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
 from rastrainer.report.sections.passing import passing
 from rastrainer.report.sections.published_tables import paper_notes, published_tables
-from rastrainer.report.sections.questionnaires import questionnaires
+from rastrainer.report.sections.started_trials import started_trials
+from rastrainer.report.sections.trainees import groups, questionnaires
 from rastrainer.report.sections.variation import variation
 from rastrainer.statistics.few_subjects import FEW
 from rastrainer.statistics.scipy_modules import scipy_module
@@ -89,11 +85,11 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     )
     sections = [
         _summary(everything, data.gap, versions_note(data)),
-        begun(data),
+        started_trials(data),
         published_tables(data),
         mode_comparison(data),
         *(paired_statistics(comparisons) for comparisons in main),
-        spread(data),
+        distributions(data),
         learning(data),
         variation(data),
         passing(data),

@@ -19,8 +19,15 @@ from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.head.pose import WIDEST, Perturbation, perturbed_pose
 from rastrainer.head.volume import VolumeFile, read_volume_file
 from rastrainer.protocol import WORLD_LIMIT_MM
-from rastrainer.scenario.plan import PlannedTarget, PlannedTrajectory, read_targets, read_trajectory
-from rastrainer.scenario.tasks import Task, is_task_name, read_task
+from rastrainer.scenario.tasks import (
+    PlannedTarget,
+    PlannedTrajectory,
+    Task,
+    is_task_name,
+    read_targets,
+    read_task,
+    read_trajectory,
+)
 
 FILE_NAME = "scenario.json"
 PREVIEW_NAME = "preview.png"

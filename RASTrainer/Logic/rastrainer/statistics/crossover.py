@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.statistics.effect_size import CONFIDENCE
+from rastrainer.statistics.intervals import CONFIDENCE
 from rastrainer.statistics.scipy_modules import scipy_module
 
 FEWEST = 4

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rastrainer.number_text import fixed, p_text, percent, signed
-from rastrainer.statistics.effect_size import (
+from rastrainer.statistics.intervals import (
     ALPHA,
     TARGET_POWER,
     detectable_effect,

@@ -1,13 +1,127 @@
-"""Pearson's correlation and a share of trials, each with its 95 % interval."""
+"""Effect sizes, correlations and proportions with intervals, and the power of paired tests."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.statistics.scipy_modules import scipy_module
+
+CONFIDENCE = 0.95
+
+
+def small_sample_factor(dof: float) -> float | None:
+    """Return Hedges' J, by which a standardized difference of few subjects is too large.
+
+    None for one degree of freedom: no estimate is unbiased there.
+    """
+    if dof <= 1:
+        return None
+    log = math.lgamma(dof / 2) - math.lgamma((dof - 1) / 2)
+    return math.exp(log) / math.sqrt(dof / 2)
+
+
+def noncentrality_interval(
+    t: float, dof: float, confidence: float = CONFIDENCE
+) -> tuple[float, float]:
+    """Return the noncentralities between which an observed t is not surprising.
+
+    (Steiger and Fouladi 1997: at each end, t is the quantile of its tail.) Divided by √n they are
+    the limits of the population's effect size itself. They are not multiplied by Hedges' J, which
+    corrects the estimate: with it they would cover too rarely.
+    """
+    tail = (1 - confidence) / 2
+    return _noncentrality(t, dof, 1 - tail), _noncentrality(t, dof, tail)
+
+
+def _noncentrality(t: float, dof: float, probability: float) -> float:
+    """Return the noncentrality at which so much of the distribution lies below t."""
+    below = scipy_module("stats").nct.cdf
+
+    def excess(noncentrality: float) -> float:
+        share = float(below(t, dof, noncentrality))
+        # Far out in a tail, scipy gives no number.
+        share = float(noncentrality < t) if math.isnan(share) else share
+        return share - probability
+
+    low, high, step = t - 1.0, t + 1.0, 2.0
+    while excess(low) < 0:
+        low, step = low - step, 2 * step
+    while excess(high) > 0:
+        high, step = high + step, 2 * step
+    return float(scipy_module("optimize").brentq(excess, low, high, xtol=1e-12))
+
+
+ALPHA = 0.05
+TARGET_POWER = 0.8
+MOST_SUBJECTS = 10_000
+
+
+def paired_power(
+    effect_dz: float, n: int, alpha: float = ALPHA, with_period: bool = False
+) -> float:
+    """Return the probability that n subjects show an effect (two-sided paired t-test).
+
+    Args:
+        effect_dz: True mean difference over the true standard deviation of the differences (of
+            subjects with the same order, where the period is separated).
+        n: Subjects, at least 2; 3 with the period.
+        alpha: Level of the test.
+        with_period: Whether the effect of the period is separated, which takes a degree of
+            freedom; the orders are taken as balanced.
+    """
+    stats = scipy_module("stats")
+    dof = n - 1 - with_period
+    critical, shift = stats.t.ppf(1 - alpha / 2, dof), effect_dz * math.sqrt(n)
+    if shift == 0:
+        return alpha
+    shift = abs(shift)
+    above, below = stats.nct.sf(critical, dof, shift), stats.nct.cdf(-critical, dof, shift)
+    # Far out in a tail, scipy gives no number: there, all or nothing lies beyond.
+    return float(np.nan_to_num(above, nan=1.0) + np.nan_to_num(below, nan=0.0))
+
+
+def subjects_needed(
+    effect_dz: float, power: float = TARGET_POWER, alpha: float = ALPHA, with_period: bool = False
+) -> int:
+    """Return the least number of subjects with this power; arguments as of `paired_power`.
+
+    Raises:
+        InputError: the effect is so small that more than 10 000 were needed.
+    """
+    low = 1 + with_period
+    high = low + 1
+    while paired_power(effect_dz, high, alpha, with_period) < power:
+        low, high = high, 2 * high
+        if high > MOST_SUBJECTS:
+            raise InputError(
+                f"An effect of {effect_dz:g} standard deviations would need more than "
+                f"{MOST_SUBJECTS} subjects."
+            )
+    while high - low > 1:
+        middle = (low + high) // 2
+        if paired_power(effect_dz, middle, alpha, with_period) < power:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def detectable_effect(
+    n: int, power: float = TARGET_POWER, alpha: float = ALPHA, with_period: bool = False
+) -> float:
+    """Return the effect d_z that n subjects show with this power; others as of `paired_power`."""
+
+    def missing(effect: float) -> float:
+        return paired_power(effect, n, alpha, with_period) - power
+
+    high = 1.0
+    while missing(high) < 0:
+        high *= 2
+    return float(scipy_module("optimize").brentq(missing, 0.0, high))
 
 
 @dataclass(frozen=True)

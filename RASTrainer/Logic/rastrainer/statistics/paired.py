@@ -13,7 +13,7 @@ from rastrainer.statistics.crossover import (
     fit_differences,
     is_separable,
 )
-from rastrainer.statistics.effect_size import (
+from rastrainer.statistics.intervals import (
     CONFIDENCE,
     noncentrality_interval,
     small_sample_factor,

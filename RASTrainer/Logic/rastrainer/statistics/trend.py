@@ -18,7 +18,7 @@ from enum import Enum
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.effect_size import CONFIDENCE
+from rastrainer.statistics.intervals import CONFIDENCE
 from rastrainer.statistics.scipy_modules import scipy_module
 
 ALPHA = 0.05

@@ -15,13 +15,11 @@ from rastrainer.motion.trajectory import Trajectory
 from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import RIGID, Registration, register_all_kinds
 from rastrainer.registration.target_error import TargetError, target_error
-from rastrainer.scenario.fiducial_normals import fiducial_normals
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
 from rastrainer.trial.advice import advise
-from rastrainer.trial.brain_region import region_of
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.score_reference import score_reference
+from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.csv_files import number_in, read_rows
+from rastrainer.files.reading import number_in, read_rows
 
 PUBLISHED_STUDY = ("studies", "published.csv")
 """Place among the assets of the published study's trials, with which CTPS compares."""

@@ -1,24 +1,172 @@
-"""What the score of a task is measured against, from the scenario itself.
+"""The region in which a registration has to be right, and the reference values of a task's score.
 
-The same hands are to get the same score on every task of every head: the time that a task may take
-comes from the way of the tip through its fiducials, and the error that it may leave from how errors
-along the skin at the fiducials reach the region. A touch is on the skin, so its errors are along
-it; errors alike in all directions (Fitzpatrick, West and Maurer 1998) would allow tasks on a small
-patch up to twice of what the same hands leave there. docs/error-rates.md shows how equal the scores
-are on three heads.
+Neither fiducials nor one target show how far a guided instrument would miss: a registration may be
+right at one point by chance and wrong beside it. So the true error is taken over the scenario's
+targets and over a grid of the brain's volume, half and half. The brain is not segmented: the grid
+is made of the points of a 10 mm grid that lie at least 15 mm under the skin (scalp, skull and
+cerebrospinal fluid) and at most 120 mm below the vertex.
+
+Equal skill should get equal scores on every task of every head. So the reference time follows from
+the tip's path through the fiducials, and the reference error from how touching errors propagate to
+the region. A touch is on the skin, so its errors lie along the skin; isotropic errors (Fitzpatrick,
+West and Maurer 1998) would allow tasks on a small patch up to twice the error that the same skill
+causes. docs/error-rates.md compares the scores on three heads.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.surface_queries import nearest_vertices, outward_normals
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.scenario.fiducial_normals import fiducial_normals
+from rastrainer.registration.localization_error import motions
+from rastrainer.registration.registration import RIGID
+from rastrainer.registration.target_error import true_errors
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.brain_region import region_of
 from rastrainer.trial.scoring import ScoreReference
+
+MOST_RESULTS = 64
+
+Points = tuple[tuple[float, ...], ...]
+
+
+def fiducial_normals(scenario: Scenario, task_name: str) -> np.ndarray:
+    """Return the skin's outward unit normals at a task's fiducials, (n, 3) float, RAS; read only.
+
+    Raises:
+        InputError: there is no such task, or the head's mesh cannot be used.
+    """
+    fiducials = np.asarray(scenario.task(task_name).fiducials, dtype=float)
+    return computed_once(scenario, _normals, tuple(map(tuple, fiducials.tolist())))
+
+
+def computed_once(
+    scenario: Scenario, compute: Callable[..., np.ndarray], *arguments: Points
+) -> np.ndarray:
+    """Return `compute(mesh, *arguments)` of the scenario's head; read only.
+
+    The result is kept for as long as the mesh's file stays as it is.
+
+    Raises:
+        InputError: the head's mesh cannot be used.
+    """
+    mesh = scenario.head_mesh
+    changed = mesh.stat().st_mtime_ns if mesh.is_file() else 0
+    return _computed(mesh, changed, compute, arguments)
+
+
+@lru_cache(maxsize=MOST_RESULTS)
+def _computed(
+    mesh: Path, _changed: int, compute: Callable[..., np.ndarray], arguments: tuple[Points, ...]
+) -> np.ndarray:
+    result = compute(read_head_mesh(mesh), *arguments)
+    result.setflags(write=False)
+    return result
+
+
+def _normals(head: HeadMesh, fiducials: Points) -> np.ndarray:
+    return outward_normals(head, np.array(fiducials))
+
+
+SPACING_MM = 10.0
+UNDER_SKIN_MM = 15.0
+BELOW_VERTEX_MM = 120.0
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Where a registration has to be right.
+
+    Attributes:
+        targets: (m, 3) float, RAS mm, at least one.
+        grid: (n, 3) float, RAS mm, of the brain's volume.
+    """
+
+    targets: np.ndarray
+    grid: np.ndarray
+
+    def mean(self, of_targets: np.ndarray, of_grid: np.ndarray) -> float:
+        """Return the mean of a value at the targets and at the grid, each half of it."""
+        return float((np.mean(of_targets) + np.mean(of_grid)) / 2)
+
+    def tre_mm(self, world_to_head: np.ndarray, head_to_world: np.ndarray) -> float:
+        """Return the RMS true TRE of a registration.
+
+        Args:
+            world_to_head: (4, 4) float, mm, the registration.
+            head_to_world: (4, 4) float, mm, where the head really is.
+        """
+        squares = [
+            np.sum(true_errors(world_to_head, head_to_world, points) ** 2, axis=1)
+            for points in (self.targets, self.grid)
+        ]
+        return float(np.sqrt(self.mean(*squares)))
+
+    def tre_per_fle(self, fiducials: np.ndarray, normals: np.ndarray) -> float:
+        """Return the RMS TRE to expect of a rigid registration of touches on the skin.
+
+        Their errors are independent, of an FLE of 1 mm each, and lie along the skin, in which all
+        directions are alike: Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). To first order they move the fit by
+        Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point r by J(r) times that, with J the motions of a point.
+
+        Args:
+            fiducials: (n, 3) float, RAS mm, not on one line.
+            normals: (n, 3) float, unit normals of the skin there, RAS.
+        """
+        center = fiducials.mean(axis=0)
+        moved = motions(RIGID, fiducials - center)
+        fit = np.linalg.pinv(moved.reshape(-1, moved.shape[2])).reshape(-1, *fiducials.shape)
+        along = (np.eye(3) - normals[:, :, None] * normals[:, None, :]) / 2
+        covariance = np.einsum("anj,njk,bnk->ab", fit, along, fit)
+        squares = []
+        for points in (self.targets, self.grid):
+            moves = motions(RIGID, points - center)
+            squares.append(np.einsum("nia,ab,nib->n", moves, covariance, moves))
+        return float(np.sqrt(self.mean(*squares)))
+
+
+def region_of(scenario: Scenario) -> Region:
+    """Return the region of a scenario: the head's target, the planned ones, and the grid.
+
+    Raises:
+        InputError: the head's mesh cannot be used.
+    """
+    targets = [scenario.target_position, *(target.position for target in scenario.targets)]
+    return Region(np.array(targets, dtype=float), computed_once(scenario, brain_grid))
+
+
+def brain_grid(head: HeadMesh) -> np.ndarray:
+    """Return the grid's points, (n, 3) float, RAS mm.
+
+    Raises:
+        InputError: the head is too small or too flat to have any.
+    """
+    top = head.vertices[:, 2].max()
+    low, high = head.vertices.min(axis=0), head.vertices.max(axis=0)
+    low[2] = max(low[2], top - BELOW_VERTEX_MM)
+    axes = [
+        SPACING_MM * np.arange(np.ceil(a / SPACING_MM), np.floor(b / SPACING_MM) + 1)
+        for a, b in zip(low, high, strict=True)
+    ]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    distances, nearest = nearest_vertices(head, grid)
+    inward = head.vertices[nearest] - grid
+    is_inside = np.einsum("ij,ij->i", inward, head.vertex_normals[nearest]) > 0
+    inside = grid[is_inside & (distances >= UNDER_SKIN_MM)]
+    if not len(inside):
+        raise InputError(
+            f"No part of the head lies {UNDER_SKIN_MM:g} mm under its skin: there is no brain in "
+            "which the true error could be computed."
+        )
+    return inside
+
 
 LIFT_MM = 35.0
 """How far the tip is off the skin on its way from one fiducial to the next."""

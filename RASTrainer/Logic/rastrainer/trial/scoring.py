@@ -6,7 +6,7 @@ square root of safety, which is 1 for a trial without unintended contact. What i
 acceptance is cut so far that no such trial, however good otherwise, reaches any acceptable one.
 
 Accuracy is the true error, which only a simulator knows, over the region that the registration has
-to be right in (`rastrainer.trial.brain_region`): neither an FRE nor an expected TRE can see an
+to be right in (`rastrainer.trial.score_reference`): neither an FRE nor an expected TRE can see an
 offset that all touches share. The references come from the scenario
 (`rastrainer.trial.score_reference`), and the mode plays no part.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
+from rastrainer.statistics.competence import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.statistics.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.processes.private_folder import python_words
+from rastrainer.python_environment import python_words
 from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
 
 KEYBOARD = "The keyboard does everything a gamepad does."

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_questionnaire
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer.study.questionnaires.catalog import find_questionnaire
-from rastrainer.study.questionnaires.questionnaire import QuestionnaireItem
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.net.views.screen import Menu

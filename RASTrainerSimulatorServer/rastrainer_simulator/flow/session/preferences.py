@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
 from rastrainer.protocol import TouchRule
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from rastrainer_simulator.teleoperation.axes import AxesChoice

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from rastrainer.protocol import FREE, StepKind
+from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
-from rastrainer.study.questionnaires.catalog import QUESTIONNAIRES
 from rastrainer_simulator.ops.texts.texts import Texts
 
 MOST_TRAINEES = 1000

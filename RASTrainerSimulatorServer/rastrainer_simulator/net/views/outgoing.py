@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.messages import PROTOCOL
 from rastrainer_simulator.net.views.presenter import Control, Feedback
 from rastrainer_simulator.net.views.screen import Screen, screen_to_json

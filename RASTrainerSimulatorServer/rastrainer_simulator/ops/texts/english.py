@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from rastrainer.study.questionnaires.catalog import QUESTIONNAIRES
+from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.trial import wording
 
 _ITEMS: Mapping[str, str] = {

@@ -8,10 +8,10 @@ from concurrent.futures import Future
 
 import pytest
 
-from rastrainer.igtl.checksum import crc64
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, CommandReply
 from rastrainer.igtl.message import Message, pack
+from rastrainer.igtl.wire import crc64
 from rastrainer.protocol import COMMAND_ARGUMENTS, PROTOCOL_VERSION
 from rastrainer_simulator.state import Answer
 from Testing.simulator.net.igtl.servers import LinkServer, answer_to

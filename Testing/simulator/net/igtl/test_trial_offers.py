@@ -12,7 +12,7 @@ from rastrainer.protocol import PROTOCOL_VERSION, Phase
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer_simulator.net.igtl.simulator_link import OFFERS_AT_ONCE
 from rastrainer_simulator.state import TrainingState
-from Testing.domain.trial.aborted_records import make_aborted
+from Testing.domain.trial.trial_records import make_aborted
 from Testing.simulator.net.igtl.servers import LinkServer, at_rest
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from trimesh.transformations import quaternion_matrix
 
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.outgoing import quaternion
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
 from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, ScreenMessage, Tone

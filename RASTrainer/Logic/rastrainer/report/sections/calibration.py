@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from rastrainer.number_text import fixed
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.report.charts.svg import (
+from rastrainer.report.elements.markup import bullets, figure, paragraph, section, table
+from rastrainer.report.elements.svg import (
     FAINT,
     GRID,
     INK,
@@ -17,7 +18,6 @@ from rastrainer.report.charts.svg import (
     number,
     y_grid,
 )
-from rastrainer.report.html.markup import bullets, figure, paragraph, section, table
 from rastrainer.statistics.intervals import Proportion
 from rastrainer.study.outcomes import mode_title
 from rastrainer.study.study_data import StudyData, TrialRow

@@ -7,10 +7,10 @@ from collections import defaultdict
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text, percent
-from rastrainer.report.charts.learning_curves import learning_curves
-from rastrainer.report.charts.svg import mode_color
-from rastrainer.report.html.markup import Cell, Line, bullets, figure, paragraph, section, table
-from rastrainer.report.results.scores import versions_note
+from rastrainer.report.elements.charts import learning_curves
+from rastrainer.report.elements.markup import Cell, Line, bullets, figure, paragraph, section, table
+from rastrainer.report.elements.scores import versions_note
+from rastrainer.report.elements.svg import mode_color
 from rastrainer.report.sections.paired_statistics import interval_text
 from rastrainer.statistics.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
 from rastrainer.statistics.trend import ALPHA, STEADY, CohortTrend, TrendVerdict, cohort_trend

@@ -1,4 +1,4 @@
-"""The comparison of the modes, task by task, as in the paper's Fig. 8."""
+"""The modes side by side: by task (the paper's Fig. 8), as distributions, and by motion metric."""
 
 from __future__ import annotations
 
@@ -7,9 +7,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.report.charts.svg import FAINT, INK, Sheet, axis_over, legend, mode_color, y_grid
-from rastrainer.report.html.markup import figure, section
-from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, mode_title, task_title
+from rastrainer.motion.definitions import DEFINITIONS
+from rastrainer.number_text import fixed
+from rastrainer.report.elements.comparisons import ModeComparison, tested
+from rastrainer.report.elements.markup import Cell, Line, figure, paragraph, section, table
+from rastrainer.report.elements.svg import (
+    FAINT,
+    INK,
+    Axis,
+    Sheet,
+    axis_over,
+    legend,
+    mode_color,
+    number,
+    y_grid,
+)
+from rastrainer.report.sections.paired_statistics import interval_text
+from rastrainer.statistics.paired import PairedComparison
+from rastrainer.study.outcomes import (
+    MAIN_OUTCOMES,
+    MOTION_OUTCOMES,
+    Outcome,
+    mode_title,
+    task_title,
+)
 from rastrainer.study.study_data import StudyData
 
 SHOWN = ("completion_time_s", "rmse_mm", "ctps", "score")
@@ -97,3 +118,130 @@ def _bar(sheet: Sheet, axis, x: float, width: float, color: str, values: Sequenc
     for index, value in enumerate(shown):
         spread = ((index * 0.618) % 1.0 - 0.5) * width * 0.55
         sheet.dot(x + spread, axis.at(value), 2.4, color, 0.9)
+
+
+LANE_WIDTH, LANE_HEIGHT = 330, 74
+LANE_LEFT, LANE_RIGHT = 66, 318
+MOST_LANE_DOTS = 300
+STACK = 38.0
+"""Height of the highest stack of dots, px."""
+
+
+def distribution_chart(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]) -> str:
+    """Return the chart of lanes, each a name, a color and its values."""
+    height = 54 + LANE_HEIGHT * len(lanes)
+    sheet = Sheet(LANE_WIDTH, height, f"Distribution of {heading}")
+    sheet.text(10, 16, heading, 12.5, INK, weight="600")
+    everything = [value for _, _, values in lanes for value in values]
+    axis = axis_over(everything, LANE_LEFT, LANE_RIGHT)
+    for tick in axis.ticks():
+        x = axis.at(tick)
+        sheet.line(x, 28, x, height - 24, "#e3e7ec")
+        sheet.text(x, height - 10, number(tick), 10, FAINT, "middle")
+    for index, (name, color, values) in enumerate(lanes):
+        y = 32 + LANE_HEIGHT * (index + 0.5)
+        sheet.text(LANE_LEFT - 10, y + 4, name.split(" ")[0], 11, INK, "end")
+        _lane(sheet, axis, y, color, values)
+    return sheet.svg()
+
+
+def _lane(sheet: Sheet, axis: Axis, y: float, color: str, values: Sequence[float]) -> None:
+    ordered = np.sort(np.asarray(values, dtype=float))
+    shown = ordered
+    if len(ordered) > MOST_LANE_DOTS:
+        shown = np.quantile(ordered, np.linspace(0, 1, MOST_LANE_DOTS))
+    radius = 3.2 if len(shown) <= 60 else 1.8
+    for x, row in _swarm(np.array([axis.at(value) for value in shown]), 2 * radius):
+        sheet.dot(x, y + 2 - row, radius, color, 0.75)
+    low, middle, high = (axis.at(q) for q in np.quantile(ordered, [0.25, 0.5, 0.75]))
+    sheet.rect(low, y + 10, high - low, 8, color, 0.35)
+    sheet.line(middle, y + 7, middle, y + 21, color, 2.5)
+    sheet.line(axis.at(ordered[0]), y + 14, low, y + 14, color, 1.2)
+    sheet.line(high, y + 14, axis.at(ordered[-1]), y + 14, color, 1.2)
+
+
+def _swarm(xs: np.ndarray, size: float) -> list[tuple[float, float]]:
+    """Return positions of dots that are stacked where they would hide each other.
+
+    Stacks that would be too high are pressed together, all alike, so that their shape remains.
+    """
+    placed: list[tuple[float, float]] = []
+    for x in xs:
+        row = 0.0
+        while any(abs(x - ox) < size and abs(row - orow) < 0.9 * size for ox, orow in placed):
+            row += size
+        placed.append((float(x), row))
+    highest = max((row for _, row in placed), default=0.0)
+    share = min(1.0, STACK / highest) if highest else 1.0
+    return [(x, share * row) for x, row in placed]
+
+
+def distributions(data: StudyData) -> str:
+    """Return a chart an outcome, each with a lane a mode."""
+    charts = []
+    for outcome in MAIN_OUTCOMES:
+        lanes = []
+        for index, mode in enumerate(data.modes):
+            values = [
+                t.values[outcome.name] for t in data.of_mode(mode) if outcome.name in t.values
+            ]
+            if values:
+                lanes.append((mode_title(mode), mode_color(mode, index), values))
+        if lanes:
+            charts.append(distribution_chart(outcome.heading, lanes))
+    caption = "All trials; below the dots the middle half, the median, and the whole range."
+    return section("Distributions", figure(charts, caption))
+
+
+def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
+    """Return the table; "" where no trial was recorded."""
+    found = {name for trial in data.trials for name in trial.values}
+    outcomes = [outcome for outcome in MOTION_OUTCOMES if outcome.name in found]
+    if not outcomes:
+        return ""
+    compared = {c.outcome.name: result for c, result in tested(comparisons)}
+    rows = []
+    for outcome in outcomes:
+        values = [
+            [t.values[outcome.name] for t in data.of_mode(mode) if outcome.name in t.values]
+            for mode in data.modes
+        ]
+        means = [_mean_and_sd(own, outcome.digits) if own else "–" for own in values]
+        counts = " / ".join(str(len(own)) for own in values)
+        rows.append([outcome.heading, *means, counts, *_effect(compared.get(outcome.name))])
+    definitions: list[Line] = [
+        [
+            outcome.title,
+            Cell(DEFINITIONS[outcome.name].definition, kind="text"),
+            Cell(DEFINITIONS[outcome.name].source, kind="text"),
+        ]
+        for outcome in outcomes
+    ]
+    modes = [mode_title(mode) for mode in data.modes]
+    return section(
+        "Motion metrics",
+        paragraph(
+            "Mean ± standard deviation of the trials; described, not tested. g_z is of the n "
+            "trainees who did both modes."
+        ),
+        table([["Metric", *modes, "trials", "n", "g_z [95 %]"]], rows),
+        table(
+            [["Metric", Cell("Definition", kind="text"), Cell("Source", kind="text")]], definitions
+        ),
+    )
+
+
+def _effect(result: PairedComparison | None) -> list[str]:
+    """Return the number of trainees and the effect size, as far as there is one."""
+    if result is None:
+        return ["–", "–"]
+    if result.hedges_gz is None or result.gz_interval is None:
+        return [str(result.n), "–"]
+    return [str(result.n), interval_text(result.hedges_gz, result.gz_interval, 2)]
+
+
+def _mean_and_sd(values: Sequence[float], digits: int) -> str:
+    text = fixed(float(np.mean(values)), digits)
+    if len(values) > 1:
+        text += f" ± {fixed(float(np.std(values, ddof=1)), digits)}"
+    return text

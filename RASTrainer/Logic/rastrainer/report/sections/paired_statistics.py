@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rastrainer.number_text import fixed, p_text
-from rastrainer.report.charts.paired import effect_sizes, paired_lines
-from rastrainer.report.html.markup import Cell, Line, figure, heading, paragraph, section, table
-from rastrainer.report.results.comparisons import ModeComparison, tested
+from rastrainer.report.elements.charts import effect_sizes, paired_lines
+from rastrainer.report.elements.comparisons import ModeComparison, tested
+from rastrainer.report.elements.markup import Cell, Line, figure, heading, paragraph, section, table
 from rastrainer.statistics.few_subjects import what_it_shows
 from rastrainer.statistics.paired import equivalence_margin
 from rastrainer.study.outcomes import mode_name, mode_title

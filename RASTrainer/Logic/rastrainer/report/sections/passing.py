@@ -8,18 +8,18 @@ from datetime import datetime
 import numpy as np
 
 from rastrainer.number_text import percent
-from rastrainer.report.charts.learning_curves import learning_curves
-from rastrainer.report.charts.svg import mode_color
-from rastrainer.report.html.markup import figure, paragraph, section, table
-from rastrainer.report.results.scores import compared_version, versions_note
-from rastrainer.statistics.lc_cusum import (
+from rastrainer.report.elements.charts import learning_curves
+from rastrainer.report.elements.markup import figure, paragraph, section, table
+from rastrainer.report.elements.scores import compared_version, versions_note
+from rastrainer.report.elements.svg import mode_color
+from rastrainer.statistics.competence import (
     FALSE_DISCOVERY,
     LcCusum,
     chance_of_successes,
     fewest_trials,
     lc_cusum_limit,
 )
-from rastrainer.study.database.clock import moment
+from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import mode_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData

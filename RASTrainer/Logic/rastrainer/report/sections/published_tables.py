@@ -7,8 +7,16 @@ from collections.abc import Iterable
 import numpy as np
 
 from rastrainer.number_text import counted, fixed, p_phrase, significant
-from rastrainer.report.html.markup import Cell, Line, bullets, heading, paragraph, section, table
-from rastrainer.report.results.scores import cohort_scores, complexity_correlation
+from rastrainer.report.elements.markup import (
+    Cell,
+    Line,
+    bullets,
+    heading,
+    paragraph,
+    section,
+    table,
+)
+from rastrainer.report.elements.scores import cohort_scores, complexity_correlation
 from rastrainer.statistics.intervals import Correlation
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.study_data import StudyData

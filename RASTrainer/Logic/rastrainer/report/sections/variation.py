@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.number_text import fixed, percent
-from rastrainer.report.html.markup import Cell, Line, paragraph, section, table
+from rastrainer.report.elements.markup import Cell, Line, paragraph, section, table
 from rastrainer.report.sections.paired_statistics import interval_text
-from rastrainer.statistics.effect_size import CONFIDENCE
+from rastrainer.statistics.intervals import CONFIDENCE
 from rastrainer.statistics.scipy_modules import scipy_module
 from rastrainer.statistics.variation import Trials, Variation, fit_variation, trade_off
 from rastrainer.study.outcomes import mode_title

@@ -17,8 +17,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.progress import HEAD_MADE, print_progress, print_warning
-from rastrainer.scenario.draft import HeadDraft, write_draft
-from rastrainer.scenario.writer import new_folder
+from rastrainer.scenario.writer import HeadDraft, new_folder, write_draft
 
 
 def main(argv: Sequence[str] | None = None) -> int:

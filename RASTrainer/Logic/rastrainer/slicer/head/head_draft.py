@@ -11,7 +11,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.progress import Progress
-from rastrainer.scenario.draft import HeadDraft
+from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
 from rastrainer.slicer.head.images_and_skull import SCALP_MM, imageOf, skullOf

@@ -19,8 +19,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.progress import Progress, print_progress
-from rastrainer.scenario.draft import HeadDraft, write_draft
 from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.scenario.writer import HeadDraft, write_draft
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.program.child_process import runChild
 

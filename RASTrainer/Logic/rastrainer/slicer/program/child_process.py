@@ -23,8 +23,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder_lock import STARTED_BY
-from rastrainer.processes.clean_environment import clean_environment
 from rastrainer.progress import Progress, report_line
+from rastrainer.python_environment import clean_environment
 
 if sys.platform == "win32":
     import ctypes

@@ -20,7 +20,7 @@ from rastrainer import __version__
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_text
-from rastrainer.processes.private_folder import private_words
+from rastrainer.python_environment import private_words
 from rastrainer.slicer.program.child_process import ChildProcess, childEnvironment
 from rastrainer.slicer.program.simulator_package import (
     SetupProgress,

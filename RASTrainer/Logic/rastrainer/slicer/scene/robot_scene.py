@@ -15,7 +15,7 @@ from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.link_nodes import prepareNodes
 from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role, findNode
 from rastrainer.slicer.scene.urdf import Element, attribute, numbers, originOf, readUrdf
-from rastrainer.units import MM_PER_M
+from rastrainer.transforms import MM_PER_M
 
 URDF = "iiwa7.urdf"
 

@@ -10,9 +10,8 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.plain_xml import plain_xml
-from rastrainer.files.reading import read_bytes
-from rastrainer.units import MM_PER_M
+from rastrainer.files.reading import plain_xml, read_bytes
+from rastrainer.transforms import MM_PER_M
 
 Element = ElementTree.Element
 MOST_BYTES = 4 << 20

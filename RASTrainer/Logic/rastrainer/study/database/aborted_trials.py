@@ -10,10 +10,10 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.clock import moment, utc_now
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
 from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES, decoded, json_text
+from rastrainer.study.database.values import moment, utc_now
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.trainee_progress import PastTrial
 

@@ -9,8 +9,7 @@ from collections.abc import Iterable
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.study.database.clock import utc_now
-from rastrainer.study.database.values import Trainee
+from rastrainer.study.database.values import Trainee, utc_now
 
 
 class DeletedTrialError(InputError):

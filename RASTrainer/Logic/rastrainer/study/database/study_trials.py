@@ -14,9 +14,8 @@ from rastrainer.finite_json import decode_finite_json
 from rastrainer.registration.registration import RIGID, Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.clock import utc_now
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
-from rastrainer.study.database.values import StoredRegistration, StoredTrial, TrialOutcome
+from rastrainer.study.database.values import StoredRegistration, StoredTrial, TrialOutcome, utc_now
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore

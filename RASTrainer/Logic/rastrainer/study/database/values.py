@@ -1,8 +1,9 @@
-"""What a study holds, as plain values."""
+"""The values that a study stores, and its clock."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from datetime import datetime, timezone
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,16 @@ from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
+
+
+def utc_now() -> str:
+    """Return the current time as ISO 8601 in UTC, to the millisecond."""
+    return datetime.now(timezone.utc).isoformat(timespec="milliseconds")
+
+
+def moment(utc: str) -> datetime:
+    """Return the moment of an ISO 8601 text; also before Python 3.11, which knows no Z."""
+    return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from dataclasses import replace
 from datetime import datetime
 
 from rastrainer.study.database.aborted_trials import unexplained
-from rastrainer.study.database.clock import moment
 from rastrainer.study.database.study_trainees import TRAINEE_ID
+from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.progress import DONE, Progress, StepEntry
 from rastrainer.study.protocol.steps import Step, StepKind
 from rastrainer.trial.aborted_trial import AbortedTrial

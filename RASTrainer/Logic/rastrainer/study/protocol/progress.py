@@ -9,8 +9,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind
-from rastrainer.study.questionnaires.catalog import find_questionnaire
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 DONE, SKIPPED = "done", "skipped"

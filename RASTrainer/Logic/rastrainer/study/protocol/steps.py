@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind
+from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.study_protocol import (
     AFTER_ALL,
     AFTER_MODE,
@@ -15,7 +16,6 @@ from rastrainer.study.protocol.study_protocol import (
     BEFORE_MODE,
     StudyProtocol,
 )
-from rastrainer.study.questionnaires.catalog import QUESTIONNAIRES
 
 _IN_MODE = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
 

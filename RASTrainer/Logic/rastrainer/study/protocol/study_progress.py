@@ -15,15 +15,15 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.aborted_trials import explain
-from rastrainer.study.database.clock import utc_now
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text
+from rastrainer.study.database.values import utc_now
 from rastrainer.study.protocol.played_trials import aborted_before, played_next
 from rastrainer.study.protocol.progress import DONE, SKIPPED, Progress, StepEntry
+from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind, steps_for
 from rastrainer.study.protocol.study_protocol import StudyProtocol, study_protocol_from_json
-from rastrainer.study.questionnaires.catalog import find_questionnaire
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.protocol import TRIAL_RUN, Mode
 from rastrainer.scenario.tasks import is_task_name
-from rastrainer.study.questionnaires.catalog import find_questionnaire
+from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
 
 FORMAT_VERSION = 1

@@ -11,7 +11,7 @@ from typing import Any
 from rastrainer.files.json_fields import Fields
 from rastrainer.protocol import ALL_DONE, FREE, REPEAT, StepKind
 from rastrainer.study.protocol.progress import Progress
-from rastrainer.study.questionnaires.catalog import find_questionnaire
+from rastrainer.study.protocol.questionnaires import find_questionnaire
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
-"""LC-CUSUM: when has a trainee reached competence? (Biau and Porcher 2010)
+"""When is a trainee competent? LC-CUSUM (Biau and Porcher 2010) and a pass mark from two groups.
 
-The usual CUSUM starts from a competent operator. This one starts from the hypothesis that the
-trainee is not competent yet, and signals when the trials speak against that.
+The usual CUSUM starts from a competent operator. LC-CUSUM starts from the hypothesis that the
+trainee is not competent yet, and signals when the trials speak against that. The pass mark is where
+the scores of novices and experts separate (contrasting groups; Livingston and Zieky 1982).
 """
 
 from __future__ import annotations
@@ -10,6 +11,9 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import percent
@@ -141,3 +145,72 @@ def _steps(adequate: float, inadequate: float) -> tuple[float, float]:
             "below 1."
         )
     return math.log((1 - adequate) / (1 - inadequate)), math.log(adequate / inadequate)
+
+
+FEWEST_OF_GROUP = 5
+
+
+@dataclass(frozen=True)
+class PassMark:
+    """Where to pass, and whom that wrongs if both groups' scores are normal.
+
+    Attributes:
+        score: Those at or above it pass.
+        passing_novices: Expected share of novices who pass.
+        failing_experts: Expected share of experts who fail.
+        observed_passing_novices: The same, counted.
+        observed_failing_experts: The same, counted.
+    """
+
+    score: float
+    passing_novices: float
+    failing_experts: float
+    observed_passing_novices: float
+    observed_failing_experts: float
+
+
+def pass_mark(novices: Sequence[float], experts: Sequence[float]) -> PassMark:
+    """Return the score at which the normal curves of both groups cross between their means.
+
+    Args:
+        novices: One score a person, such as the mean of the last trials.
+        experts: The same; higher is better.
+
+    Raises:
+        InputError: fewer than five in a group, no spread in one, or experts are not better.
+    """
+    low, high = np.asarray(novices, dtype=float), np.asarray(experts, dtype=float)
+    if min(len(low), len(high)) < FEWEST_OF_GROUP:
+        raise InputError(
+            f"A pass mark by contrasting groups needs at least {FEWEST_OF_GROUP} novices and as "
+            f"many experts; there are {len(low)} and {len(high)}."
+        )
+    if low.std() == 0 or high.std() == 0:
+        raise InputError("A pass mark needs scores that differ within each group.")
+    below = NormalDist(float(low.mean()), float(low.std(ddof=1)))
+    above = NormalDist(float(high.mean()), float(high.std(ddof=1)))
+    if not above.mean > below.mean:
+        raise InputError("A pass mark needs experts who score higher than the novices.")
+    score = _crossing(below, above)
+    return PassMark(
+        score=score,
+        passing_novices=1 - below.cdf(score),
+        failing_experts=above.cdf(score),
+        observed_passing_novices=float(np.mean(low >= score)),
+        observed_failing_experts=float(np.mean(high < score)),
+    )
+
+
+def _crossing(below: NormalDist, above: NormalDist) -> float:
+    """Return where the densities cross between the means, or the point that errs alike on both."""
+    left, right = below.mean, above.mean
+    if below.pdf(left) < above.pdf(left) or above.pdf(right) < below.pdf(right):
+        # One curve covers the other's mean: they do not cross between the means.
+        return (left * above.stdev + right * below.stdev) / (above.stdev + below.stdev)
+    while right - left > 1e-9 * (1 + abs(left)):
+        middle = (left + right) / 2
+        if below.pdf(middle) > above.pdf(middle):
+            left = middle
+        else:
+            right = middle
+    return (left + right) / 2

@@ -1,13 +1,14 @@
-"""Charts of paired means: every trainee's two with the difference, and effect sizes on one axis."""
+"""Charts of a study: learning curves, paired means with their difference, and effect sizes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from rastrainer.number_text import fixed, significant
-from rastrainer.report.charts.svg import (
+from rastrainer.report.elements.comparisons import ModeComparison, tested
+from rastrainer.report.elements.svg import (
     FAINT,
     INK,
     Axis,
@@ -17,23 +18,66 @@ from rastrainer.report.charts.svg import (
     number,
     y_grid,
 )
-from rastrainer.report.results.comparisons import ModeComparison, tested
 from rastrainer.study.outcomes import mode_title
 
-WIDTH, HEIGHT = 330, 250
-TOP, BOTTOM = 40, 212
-LEFT, FIRST, SECOND = 44, 82, 176
+WIDTH, HEIGHT = 330, 232
+LEFT, RIGHT, TOP, BOTTOM = 46, 318, 32, 190
+
+
+def learning_curves(
+    heading: str,
+    color: str,
+    trainees: Mapping[str, Sequence[tuple[float, float]]],
+    x_title: str,
+    curve: Sequence[tuple[float, float]] = (),
+    span: Sequence[float] = (),
+) -> str:
+    """Return the chart.
+
+    Args:
+        heading: With the unit.
+        color: Of the mode.
+        trainees: Pseudonym → points (trial number, value).
+        x_title: Below the axis.
+        curve: A fitted curve; the means are joined where there is none.
+        span: Values that the axis shall hold besides, so that charts can be compared.
+    """
+    sheet = Sheet(WIDTH, HEIGHT, heading)
+    sheet.text(10, 16, heading, 12.5, INK, weight="600")
+    points = [point for own in trainees.values() for point in own]
+    numbers = sorted({x for x, _ in points})
+    axis = axis_over([*span, *(y for _, y in points)], BOTTOM, TOP)
+    y_grid(sheet, axis, LEFT, RIGHT)
+    across = Axis(numbers[0] - 0.35, numbers[-1] + 0.35, LEFT, RIGHT)
+    opacity = 0.55 if len(trainees) <= 12 else max(0.08, 6 / len(trainees))
+    for name, own in trainees.items():
+        sheet.polyline([(across.at(x), axis.at(y)) for x, y in own], color, 1.2, opacity)
+        if len(trainees) <= 24:
+            for x, y in own:
+                sheet.dot(across.at(x), axis.at(y), 2.6, color, 0.8, f"{name}: {significant(y, 4)}")
+    means = [(x, float(np.mean([y for n, y in points if n == x]))) for x in numbers]
+    sheet.polyline([(across.at(x), axis.at(y)) for x, y in curve or means], INK, 2.4)
+    ticks = numbers if len(numbers) <= 12 else across.ticks(6)
+    for tick in ticks:
+        sheet.text(across.at(tick), BOTTOM + 16, f"{tick:g}", 10, FAINT, "middle")
+    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 8, x_title, 10, FAINT, "middle")
+    return sheet.svg()
+
+
+PAIRED_WIDTH, PAIRED_HEIGHT = 330, 250
+PAIRED_TOP, PAIRED_BOTTOM = 40, 212
+PAIRED_LEFT, FIRST, SECOND = 44, 82, 176
 DIFFERENCE = 268
 
 
 def paired_lines(comparison: ModeComparison) -> str:
     """Return the chart of one outcome; the right part has its own axis of differences."""
     outcome = comparison.outcome
-    sheet = Sheet(WIDTH, HEIGHT, f"{outcome.title} of every trainee in both modes")
+    sheet = Sheet(PAIRED_WIDTH, PAIRED_HEIGHT, f"{outcome.title} of every trainee in both modes")
     sheet.text(10, 16, outcome.heading, 12.5, INK, weight="600")
     both = np.concatenate([comparison.first_means, comparison.second_means])
-    axis = axis_over(both.tolist(), BOTTOM, TOP)
-    y_grid(sheet, axis, LEFT, SECOND + 22)
+    axis = axis_over(both.tolist(), PAIRED_BOTTOM, PAIRED_TOP)
+    y_grid(sheet, axis, PAIRED_LEFT, SECOND + 22)
     colors = [mode_color(mode, i) for i, mode in enumerate((comparison.first, comparison.second))]
     opacity = 0.75 if len(comparison.trainees) <= 12 else max(0.12, 8 / len(comparison.trainees))
     pairs = zip(comparison.trainees, comparison.first_means, comparison.second_means, strict=True)
@@ -51,7 +95,7 @@ def paired_lines(comparison: ModeComparison) -> str:
     means = [float(comparison.first_means.mean()), float(comparison.second_means.mean())]
     sheet.polyline([(FIRST, axis.at(means[0])), (SECOND, axis.at(means[1]))], INK, 2.6)
     for x, mode in ((FIRST, comparison.first), (SECOND, comparison.second)):
-        sheet.text(x, HEIGHT - 20, mode_title(mode).split(" ")[0], 11, INK, "middle")
+        sheet.text(x, PAIRED_HEIGHT - 20, mode_title(mode).split(" ")[0], 11, INK, "middle")
     _difference(sheet, comparison)
     return sheet.svg()
 
@@ -59,10 +103,10 @@ def paired_lines(comparison: ModeComparison) -> str:
 def _difference(sheet: Sheet, comparison: ModeComparison) -> None:
     result = comparison.result
     if result is None:
-        sheet.text(DIFFERENCE, (TOP + BOTTOM) / 2, "no test", 10, FAINT, "middle")
+        sheet.text(DIFFERENCE, (PAIRED_TOP + PAIRED_BOTTOM) / 2, "no test", 10, FAINT, "middle")
         return
     low, high = result.interval
-    axis = axis_over([low, high, 0.0, 1.1 * low, 1.1 * high], BOTTOM, TOP)
+    axis = axis_over([low, high, 0.0, 1.1 * low, 1.1 * high], PAIRED_BOTTOM, PAIRED_TOP)
     for tick in axis.ticks(4):
         y = axis.at(tick)
         sheet.line(DIFFERENCE - 22, y, DIFFERENCE + 22, y, "#9aa5b1" if tick == 0 else "#eceff2")
@@ -71,8 +115,8 @@ def _difference(sheet: Sheet, comparison: ModeComparison) -> None:
     for end in (low, high):
         sheet.line(DIFFERENCE - 6, axis.at(end), DIFFERENCE + 6, axis.at(end), INK, 2)
     sheet.dot(DIFFERENCE, axis.at(result.mean_difference), 5, INK)
-    sheet.text(DIFFERENCE, HEIGHT - 20, "difference", 11, INK, "middle")
-    sheet.text(DIFFERENCE, HEIGHT - 7, "mean, 95 % interval", 9, FAINT, "middle")
+    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 20, "difference", 11, INK, "middle")
+    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 7, "mean, 95 % interval", 9, FAINT, "middle")
 
 
 EFFECTS_WIDTH, EFFECT_HEIGHT = 680, 27

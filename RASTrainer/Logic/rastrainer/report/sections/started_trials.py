@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from rastrainer.number_text import counted
-from rastrainer.report.html.markup import bullets, heading, paragraph, section, table
+from rastrainer.report.elements.markup import bullets, heading, paragraph, section, table
 from rastrainer.study.database.aborted_trials import StoredAborted
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.study_data import StudyData
@@ -16,7 +16,7 @@ HEADER = [
 ]
 
 
-def begun(data: StudyData) -> str:
+def started_trials(data: StudyData) -> str:
     """Return the section; "" where only finished trials are known, as in a CSV file."""
     if not data.has_order:
         return ""

@@ -1,7 +1,10 @@
-"""Our bytes are those of pyigtl, an independent implementation, for every type that it has."""
+"""Our bytes are those of pyigtl and fastcrc, independent implementations."""
 
 from __future__ import annotations
 
+import random
+
+import fastcrc
 import numpy as np
 import pyigtl
 import pytest
@@ -9,6 +12,7 @@ import pytest
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
 from rastrainer.igtl.points import Point, Points
+from rastrainer.igtl.wire import crc64, plain_crc64
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])
 TIME = 1234.5
@@ -55,3 +59,24 @@ def test_what_pyigtl_packed_is_read(pair):
     data = peer.pack()
     message = unpack(read_header(data), data[HEADER_BYTES:])
     assert message == Message("Device", content, {"seq": "12"}, 0, TIME, 2)
+
+
+@pytest.mark.parametrize("checksum", [crc64, plain_crc64])
+def test_checksum_gives_the_check_value_of_crc_64_ecma_182(checksum):
+    assert checksum(b"123456789") == 0x6C40DF5F0B497347
+
+
+@pytest.mark.parametrize("checksum", [crc64, plain_crc64])
+def test_checksum_of_nothing_is_zero(checksum):
+    assert checksum(b"") == 0
+
+
+def test_plain_python_equals_fastcrc_on_random_bodies():
+    generator = random.Random(1)
+    for length in [1, 2, 7, 8, 9, 48, 255, 2098, 65_537]:
+        body = generator.randbytes(length)
+        assert plain_crc64(body) == fastcrc.crc64.ecma_182(body)
+
+
+def test_fastcrc_is_used_where_it_is_installed():
+    assert crc64 is fastcrc.crc64.ecma_182

@@ -1,8 +1,13 @@
-"""Run a program on the packages of one folder, which `pip install --target` has filled.
+"""The environment in which a child process runs, free of Slicer's own packages.
 
-Slicer's Python would look into Slicer's own packages first, and `.pth` files of a folder that is
-merely put into PYTHONPATH are not read: Pinocchio is found by one. So the program, and each process
-that it starts, is started by `python_words`, and finds its way by `run`.
+The launchers of Slicer and of its Python put Slicer's folders first in every search path, for
+whatever they start. A program with packages of its own would load Slicer's Qt, VTK or numpy.
+`clean_environment` restores the environment as it was before the launchers.
+
+The simulator runs on the packages of one folder, filled by `pip install --target`. Slicer's Python
+would search Slicer's packages first, and `.pth` files of a folder on PYTHONPATH are not read, which
+Pinocchio needs. So the program and its child processes are started by `python_words`, and `run`
+sets their search path.
 """
 
 from __future__ import annotations
@@ -17,11 +22,67 @@ import uuid
 from collections.abc import Mapping
 from pathlib import Path
 
-from rastrainer.processes.clean_environment import clean_environment
+LEVEL = "APPLAUNCHER_LEVEL"
+SAVED = "APPLAUNCHER_0_"
+"""Before the name of a variable: its value before the first launcher."""
+HOME = "SLICER_HOME"
+SEARCHED = {
+    "LD_LIBRARY_PATH": "shared libraries, on Linux",
+    "DYLD_LIBRARY_PATH": "shared libraries, on macOS",
+    "DYLD_FRAMEWORK_PATH": "shared libraries, on macOS",
+    "LibraryPaths": "shared libraries, on Windows",
+    "PYTHONPATH": "packages of Python",
+    "PYTHONHOME": "the standard library of Python",
+    "PYTHONNOUSERSITE": "whether the user's own packages count",
+    "PYTHONUTF8": "how Python reads text",
+    "QT_PLUGIN_PATH": "plugins of Qt",
+    "QT_QPA_PLATFORM_PLUGIN_PATH": "plugins of Qt",
+    "QML_IMPORT_PATH": "plugins of Qt",
+    "QML2_IMPORT_PATH": "plugins of Qt",
+    "QTWEBENGINE_DISABLE_SANDBOX": "how Qt shows pages",
+    "ITK_AUTOLOAD_PATH": "plugins of ITK",
+    "SSL_CERT_FILE": "certificates, which Slicer brings along",
+    "PIP_REQUIRE_VIRTUALENV": "how pip behaves",
+    HOME: "Slicer itself",
+}
+"""What Slicer's launchers set, and what is looked for there."""
+
+
+def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return an environment as Slicer's launchers found it; one without them stays as it is.
+
+    What the user had set in the variables of `SEARCHED` and in PATH comes back where the launchers
+    have saved it.
+    """
+    if LEVEL not in environment and HOME not in environment:
+        return dict(environment)
+    # Windows has the names in capitals.
+    searched = {name.upper() for name in SEARCHED}
+    clean = {
+        name: value
+        for name, value in environment.items()
+        if name.upper() not in searched and not name.startswith("APPLAUNCHER_")
+    }
+    clean["PATH"] = _without(clean.get("PATH", os.defpath), environment.get(HOME, ""))
+    for name in (*SEARCHED, "PATH"):
+        if SAVED + name in environment:
+            clean[name] = environment[SAVED + name]
+    return clean
+
+
+def _without(path: str, home: str) -> str:
+    """Return a search path without the folders in Slicer's."""
+    if not home:
+        return path
+    inside = Path(home).resolve()
+    places = path.split(os.pathsep)
+    kept = [place for place in places if not Path(place).resolve().is_relative_to(inside)]
+    return os.pathsep.join(kept)
+
 
 START = (
     "import site, sys; sys.path.insert(0, sys.argv[1]); site.addsitedir(sys.argv[1]); "
-    "from rastrainer.processes.private_folder import run; run()"
+    "from rastrainer.python_environment import run; run()"
 )
 """For `python -S -c`, followed by the folder, a module's name and the program's arguments.
 

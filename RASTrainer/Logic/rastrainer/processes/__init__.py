@@ -1,1 +1,0 @@
-"""The environment and folder in which a child process runs."""

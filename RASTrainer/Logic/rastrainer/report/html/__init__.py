@@ -1,1 +1,0 @@
-"""The HTML of a report: its page and the elements in it."""

@@ -1,1 +1,0 @@
-"""NASA-TLX, SSQ and SUS: their items and scores."""

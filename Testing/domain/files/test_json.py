@@ -1,0 +1,103 @@
+"""Decoding JSON with limits, and the checks of commands, records and files."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from rastrainer import json_checks
+from rastrainer.errors import InputError
+from rastrainer.files.json_fields import read_fields
+from rastrainer.finite_json import DEEPEST, MESSAGE_VALUES, decode_finite_json, decode_message
+from rastrainer.json_checks import Argument, accepted, checked_keys, is_number
+
+
+def nested(levels: int, opening: str, closing: str) -> str:
+    return opening * levels + "1" + closing * levels
+
+
+@pytest.mark.parametrize(("opening", "closing"), [("[", "]"), ('{"a":', "}"), ('[{"a":[', "]}]")])
+def test_json_up_to_64_levels_is_taken_and_one_level_more_refused(opening, closing):
+    times, rest = divmod(DEEPEST, len(closing))
+    text = "[" * rest + nested(times, opening, closing) + "]" * rest
+    assert decode_finite_json(text) is not None
+    with pytest.raises(ValueError, match="too deeply nested"):
+        decode_finite_json(f"[{text}]")
+
+
+@pytest.mark.parametrize("levels", [1000, 100_000])
+def test_json_beyond_what_the_interpreter_takes_is_refused_in_the_same_words(levels):
+    with pytest.raises(ValueError, match="too deeply nested"):
+        decode_finite_json(nested(levels, "[", "]"))
+
+
+def test_what_is_wide_or_a_text_of_brackets_is_not_deep():
+    assert len(decode_finite_json("[" + ",".join(["[{}]"] * 1000) + "]")) == 1000
+    assert decode_finite_json('"' + "[" * 1000 + '"') == "[" * 1000
+
+
+def test_a_message_of_very_many_values_is_refused_before_it_is_decoded():
+    most = f"[{','.join('1' * MESSAGE_VALUES)}]"
+    assert len(decode_message(most)) == MESSAGE_VALUES
+    with pytest.raises(ValueError, match="too many values"):
+        decode_message(most.replace("1", "1,1", 1))
+
+
+@pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999"])
+def test_a_number_that_is_not_finite_is_refused(number):
+    with pytest.raises(ValueError, match=number.lstrip("-")):
+        decode_finite_json(f"[{number}]")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["-1e999", "[1,[2,-1e999]]", '{"a":{"b":[-1e999,1]}}', f"[-1e999,{'9' * 400}.0]"],
+    ids=["alone", "in lists", "in objects", "before another"],
+)
+def test_a_number_too_large_is_refused_by_its_digits_wherever_it_stands(text):
+    with pytest.raises(ValueError, match=r"^-1e999 is too large a number$"):
+        decode_finite_json(text)
+
+
+def test_whole_numbers_of_any_length_and_what_rounds_to_nothing_are_finite():
+    assert decode_finite_json(f"[1{'0' * 400},1e-999,-0.0,1e308]") == [10**400, 0.0, -0.0, 1e308]
+
+
+@pytest.mark.parametrize(
+    ("check", "value", "words"),
+    [
+        pytest.param(json_checks.text(3), "abcd", "printable text of 1 to 3", id="long text"),
+        pytest.param(json_checks.pseudonym(), " a", "without a space at its", id="space"),
+        pytest.param(json_checks.number(0, 1, "s"), True, "a number from 0 to 1 s", id="true"),
+        pytest.param(json_checks.number(0, 1), float("nan"), "a number from 0 to 1", id="nan"),
+        pytest.param(json_checks.whole_number(0, 9), 1.0, "a whole number from 0", id="float"),
+        pytest.param(json_checks.numbers(2, 5), [1, 6], "a list of 2 numbers within ±5", id="far"),
+        pytest.param(json_checks.texts(1, 2), [], "a list of 1 to 2 texts", id="empty list"),
+        pytest.param(json_checks.texts(1, 2), ["a", "a"], "without duplicates", id="twice"),
+        pytest.param(json_checks.texts(1, 2, ("a",)), ["b"], "a list of some of a", id="choice"),
+        pytest.param(json_checks.yes_or_no, 1, "true or false", id="one"),
+    ],
+)
+def test_a_check_refuses_with_the_words_that_follow_must_be(check, value, words):
+    with pytest.raises(InputError, match=f"^The value must be .*{words}"):
+        accepted(check, value, "The value")
+
+
+def test_a_missing_required_key_is_named():
+    keys = {"a": Argument(json_checks.yes_or_no), "b": Argument(json_checks.text(), "usual")}
+    assert checked_keys({"a": True}, keys, "It") == {"a": True, "b": "usual"}
+    with pytest.raises(InputError, match='It needs the key "a"'):
+        checked_keys({}, keys, "It")
+
+
+def test_true_and_false_are_no_numbers():
+    assert [is_number(value) for value in (1, 0.5, True, "1")] == [True, True, False, False]
+
+
+def test_a_file_may_write_a_whole_number_with_a_point(tmp_path):
+    (tmp_path / "a.json").write_text(json.dumps({"count": 3.0, "half": 2.5}), encoding="utf-8")
+    fields = read_fields(tmp_path / "a.json")
+    assert fields.whole_number("count", 0, 9) == 3
+    with pytest.raises(InputError, match="the field half must be a whole number from 0 to 9"):
+        fields.whole_number("half", 0, 9)
