@@ -24,16 +24,16 @@ LAUNCHED = {
 }
 
 
-def test_an_environment_without_slicer_stays_as_it_is():
+def test_an_environment_without_slicer_is_unchanged():
     mine = {"PATH": "/usr/bin", "LD_LIBRARY_PATH": "/opt/driver", "PYTHONPATH": "/home/me"}
     assert clean_environment(mine) == mine
 
 
-def test_what_the_launcher_has_set_goes_and_all_else_stays():
+def test_variables_set_by_the_launcher_are_removed():
     assert clean_environment(LAUNCHED) == {"PATH": "/usr/bin", "LANG": "C.UTF-8"}
 
 
-def test_what_the_user_had_set_before_the_launcher_comes_back():
+def test_variables_set_before_the_launcher_are_restored():
     saved = {"APPLAUNCHER_0_LD_LIBRARY_PATH": "/opt/driver", "APPLAUNCHER_0_PATH": "/mine:/usr/bin"}
     later = {"APPLAUNCHER_1_LD_LIBRARY_PATH": "/opt/Slicer/lib"}
     assert clean_environment({**LAUNCHED, **saved, **later}) == {
@@ -43,7 +43,7 @@ def test_what_the_user_had_set_before_the_launcher_comes_back():
     }
 
 
-def test_slicer_without_a_launcher_as_on_macos_is_known_by_its_home():
+def test_slicer_without_a_launcher_is_recognized_by_its_home():
     bundle = {"SLICER_HOME": "/Applications/Slicer", "DYLD_LIBRARY_PATH": "/x", "HOME": "/Users/me"}
     assert clean_environment({**bundle, "PATH": "/usr/bin"}) == {
         "PATH": "/usr/bin",
@@ -51,7 +51,7 @@ def test_slicer_without_a_launcher_as_on_macos_is_known_by_its_home():
     }
 
 
-def test_names_that_windows_has_in_capitals_go_too():
+def test_upper_case_names_of_windows_are_removed():
     inside = {"SLICER_HOME": "C:", "LIBRARYPATHS": "x", "PATH": ""}
     assert clean_environment(inside) == {"PATH": ""}
 
@@ -94,7 +94,7 @@ def libraries(tmp_path):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="of the loader of Linux")
-def test_of_slicers_libraries_only_those_that_its_python_needs_are_found(private, libraries):
+def test_only_libraries_needed_by_python_are_found(private, libraries):
     environment = {
         **os.environ,
         "APPLAUNCHER_LEVEL": "1",

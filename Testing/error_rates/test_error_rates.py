@@ -28,7 +28,7 @@ FEW = {"several groups": 40, "target errors": 50, "learning": 100}
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_what_is_asked_holds_in_a_few_seeded_data_sets(name):
+def test_the_limits_hold_in_a_few_seeded_data_sets(name):
     _, simulate = TABLES[name]
     found = simulate(FEW.get(name, 150))
     assert any(one.at_most is not None or one.at_least is not None for one in found)
@@ -36,7 +36,7 @@ def test_what_is_asked_holds_in_a_few_seeded_data_sets(name):
     assert failing == []
 
 
-def test_the_page_has_every_table_and_all_that_is_asked_holds_in_it():
+def test_the_page_has_every_table_and_the_limits_hold_in_it():
     text = PAGE.read_text(encoding="utf-8")
     for name, (header, _) in TABLES.items():
         head, _, *lines = printed(name, text).splitlines()
@@ -51,7 +51,7 @@ def test_the_page_has_every_table_and_all_that_is_asked_holds_in_it():
             assert asked == "–" or (told <= limit if asked.startswith("≤") else told >= limit)
 
 
-def test_a_table_is_put_in_its_place_and_nothing_else_is_touched():
+def test_a_table_is_replaced_and_nothing_else_changes():
     text = "a\n<!-- groups -->\n<!-- end -->\nb\n<!-- throughput -->\nold\n<!-- end -->\nc\n"
     once = with_table("groups", text, "| new |")
     assert once == text.replace("<!-- groups -->\n", "<!-- groups -->\n| new |\n")
@@ -62,7 +62,7 @@ def test_a_table_is_put_in_its_place_and_nothing_else_is_touched():
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", TABLES)
-def test_everything_asked_holds_and_the_page_tells_the_shares(name):
+def test_all_limits_hold_and_the_page_has_the_shares(name):
     _, simulate = TABLES[name]
     found = simulate(SETS)
     assert [one for one in found if not one.holds()] == []
@@ -78,7 +78,7 @@ def test_everything_asked_holds_and_the_page_tells_the_shares(name):
 
 @pytest.mark.parametrize("task", ["trial-run", "task-5"])
 @pytest.mark.parametrize("head", HEADS)
-def test_the_reference_error_is_what_errors_along_the_skin_leave(head, task):
+def test_the_reference_error_is_that_of_errors_along_the_skin(head, task):
     scenario = scenario_of(head)
     errors = true_errors(scenario, task, 1.0, 1500, np.random.default_rng(3))
     fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
@@ -96,7 +96,7 @@ def test_many_registrations_at_once_are_those_of_the_program():
     assert registered_errors(region, fiducials, moving) == pytest.approx(expected, abs=1e-9)
 
 
-def test_the_tasks_of_colin27_are_to_take_the_published_mean_time():
+def test_the_reference_times_of_colin27_have_the_published_mean():
     scenario = scenario_of("colin27")
     times_s = [score_reference(scenario, task).time_s for task in TASKS[1:]]
     assert np.mean(times_s) == pytest.approx(127.0, abs=1.0)
@@ -126,7 +126,7 @@ def assert_is_as_stored(key):
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_the_usual_hands_play_a_task_of_each_head_as_they_did(head):
+def test_the_usual_hands_reproduce_a_stored_trial_of_each_head(head):
     assert_is_as_stored((head, USUAL, "task-1", SEEDS[USUAL][0]))
 
 
@@ -134,7 +134,7 @@ def test_the_usual_hands_play_a_task_of_each_head_as_they_did(head):
 @pytest.mark.parametrize("task", TASKS)
 @pytest.mark.parametrize("head", HEADS)
 @pytest.mark.parametrize("way", [USUAL, SLOW])
-def test_hands_play_every_task_of_every_head_as_they_did(way, head, task):
+def test_hands_reproduce_every_stored_trial(way, head, task):
     for seed in SEEDS[way]:
         assert_is_as_stored((head, way, task, seed))
 
@@ -142,12 +142,12 @@ def test_hands_play_every_task_of_every_head_as_they_did(way, head, task):
 @pytest.mark.soak
 @pytest.mark.parametrize("task", TASKS)
 @pytest.mark.parametrize("way", [way for way in SEEDS if way not in (USUAL, SLOW)])
-def test_every_cheat_goes_as_it_went(way, task):
+def test_every_cheat_reproduces_its_stored_trials(way, task):
     for seed in SEEDS[way]:
         assert_is_as_stored(("colin27", way, task, seed))
 
 
-def test_the_file_holds_every_trial_once_and_is_written_as_it_is_read(tmp_path, monkeypatch):
+def test_the_file_has_every_trial_once_and_is_rewritten_unchanged(tmp_path, monkeypatch):
     trials = stored()
     assert [one.key for one in trials] == list(all_keys())
     before = played.FILE.read_bytes()

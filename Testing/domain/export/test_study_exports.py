@@ -31,7 +31,7 @@ def rows_of(text):
     return list(csv.DictReader(io.StringIO(text)))
 
 
-def test_every_answered_item_is_a_row_and_every_score_is_one(data):
+def test_every_answer_and_every_score_is_a_row(data):
     items, scores = rows_of(answers_csv(data)), rows_of(scores_csv(data))
     before = [row for row in items if row["step"] == "hmd/before/ssq"]
     assert [row["item"] for row in before] == [item.name for item in SSQ.items]
@@ -55,7 +55,7 @@ def test_every_answered_questionnaire_is_a_statement_with_its_scores(data):
     }
 
 
-def test_the_version_told_of_a_score_is_the_one_that_it_was_computed_with(data):
+def test_a_score_is_exported_with_the_version_that_computed_it(data):
     first, *others = data.trials
     unscored = replace(others[0], score_version="")
     mixed = replace(data, trials=(replace(first, score_version=OLD), unscored, *others[1:]))
@@ -65,7 +65,7 @@ def test_the_version_told_of_a_score_is_the_one_that_it_was_computed_with(data):
     assert f"{OLD}, {others[1].score_version}" in report_html(mixed)
 
 
-def test_what_a_score_is_made_of_leaves_a_study_with_it(data):
+def test_a_score_is_exported_with_its_parts(data):
     with_score = [trial for trial in data.trials if trial.score_version]
     rows = [row for row in rows_of(trials_csv(data.trials)) if row["score_version"]]
     assert len(rows) == len(with_score) > 0
@@ -80,7 +80,7 @@ def test_what_a_score_is_made_of_leaves_a_study_with_it(data):
     assert told[key] == with_score[0].values["score_tre_mm"]
 
 
-def test_a_score_of_the_first_version_leaves_without_measures_that_it_has_not(tmp_path):
+def test_a_score_of_the_first_version_is_exported_without_later_measures(tmp_path):
     with Study.open(tmp_path / "old.db") as study:
         study.add_trial(make_record(trainee="A"), score=first_score(100.0, 0.4))
         study.set_consent("A", True)
@@ -90,7 +90,7 @@ def test_a_score_of_the_first_version_leaves_without_measures_that_it_has_not(tm
     assert not {"score_tre_mm", "score_is_safe", "score_safety_desirability"} & set(trial.values)
 
 
-def test_a_trials_statement_tells_whether_it_passed_and_when_it_was_completed(data):
+def test_a_trials_statement_has_success_and_completion_time(data):
     first, second, third = (
         replace(
             data.trials[0],
@@ -116,7 +116,7 @@ def test_a_trials_statement_tells_whether_it_passed_and_when_it_was_completed(da
     assert context[f"{HOME_PAGE}/xapi/pass-mark"] == 80.0
 
 
-def test_who_did_not_agree_to_research_is_left_out_of_an_export_and_counted(tmp_path, capsys):
+def test_trainees_without_consent_are_left_out_of_exports_and_counted(tmp_path, capsys):
     study_with_trials(tmp_path / "study.db", consent=False)
     words = ["export", tmp_path / "study.db", "-o", tmp_path / "out"]
     assert main([str(word) for word in words]) == 0

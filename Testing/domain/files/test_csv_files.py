@@ -59,7 +59,7 @@ def test_a_name_that_ends_in_json_is_a_markups_file(tmp_path):
         ("x,y,z\n" + "1" * 200_000 + ",2,3\n", "not a CSV file"),
     ],
 )
-def test_bad_point_files_end_with_one_sentence(text, words, tmp_path):
+def test_unusable_point_files_raise_one_sentence(text, words, tmp_path):
     with pytest.raises(InputError, match=words) as caught:
         read_points(file(tmp_path, text))
     assert "\n" not in str(caught.value)
@@ -84,11 +84,11 @@ def test_trials_are_read_with_their_units(tmp_path):
         ("hmd,a,1,10", "has 4 cells"),
     ],
 )
-def test_bad_trials_are_named_by_their_line(row, words, tmp_path):
+def test_invalid_trials_are_reported_with_their_line(row, words, tmp_path):
     with pytest.raises(InputError, match=f"Line 3 .*{words}"):
         read_trials(file(tmp_path, HEADER + "hmd,a,1,10,1\n" + row + "\n"))
 
 
-def test_another_header_is_told_the_right_one(tmp_path):
+def test_a_wrong_header_is_answered_with_the_right_one(tmp_path):
     with pytest.raises(InputError, match="with the header mode,subject,task,ct,rmse"):
         read_trials(file(tmp_path, "mode,subject,task,time,error\nhmd,a,1,10,1\n"))

@@ -18,7 +18,7 @@ def test_text_is_read_without_its_byte_order_mark(tmp_path):
     assert read_text(path, LIMIT) == "naïve\n"
 
 
-def test_a_gigabyte_of_zeros_is_refused_unread(tmp_path):
+def test_a_too_large_file_is_refused_without_being_read(tmp_path):
     path = tmp_path / "zeros"
     with path.open("wb") as file:
         file.truncate(2**30)
@@ -50,7 +50,7 @@ def test_other_content_is_refused(content, words, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["missing", "", "nul\0", "x" * 300, "missing/../file"])
-def test_what_is_no_file_is_refused_with_one_sentence(name, tmp_path):
+def test_folders_and_devices_are_refused_with_one_sentence(name, tmp_path):
     with pytest.raises(InputError) as caught:
         read_text(str(tmp_path / name), LIMIT)
     assert "\n" not in str(caught.value)
@@ -59,7 +59,7 @@ def test_what_is_no_file_is_refused_with_one_sentence(name, tmp_path):
 @pytest.mark.parametrize(
     "text", ["{", "[NaN]", "[Infinity]", "[1e999]", "[" * 900, "9" * 900 + "x", "[" * 400 + "]"]
 )
-def test_json_must_be_json_with_finite_numbers(text, tmp_path):
+def test_json_must_have_finite_numbers(text, tmp_path):
     path = tmp_path / "a.json"
     path.write_text(text)
     with pytest.raises(InputError, match="not JSON"):
@@ -73,7 +73,7 @@ def test_json_nested_too_deeply_is_refused(tmp_path):
         read_json(path, 10**6)
 
 
-def test_a_written_file_replaces_the_old_one_and_leaves_nothing_else(tmp_path):
+def test_writing_replaces_the_old_file_and_leaves_nothing_behind(tmp_path):
     path = tmp_path / "a.json"
     path.write_text("old")
     path.chmod(0o640)
@@ -99,7 +99,7 @@ def test_a_write_that_fails_keeps_the_old_file(tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["a.txt"]
 
 
-def test_a_place_that_cannot_hold_the_file_is_told(tmp_path):
+def test_an_unwritable_path_is_reported(tmp_path):
     with pytest.raises(InputError, match="cannot be written: no such file or directory"):
         write_text(tmp_path / "missing" / "a.txt", "x")
     with pytest.raises(InputError, match="cannot be written: is a directory"):

@@ -18,7 +18,7 @@ def nested(levels: int, opening: str, closing: str) -> str:
 
 
 @pytest.mark.parametrize(("opening", "closing"), [("[", "]"), ('{"a":', "}"), ('[{"a":[', "]}]")])
-def test_json_up_to_64_levels_is_taken_and_one_level_more_refused(opening, closing):
+def test_json_of_64_levels_is_accepted_and_of_65_refused(opening, closing):
     times, rest = divmod(DEEPEST, len(closing))
     text = "[" * rest + nested(times, opening, closing) + "]" * rest
     assert decode_finite_json(text) is not None
@@ -27,12 +27,12 @@ def test_json_up_to_64_levels_is_taken_and_one_level_more_refused(opening, closi
 
 
 @pytest.mark.parametrize("levels", [1000, 100_000])
-def test_json_beyond_what_the_interpreter_takes_is_refused_in_the_same_words(levels):
+def test_json_too_deep_for_the_interpreter_is_refused_with_the_same_message(levels):
     with pytest.raises(ValueError, match="too deeply nested"):
         decode_finite_json(nested(levels, "[", "]"))
 
 
-def test_what_is_wide_or_a_text_of_brackets_is_not_deep():
+def test_wide_json_and_text_of_brackets_are_not_deep():
     assert len(decode_finite_json("[" + ",".join(["[{}]"] * 1000) + "]")) == 1000
     assert decode_finite_json('"' + "[" * 1000 + '"') == "[" * 1000
 
@@ -55,12 +55,12 @@ def test_a_number_that_is_not_finite_is_refused(number):
     ["-1e999", "[1,[2,-1e999]]", '{"a":{"b":[-1e999,1]}}', f"[-1e999,{'9' * 400}.0]"],
     ids=["alone", "in lists", "in objects", "before another"],
 )
-def test_a_number_too_large_is_refused_by_its_digits_wherever_it_stands(text):
+def test_an_overflowing_number_is_refused_at_any_place(text):
     with pytest.raises(ValueError, match=r"^-1e999 is too large a number$"):
         decode_finite_json(text)
 
 
-def test_whole_numbers_of_any_length_and_what_rounds_to_nothing_are_finite():
+def test_integers_of_any_length_and_underflowing_numbers_are_finite():
     assert decode_finite_json(f"[1{'0' * 400},1e-999,-0.0,1e308]") == [10**400, 0.0, -0.0, 1e308]
 
 
@@ -91,11 +91,11 @@ def test_a_missing_required_key_is_named():
         checked_keys({}, keys, "It")
 
 
-def test_true_and_false_are_no_numbers():
+def test_booleans_are_not_numbers():
     assert [is_number(value) for value in (1, 0.5, True, "1")] == [True, True, False, False]
 
 
-def test_a_file_may_write_a_whole_number_with_a_point(tmp_path):
+def test_a_file_may_contain_an_integer_with_a_decimal_point(tmp_path):
     (tmp_path / "a.json").write_text(json.dumps({"count": 3.0, "half": 2.5}), encoding="utf-8")
     fields = read_fields(tmp_path / "a.json")
     assert fields.whole_number("count", 0, 9) == 3

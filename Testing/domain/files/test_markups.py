@@ -55,7 +55,7 @@ def test_points_that_slicer_saved_in_lps_are_read_in_ras(tmp_path):
     np.testing.assert_allclose(point_list.points, POINTS)
 
 
-def test_slicer_opens_what_we_write(tmp_path):
+def test_slicer_opens_written_markups(tmp_path):
     path = tmp_path / "ours.mrk.json"
     write_markups(path, PointList(("a", "ü", "3"), POINTS))
     scene, _logic, node = slicer_node()
@@ -84,7 +84,7 @@ def test_a_point_that_is_not_placed_is_named(tmp_path):
         read_markups(path)
 
 
-def test_a_file_that_does_not_say_is_in_lps_and_mm_as_in_slicer(tmp_path):
+def test_a_file_without_coordinate_system_is_read_as_lps_and_mm(tmp_path):
     content = document()
     del content["markups"][0]["coordinateSystem"], content["markups"][0]["coordinateUnits"]
     point_list = read_markups(written(tmp_path / "a.mrk.json", content))
@@ -114,7 +114,7 @@ def test_a_file_that_does_not_say_is_in_lps_and_mm_as_in_slicer(tmp_path):
         (document(controlPoints=[{"label": "1", "position": [1, 2, 3]}] * 2), "two points"),
     ],
 )
-def test_anything_else_is_refused_with_one_sentence_that_names_the_file(content, words, tmp_path):
+def test_other_files_are_refused_with_one_sentence_that_names_the_file(content, words, tmp_path):
     path = written(tmp_path / "bad.mrk.json", content)
     with pytest.raises(InputError, match=words) as caught:
         read_markups(path)

@@ -58,7 +58,7 @@ def test_what_is_written_is_read_back(tmp_path, kind, matrix):
     assert np.array_equal(place, matrix)
 
 
-def test_the_same_image_gives_the_same_bytes_and_no_text_but_what_places_the_voxels(tmp_path):
+def test_the_same_image_gives_the_same_bytes_without_further_metadata(tmp_path):
     for name in ("a.nrrd", "b.nrrd"):
         write_nrrd(tmp_path / name, grays(), np.eye(4))
     content = (tmp_path / "a.nrrd").read_bytes()
@@ -86,7 +86,7 @@ def test_the_same_image_gives_the_same_bytes_and_no_text_but_what_places_the_vox
         ("left-anterior-superior", (10, -20, 30)),
     ],
 )
-def test_each_space_is_turned_into_ras(tmp_path, space, ras):
+def test_each_space_is_converted_to_ras(tmp_path, space, ras):
     _, matrix = read_nrrd(changed(tmp_path / "a.nrrd", space=space))
     assert matrix[:3, 3].tolist() == list(ras)
 
@@ -101,7 +101,7 @@ def test_left_handed_axes_and_big_endian_numbers_are_read(tmp_path):
     assert np.linalg.det(matrix[:3, :3]) < 0
 
 
-def test_texts_of_whoever_wrote_the_file_are_read_over(tmp_path):
+def test_comments_and_key_value_texts_are_ignored(tmp_path):
     fields, voxels = good_file()
     fields |= {"content": "Erika Mustermann", "# by": "scanner 5", "PatientName": "=Mustermann"}
     path = write(tmp_path / "a.nrrd", fields, voxels, "\r\n")
@@ -146,7 +146,7 @@ def test_texts_of_whoever_wrote_the_file_are_read_over(tmp_path):
         ({"SIZES": "5 6 7"}, "have the field “sizes” once"),
     ],
 )
-def test_a_header_that_cannot_be_used_gets_a_sentence(tmp_path, changes, sentence):
+def test_an_unusable_header_is_refused_with_a_message(tmp_path, changes, sentence):
     path = changed(tmp_path / "bad.nrrd", **changes)
     with pytest.raises(InputError, match=sentence) as caught:
         read_nrrd(path)
@@ -154,7 +154,7 @@ def test_a_header_that_cannot_be_used_gets_a_sentence(tmp_path, changes, sentenc
     assert "\n" not in str(caught.value)
 
 
-def test_a_header_that_says_gigabytes_is_refused_before_memory_is_taken(tmp_path):
+def test_a_header_that_claims_gigabytes_is_refused_before_allocation(tmp_path):
     bomb = gzip.compress(bytes(200_000_000))
     many = changed(tmp_path / "many.nrrd", bomb, sizes="2048 2048 2048")
     few = changed(tmp_path / "few.nrrd", bomb, sizes="10 10 10")
@@ -168,7 +168,7 @@ def test_a_header_that_says_gigabytes_is_refused_before_memory_is_taken(tmp_path
         tracemalloc.stop()
 
 
-def test_voxels_that_are_damaged_or_cut_are_refused_wherever_it_is(tmp_path):
+def test_damaged_or_truncated_voxels_are_refused(tmp_path):
     fields, voxels = good_file()
     path = tmp_path / "bad.nrrd"
     for cut in range(0, len(voxels), 7):
@@ -184,13 +184,13 @@ def test_voxels_that_are_damaged_or_cut_are_refused_wherever_it_is(tmp_path):
 
 
 @pytest.mark.parametrize("content", [b"NRRD", b"NRRD0004\ntype: uint8\n", b"\x93NUMPY", bytes(99)])
-def test_what_is_no_nrrd_file_is_refused(tmp_path, content):
+def test_a_file_that_is_not_nrrd_is_refused(tmp_path, content):
     (tmp_path / "bad.nrrd").write_bytes(content)
     with pytest.raises(InputError, match=r"bad\.nrrd must (begin as NRRD files do|have a header)"):
         read_nrrd(tmp_path / "bad.nrrd")
 
 
-def test_a_file_that_is_missing_or_too_large_is_named(tmp_path):
+def test_a_missing_or_too_large_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"There is no file .*none\.nrrd"):
         read_nrrd(tmp_path / "none.nrrd")
     with (tmp_path / "large.nrrd").open("wb") as file:

@@ -9,7 +9,7 @@ from rastrainer.files.point_list import PointList, pair
 XYZ = np.arange(9.0).reshape(3, 3)
 
 
-def test_labels_pair_points_whatever_their_order():
+def test_labels_pair_points_in_any_order():
     labels, moving, fixed = pair(
         PointList(("a", "b", "c"), XYZ), PointList(("c", "a", "b"), XYZ * 10)
     )
@@ -26,7 +26,9 @@ def test_labels_pair_points_whatever_their_order():
         (("c", "b", "a"), (), ("c", "b", "a")),
     ],
 )
-def test_without_labels_in_both_the_order_pairs(moving_labels, fixed_labels, labels):
+def test_points_are_paired_by_order_unless_both_lists_have_labels(
+    moving_labels, fixed_labels, labels
+):
     paired, moving, fixed = pair(PointList(moving_labels, XYZ), PointList(fixed_labels, XYZ * 10))
     assert paired == labels
     np.testing.assert_array_equal(fixed, moving * 10)
@@ -53,12 +55,12 @@ def test_points_without_a_partner_are_named():
         ((), XYZ + 1e6, "Point 1 has a coordinate"),
     ],
 )
-def test_other_lists_are_refused(labels, points, words):
+def test_invalid_lists_are_refused(labels, points, words):
     with pytest.raises(InputError, match=words):
         PointList(labels, points)
 
 
-def test_a_list_keeps_its_points_to_itself():
+def test_a_point_list_copies_its_points():
     points = XYZ.copy()
     point_list = PointList((), points)
     points[:] = 0

@@ -51,13 +51,13 @@ def all_below(folder):
     return paths
 
 
-def test_what_is_recorded_is_for_its_user_alone(tmp_path):
+def test_recordings_are_readable_by_their_user_only(tmp_path):
     use(tmp_path / "home")
     for path in all_below(tmp_path / "home"):
         assert mode(path) == (0o700 if path.is_dir() else 0o600), path
 
 
-def test_what_others_could_read_so_far_is_closed_to_them_once_it_is_opened(tmp_path):
+def test_existing_recordings_become_private_when_opened(tmp_path):
     use(tmp_path)
     (tmp_path / "RASTrainer" / "study.db-journal").write_bytes(b"")
     for path in all_below(tmp_path):
@@ -67,7 +67,7 @@ def test_what_others_could_read_so_far_is_closed_to_them_once_it_is_opened(tmp_p
         assert mode(path) & 0o077 == 0, path
 
 
-def test_a_folder_that_the_user_has_made_and_named_is_left_as_it_is(tmp_path):
+def test_a_folder_made_by_the_user_keeps_its_permissions(tmp_path):
     (tmp_path / "lab").mkdir()
     make_private_folder(tmp_path / "lab")
     assert mode(tmp_path / "lab") == 0o775
@@ -75,7 +75,7 @@ def test_a_folder_that_the_user_has_made_and_named_is_left_as_it_is(tmp_path):
     assert [mode(tmp_path / "lab" / name) for name in ("a", "a/b")] == [0o700, 0o700]
 
 
-def test_what_a_group_shares_on_purpose_stays_shared(tmp_path):
+def test_a_folder_shared_with_a_group_stays_shared(tmp_path):
     (tmp_path / "lab").mkdir()
     (tmp_path / "lab").chmod(0o2770)
     study = tmp_path / "lab" / "study.db"
@@ -86,7 +86,7 @@ def test_what_a_group_shares_on_purpose_stays_shared(tmp_path):
     assert mode(tmp_path / "lab") == 0o2770
 
 
-def test_a_file_in_the_place_of_the_folder_is_an_error(tmp_path):
+def test_a_file_in_place_of_the_folder_is_an_error(tmp_path):
     (tmp_path / "trials").write_text("my notes")
     with pytest.raises(FileExistsError):
         make_private_folder(tmp_path / "trials")

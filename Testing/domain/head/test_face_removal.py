@@ -56,7 +56,7 @@ def test_the_face_is_smooth_afterwards(face, faceless):
     assert np.linalg.norm(face.vertices[is_face], axis=1).max() > 110
 
 
-def test_two_people_who_differ_in_the_face_alone_look_the_same_without_it(faceless):
+def test_heads_that_differ_only_in_the_face_are_equal_without_it(faceless):
     other = without_face(head(nose_mm=22.0, brow_mm=-3.0))
     before = np.abs(head(brow_mm=-3.0).vertices - head().vertices).max()
     after = np.linalg.norm(other.vertices - faceless.vertices, axis=1)

@@ -35,7 +35,7 @@ def test_topology_and_center_agree_with_trimesh():
     assert np.allclose(mesh.centroid, torus.center_mass)
 
 
-def test_every_edge_is_there_once_the_lower_vertex_first():
+def test_every_edge_is_listed_once_with_the_lower_vertex_first():
     tetrahedron = HeadMesh(np.eye(4, 3), np.array([[2, 1, 0], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
     assert tetrahedron.edges.tolist() == [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
 
@@ -83,13 +83,13 @@ def test_a_missing_mesh_is_named(tmp_path):
         (lambda content: content.replace(b"vertex 162", b"vertex 999999999"), "cut short"),
     ],
 )
-def test_a_broken_mesh_is_refused_with_a_sentence(head_file, spoil, sentence):
+def test_a_broken_mesh_is_refused_with_a_message(head_file, spoil, sentence):
     head_file.write_bytes(spoil(head_file.read_bytes()))
     with pytest.raises(InputError, match=sentence):
         read_head_mesh(head_file)
 
 
-def test_a_mesh_of_a_gigabyte_is_refused_unread(tmp_path):
+def test_a_too_large_mesh_is_refused_without_being_read(tmp_path):
     path = tmp_path / "head.ply"
     with path.open("wb") as file:
         file.truncate(1_000_000_000)

@@ -28,7 +28,7 @@ def test_barycentric_weights_give_the_nearest_point_back():
     assert np.allclose(nearest.weights @ corners, nearest.position)
 
 
-def test_outside_is_away_from_the_center():
+def test_normals_point_away_from_the_center():
     for point in (on_sphere(10, 80), on_sphere(200, -20)):
         normal = outward_normal(sphere_mesh(), point)
         assert normal @ point / np.linalg.norm(point) > 0.9995
@@ -41,7 +41,7 @@ def test_the_far_side_is_hidden_and_the_near_side_is_not():
     assert hides(mesh, eye, on_sphere(270, 10))
 
 
-def test_what_is_hidden_agrees_with_trimesh():
+def test_visibility_agrees_with_trimesh():
     rng = np.random.default_rng(8)
     mesh, eye = sphere_mesh(3), np.array([100.0, 400.0, 300.0])
     points = rng.uniform(-140, 140, (200, 3))
@@ -59,14 +59,14 @@ def graph():
 
 
 @pytest.mark.parametrize("degrees", [20, 60, 90, 150])
-def test_the_way_over_a_sphere_is_its_great_circle_within_a_tenth(graph, degrees):
+def test_the_path_over_a_sphere_is_its_great_circle_within_a_tenth(graph, degrees):
     exact = np.radians(degrees) * RADIUS_MM
     for longitude in range(0, 360, 40):
         way = graph.distance(on_sphere(longitude, 10), on_sphere(longitude, 10 + degrees))
         assert 0.995 * exact <= way <= 1.10 * exact
 
 
-def test_the_way_is_a_few_percent_too_long_on_average(graph):
+def test_the_path_is_a_few_percent_too_long_on_average(graph):
     rng = np.random.default_rng(1)
     points = rng.normal(size=(60, 2, 3))
     points *= RADIUS_MM / np.linalg.norm(points, axis=2, keepdims=True)
@@ -75,12 +75,12 @@ def test_the_way_is_a_few_percent_too_long_on_average(graph):
     assert np.mean(ways / exact) == pytest.approx(1.025, abs=0.015)
 
 
-def test_there_and_back_are_the_same(graph):
+def test_the_path_is_symmetric(graph):
     a, b = on_sphere(30, 20), on_sphere(160, -10)
     assert graph.distance(a, b) == pytest.approx(graph.distance(b, a))
 
 
-def test_within_one_triangle_the_way_is_straight():
+def test_within_one_triangle_the_path_is_straight():
     mesh = sphere_mesh(1)
     a, b = np.array([[0.5, 0.3, 0.2], [0.2, 0.3, 0.5]]) @ mesh.vertices[mesh.triangles[7]]
     assert SurfaceGraph(mesh).distance(a, b) == pytest.approx(np.linalg.norm(a - b))

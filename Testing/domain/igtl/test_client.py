@@ -69,7 +69,7 @@ def reply_to(message: Message, body: str = "{}", metadata=SUCCESS) -> Message:
     return Message("command", CommandReply(command.command_id, command.name, body), metadata)
 
 
-def test_answer_is_that_of_the_same_number_in_whatever_order(peer):
+def test_answers_are_matched_by_number_in_any_order(peer):
     held, has_first = [], threading.Event()
 
     def answer_backwards(server, message):
@@ -88,7 +88,7 @@ def test_answer_is_that_of_the_same_number_in_whatever_order(peer):
         assert first[0].data == {"to": "A"}
 
 
-def test_refusal_comes_back_with_its_sentence(peer):
+def test_a_refusal_is_returned_with_its_message(peer):
     fail = {"Status": "FAIL", "ErrorMessage": "Begin with StartTask."}
     server = peer(lambda server, message: server.send(reply_to(message, metadata=fail)))
     with Client(port=server.port) as client:
@@ -104,7 +104,7 @@ def test_other_messages_arrive_while_an_answer_is_awaited(peer):
         assert (seen, client.latest["Tip"]) == ([TIP], TIP)
 
 
-def test_missing_answer_is_said_in_one_sentence(peer):
+def test_missing_answer_raises_a_one_sentence_error(peer):
     with (
         Client(port=peer().port) as client,
         pytest.raises(LinkError, match=r"No answer to Capture within 0\.05 s"),
@@ -122,7 +122,7 @@ def test_lost_connection_ends_the_wait_for_an_answer(peer):
         assert not client.is_open
 
 
-def test_what_was_received_is_still_given_after_the_connection_is_lost(peer):
+def test_received_messages_remain_available_after_the_connection_is_lost(peer):
     server = peer(lambda server, message: (server.send(TIP, reply_to(message)), server.hang_up()))
     with Client(port=server.port) as client:
         client.send_command("Capture")
@@ -130,7 +130,7 @@ def test_what_was_received_is_still_given_after_the_connection_is_lost(peer):
 
 
 @pytest.mark.parametrize("body", ["[]", "no JSON", '{"x": NaN}'])
-def test_answer_that_is_no_json_object_is_an_error_and_the_link_goes_on(peer, body):
+def test_answer_that_is_no_json_object_is_an_error_and_the_link_survives(peer, body):
     bodies = [body, "{}"]
     server = peer(lambda server, message: server.send(reply_to(message, bodies.pop(0))))
     with Client(port=server.port) as client:
@@ -149,13 +149,13 @@ def test_answer_without_a_status_is_no_success(peer):
         assert not client.send_command("Capture").ok
 
 
-def test_server_that_sends_no_openigtlink_is_left(peer):
+def test_server_that_sends_no_openigtlink_is_disconnected(peer):
     server = peer(greeting=b"x" * 200_000)
     with Client(port=server.port) as client, pytest.raises(LinkError):
         client.wait_for("Tip")
 
 
-def test_wait_for_takes_only_what_fits(peer):
+def test_wait_for_returns_only_an_accepted_message(peer):
     def count_up(server, message):
         server.send(*(Message("Note", String(str(i))) for i in range(5)), reply_to(message))
 
@@ -164,13 +164,13 @@ def test_wait_for_takes_only_what_fits(peer):
         assert client.wait_for("Note", lambda note: note.content.text == "4").content.text == "4"
 
 
-def test_nobody_listening_is_said_in_one_sentence():
+def test_refused_connection_raises_a_one_sentence_error():
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
     with pytest.raises(LinkError, match=f"No connection to 127.0.0.1:{port}: "):
         Client(port=port)
 
 
-def test_message_that_cannot_travel_is_not_sent(peer):
+def test_invalid_message_is_not_sent(peer):
     with Client(port=peer().port) as client, pytest.raises(InputError):
         client.send(Message("A name of more than 20", TIP.content))

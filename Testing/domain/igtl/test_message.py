@@ -68,22 +68,22 @@ def test_command_has_its_number_a_name_of_128_bytes_the_encoding_and_the_length(
 
 @pytest.mark.parametrize("version", [1, 2])
 @pytest.mark.parametrize("content", EVERY_CONTENT, ids=lambda content: content.TYPE)
-def test_every_content_comes_back_as_it_was_sent(content, version):
+def test_every_content_survives_packing_and_unpacking(content, version):
     metadata = {"Status": "SUCCESS"} if version == 2 else {}
     assert read(pack(Message("Device", content, metadata, version=version))).content == content
 
 
-def test_metadata_number_time_and_version_come_back():
+def test_metadata_number_time_and_version_survive_packing_and_unpacking():
     sent = Message("Tip", IDENTITY, {"seq": "12", "note": "3 ± 1"}, 77, 1234.5, 2)
     assert read(pack(sent)) == sent
 
 
-def test_empty_list_of_points_travels_with_metadata():
+def test_empty_list_of_points_is_sent_with_metadata():
     message = read(pack(Message("CapturedPoints", Points(()), {"count": "0"})))
     assert message.content == Points(())
 
 
-def test_longer_extended_header_is_passed_over_by_its_own_size():
+def test_longer_extended_header_is_skipped_by_its_size():
     content = String("ok").pack()
     body = struct.pack(">HHII", 16, 0, 0, 5) + b"new!" + content
     header = struct.pack(">H12s20sIIQQ", 2, b"STRING", b"S", 0, 0, len(body), crc64(body))
@@ -139,13 +139,13 @@ def test_content_with_an_invented_type_cannot_be_sent():
         Message("command", Command(1, "Big", "x" * 2**24)),
     ],
 )
-def test_message_that_slicer_would_cut_or_misread_is_refused(message):
+def test_message_that_slicer_would_truncate_or_misread_is_refused(message):
     with pytest.raises(InputError):
         pack(message)
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf"), 1e39])
-def test_number_that_32_bits_do_not_hold_is_refused(bad):
+def test_number_beyond_32_bits_is_refused(bad):
     with pytest.raises(InputError, match="finite 32-bit"):
         Transform((bad, *IDENTITY.columns[1:]))
     with pytest.raises(InputError, match="finite 32-bit"):
@@ -176,7 +176,7 @@ def test_text_is_read_as_utf_8_whatever_encoding_is_announced():
         (CommandReply, b""),
     ],
 )
-def test_content_that_is_cut_short_or_not_finite_is_refused_with_a_sentence(kind, data):
+def test_truncated_or_not_finite_content_is_refused_with_a_message(kind, data):
     with pytest.raises(InputError, match=r"must .*\."):
         kind.unpack(data)
 

@@ -53,7 +53,7 @@ def test_bytes_of_header_version_2_with_metadata_are_those_of_pyigtl(pair):
 
 
 @PAIRS
-def test_what_pyigtl_packed_is_read(pair):
+def test_messages_packed_by_pyigtl_are_read(pair):
     content, peer = pair()
     peer.header_version, peer.metadata = 2, {"seq": "12"}
     data = peer.pack()

@@ -35,7 +35,7 @@ def reader() -> MessageReader:
 
 
 @pytest.mark.parametrize("piece", [1, 2, 57, 58, 59, 1000])
-def test_messages_come_out_whole_and_in_order_whatever_the_pieces(reader, piece):
+def test_messages_are_reassembled_in_order_from_any_pieces(reader, piece):
     stream = b"".join(pack(message) for message in GOOD) * 3
     found = []
     for start in range(0, len(stream), piece):
@@ -45,12 +45,12 @@ def test_messages_come_out_whole_and_in_order_whatever_the_pieces(reader, piece)
     assert not reader.errors
 
 
-def test_message_with_a_wrong_checksum_is_counted_and_passed_over(reader):
+def test_message_with_a_wrong_checksum_is_counted_and_skipped(reader):
     assert reader.feed(with_wrong_checksum(TIP) + pack(STATE)) == [STATE]
     assert reader.errors == {StreamError.CHECKSUM: 1}
 
 
-def test_unsupported_type_is_counted_and_passed_over_without_being_kept(reader):
+def test_unsupported_type_is_counted_and_skipped_without_buffering(reader):
     stream = header(b"IMAGE", 10 * 2**20) + bytes(10 * 2**20) + pack(TIP)
     found = []
     for start in range(0, len(stream), 65_536):
@@ -60,7 +60,7 @@ def test_unsupported_type_is_counted_and_passed_over_without_being_kept(reader):
     assert reader.errors == {StreamError.TYPE: 1}
 
 
-def test_known_type_that_is_too_long_is_passed_over_without_being_kept(reader):
+def test_too_long_message_of_a_known_type_is_skipped_without_buffering(reader):
     size = LARGEST_KEPT + 1
     assert reader.feed(header(b"STRING", size) + bytes(size) + pack(TIP)) == [TIP]
     assert reader.errors == {StreamError.SIZE: 1}
@@ -73,7 +73,7 @@ def test_claimed_body_above_16_mib_ends_the_stream(reader, size):
     assert reader.feed(pack(TIP)) == []
 
 
-def test_body_without_a_byte_does_not_stall(reader):
+def test_empty_body_does_not_stall(reader):
     stream = b"".join(
         header(kind, 0, version) for kind in (b"STRING", b"COMMAND") for version in (1, 2)
     )
@@ -87,7 +87,7 @@ def test_reader_finds_the_next_message_after_garbage(reader):
     assert reader.errors == {StreamError.GARBAGE: 1}
 
 
-def test_reader_finds_the_next_message_after_one_whose_body_was_cut(reader):
+def test_reader_finds_the_next_message_after_a_truncated_body(reader):
     assert reader.feed(pack(TIP)[:-20] + pack(STATE) + pack(TIP)) == [TIP]
     assert reader.errors == {StreamError.CHECKSUM: 1, StreamError.GARBAGE: 1}
 

@@ -20,14 +20,14 @@ def held(tmp_path):
     os.close(descriptor)
 
 
-def test_who_holds_a_folder_is_told_as_it_has_said(held, tmp_path):
+def test_the_holder_of_a_folder_is_read_from_the_lock(held, tmp_path):
     write_holder(held, HOLDER)
     assert read_holder(tmp_path) == HOLDER
     write_holder(held, FolderHolder(4711))
     assert read_holder(tmp_path) == FolderHolder(4711)
 
 
-def test_what_the_dead_have_said_names_nobody(tmp_path):
+def test_a_lock_left_by_a_dead_process_names_nobody(tmp_path):
     descriptor = os.open(tmp_path / LOCK_NAME, os.O_RDWR | os.O_CREAT)
     lock(descriptor)
     write_holder(descriptor, HOLDER)
@@ -38,6 +38,6 @@ def test_what_the_dead_have_said_names_nobody(tmp_path):
 
 
 @pytest.mark.parametrize("said", [b"", b"1234", b'{"pid": "x"}', b"[]", b"\xff", b'{"pid": 12'])
-def test_a_folder_whose_holder_has_not_said_who_it_is_is_held_all_the_same(held, tmp_path, said):
+def test_a_held_folder_with_an_unreadable_lock_has_an_unknown_holder(held, tmp_path, said):
     os.write(held, said)
     assert read_holder(tmp_path) == FolderHolder()

@@ -40,7 +40,7 @@ def touch(label, x_mm, time_s):
 BOTH_ENDS = (touch("1", 0.0, 0.0), touch("2", 100.0, 10.0))
 
 
-def test_dragging_from_touch_to_touch_counts_all_but_five_millimeters_at_either_end():
+def test_dragging_between_touches_counts_except_five_millimeters_at_each_end():
     assert INTENDED_MM == 5.0
     dragged = straight(BOTH_ENDS, [Interval(0.0, 10.0)])
     time_s, way_mm = unintended_contact(dragged)
@@ -48,19 +48,19 @@ def test_dragging_from_touch_to_touch_counts_all_but_five_millimeters_at_either_
     assert trial_motion(dragged)["unintended_contacts"] == 0.0
 
 
-def test_contact_counts_from_its_begin_to_its_end_between_the_samples_too():
+def test_contact_is_timed_from_start_to_end_between_samples():
     time_s, way_mm = unintended_contact(straight(BOTH_ENDS, [Interval(2.003, 9.001)]))
     assert (time_s, way_mm) == (pytest.approx(6.998), pytest.approx(69.98))
     time_s, way_mm = unintended_contact(straight(BOTH_ENDS, [Interval(5.001, 5.006)]))
     assert (time_s, way_mm) == (pytest.approx(0.005), pytest.approx(0.05))
 
 
-def test_contact_near_the_touch_before_and_the_touch_after_is_meant():
+def test_contact_near_the_previous_or_next_touch_is_intended():
     at_both = [Interval(0.0, 0.45), Interval(9.6, 10.0)]
     assert unintended_contact(straight(BOTH_ENDS, at_both)) == (0.0, 0.0)
 
 
-def test_the_place_of_a_touch_that_is_neither_next_nor_last_is_no_excuse():
+def test_contact_near_any_other_touch_is_unintended():
     later = (*BOTH_ENDS, touch("3", 50.0, 10.5))
     time_s, _ = unintended_contact(straight(later, [Interval(4.6, 5.4)]))
     assert time_s == pytest.approx(0.8)
@@ -79,7 +79,7 @@ def test_contact_without_samples_is_unintended_and_has_no_path():
     assert unintended_contact(empty) == (pytest.approx(0.01), 0.0)
 
 
-def test_contact_goes_on_after_the_last_sample_where_the_tip_was_last():
+def test_contact_after_the_last_sample_is_at_the_last_tip_position():
     time_s, way_mm = unintended_contact(straight(BOTH_ENDS[:1], [Interval(9.0, 10.01)]))
     assert (time_s, way_mm) == (pytest.approx(1.01), pytest.approx(10.0))
 
@@ -112,7 +112,7 @@ def test_light_contacts_do_not_dilute_the_pressing_depth():
     assert pressing_depth(fifteen([2.0] * 15, light)) == pytest.approx(2.0)
 
 
-def test_fiducials_that_are_known_are_what_is_divided_by():
+def test_the_pressing_depth_is_divided_by_the_known_fiducials():
     known = {str(i + 1): np.zeros(3) for i in range(15)}
     pressed = straight(BOTH_ENDS, [Interval(0, 1, greatest_depth_mm=2.0)], fiducials_mm=known)
     assert pressing_depth(pressed) == pytest.approx(np.sqrt(4 / 15))
@@ -120,13 +120,13 @@ def test_fiducials_that_are_known_are_what_is_divided_by():
     assert pressing_depth(replace(pressed, fiducials_mm={}, touches=())) == pytest.approx(2.0)
 
 
-def test_staying_in_contact_from_touch_to_touch_is_not_one_press_instead_of_two():
+def test_one_long_contact_counts_once_for_each_touch_in_it():
     apart = [Interval(i, i + 0.2, greatest_depth_mm=2.0) for i in (0.0, 9.9)]
     joined = [Interval(0.0, 10.1, greatest_depth_mm=2.0)]
     assert pressing_depth(straight(BOTH_ENDS, joined)) == pressing_depth(straight(BOTH_ENDS, apart))
 
 
-def test_an_unknown_depth_is_left_out_and_not_taken_for_nothing():
+def test_an_unknown_depth_is_omitted_and_not_zero():
     unknown = replace(fifteen([0.0] * 15), depth_mm=None)
     assert pressing_depth(unknown) is None
     assert "pressing_depth_mm" not in trial_motion(unknown)
@@ -183,7 +183,7 @@ def test_pressing_deeper_never_lowers_a_measure(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_more_way_in_contact_never_lowers_a_measure(seed):
+def test_a_longer_path_in_contact_never_lowers_a_measure(seed):
     trajectory, random = drawn(seed, has_touches=False)
     contact = trajectory.contacts[random.integers(5)]
     row = int(RATE_HZ * random.uniform(contact.start_s, contact.end_s))
@@ -216,7 +216,7 @@ def recorded(**of_each):
     ]
 
 
-def test_the_depth_of_a_contact_is_the_greatest_of_samples_touch_and_end():
+def test_the_depth_of_a_contact_is_the_maximum_of_samples_touch_and_end():
     for row, depth in ((3, 1.5), (4, 1.7)):
         entries = recorded(depthMm=0.1)
         entries[row]["depthMm"] = depth
@@ -239,7 +239,7 @@ def test_a_contact_does_not_inherit_the_depth_of_the_one_before():
     assert [contact.greatest_depth_mm for contact in contacts] == [2.5, 0.2]
 
 
-def test_a_journal_that_tells_no_depth_or_not_everywhere_has_no_pressing_depth():
+def test_a_journal_without_complete_depths_has_no_pressing_depth():
     partly = recorded(depthMm=0.1)
     del partly[1]["depthMm"]
     for entries in (recorded(), partly):

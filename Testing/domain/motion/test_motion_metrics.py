@@ -56,7 +56,7 @@ def test_smoothness_does_not_depend_on_size_and_falls_with_submovements(smoothne
 
 
 @pytest.mark.parametrize("speed", [np.zeros(50), np.ones(3), np.full(50, np.nan)])
-def test_smoothness_of_no_movement_is_refused(speed):
+def test_smoothness_without_movement_is_refused(speed):
     for smoothness in (sparc, log_dimensionless_jerk):
         with pytest.raises(InputError, match="at least four samples"):
             smoothness(speed, RATE_HZ)
@@ -90,7 +90,7 @@ def test_resampling_gives_equal_steps_on_the_recorded_lines():
         resample(np.array([0.0, 0.0]), np.zeros((2, 3)), 20.0)
 
 
-def test_the_speed_of_uniform_motion_is_its_speed():
+def test_uniform_motion_has_constant_speed():
     t = np.arange(0, 1, 1 / RATE_HZ)
     np.testing.assert_allclose(speeds(np.outer(t, [3.0, 0.0, 4.0]), RATE_HZ), 5.0)
 

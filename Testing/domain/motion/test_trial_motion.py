@@ -85,7 +85,7 @@ def test_tremor_lowers_smoothness(trajectory):
     assert rough_motion["ldlj"] < smooth_motion["ldlj"] - 0.5
 
 
-def test_contacts_are_told_apart_by_whether_a_touch_was_meant(trajectory):
+def test_contacts_are_separated_into_intended_and_unintended(trajectory):
     contacts = (Interval(0.3, 0.9, -0.02), Interval(2.0, 2.2, -0.4))
     bumped = Trajectory(
         trajectory.times_s,
@@ -102,7 +102,7 @@ def test_contacts_are_told_apart_by_whether_a_touch_was_meant(trajectory):
     assert motion["proximity_time_s"] == pytest.approx(2.5)
 
 
-def test_throughput_and_wrong_touches_are_told_once_the_fiducials_are_known(trajectory):
+def test_throughput_and_wrong_touches_need_known_fiducials(trajectory):
     assert "throughput_bit_s" not in trial_motion(trajectory)
     offsets = np.array([[0, 0, 0], [1, 0, 0], [0, -1, 0], [-2, 0, 0], [0, 0, 1]])
     known = {str(i + 1): point for i, point in enumerate(CORNERS + offsets)}
@@ -124,7 +124,7 @@ def test_throughput_and_wrong_touches_are_told_once_the_fiducials_are_known(traj
     assert (motion["refused_touches"], motion["wrong_order_touches"]) == (3, 1)
 
 
-def test_a_trial_that_has_just_begun_has_counts_only():
+def test_a_trial_that_has_just_started_has_only_counts():
     empty = Trajectory(np.zeros(0), np.zeros((0, 3)), np.zeros(0), ())
     motion = trial_motion(empty)
     assert motion["contacts"] == 0
@@ -137,7 +137,7 @@ def test_every_metric_has_a_definition_and_every_definition_a_metric(trajectory)
     assert all(np.isfinite(value) for value in motion.values())
 
 
-def test_the_shortest_way_leads_over_a_bulge_and_straight_across_a_hollow():
+def test_the_shortest_path_runs_over_a_bulge_and_straight_across_a_hollow():
     mesh = sphere_mesh()
     angle = np.arccos(on_sphere(0, 20) @ on_sphere(90, 20) / RADIUS_MM**2)
     ends = np.array([on_sphere(0, 20), on_sphere(90, 20)])
@@ -158,7 +158,7 @@ def entry(kind, time, **more):
     return {"kind": kind, "simTime": time, **more}
 
 
-def test_a_recording_leaves_pauses_out_and_takes_back_what_was_undone():
+def test_a_recording_excludes_pauses_and_undone_touches():
     entries = [
         entry("header", 10.004, tickS=0.004),
         entry("sample", 10.02, tipMm=[0, 0, 0], clearanceMm=30.0),
@@ -181,7 +181,7 @@ def test_a_recording_leaves_pauses_out_and_takes_back_what_was_undone():
     assert trajectory.near[0].start_s == pytest.approx(0.3)
 
 
-def test_touches_that_the_disk_refused_do_not_count():
+def test_touches_that_could_not_be_written_do_not_count():
     entries = [
         entry("header", 0.004, tickS=0.004),
         entry("touch", 1.0, label="1", positionMm=[1, 2, 3], kept=1),
@@ -191,6 +191,6 @@ def test_touches_that_the_disk_refused_do_not_count():
     assert [touch.label for touch in Recording.of(entries).trajectory().touches] == ["1"]
 
 
-def test_a_forged_entry_is_one_sentence():
+def test_a_malformed_entry_raises_one_sentence():
     with pytest.raises(InputError, match="An entry of the journal is not as it should be"):
         Recording.of([{"kind": "touch", "label": "1"}])

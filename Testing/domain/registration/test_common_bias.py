@@ -35,7 +35,7 @@ def true_tre(registration):
     return float(np.linalg.norm(transforms.apply(registration.matrix, TARGET[None])[0] - TARGET))
 
 
-def test_a_common_offset_changes_no_residual_and_passes_into_the_error_in_full():
+def test_a_common_offset_changes_no_residual_and_adds_fully_to_the_error():
     plain, moved = touched(1), touched(1, [0.0, 0.0, 2.0])
     np.testing.assert_allclose(plain.residuals_mm, moved.residuals_mm, atol=1e-9)
     shift = transforms.apply(moved.matrix, TARGET[None]) - transforms.apply(
@@ -44,7 +44,7 @@ def test_a_common_offset_changes_no_residual_and_passes_into_the_error_in_full()
     assert np.linalg.norm(shift) == pytest.approx(2.0, abs=1e-9)
 
 
-def test_the_common_offset_is_added_in_squares_to_what_single_points_cause():
+def test_the_common_offset_adds_in_quadrature_to_independent_errors():
     registration = touched(2)
     error = target_error(registration, TARGET)
     without = target_error(registration, TARGET, common_bias_sd_mm=0.0)
@@ -55,7 +55,7 @@ def test_the_common_offset_is_added_in_squares_to_what_single_points_cause():
     assert expected_tre(registration, TARGET[None])[0] == pytest.approx(error.expected_mm)
 
 
-def test_the_interval_is_wider_at_its_upper_end_alone():
+def test_a_common_offset_raises_only_the_upper_limit():
     registration = touched(3)
     error = target_error(registration, TARGET)
     without = target_error(registration, TARGET, common_bias_sd_mm=0.0)
@@ -130,7 +130,7 @@ def test_without_an_offset_the_quantile_is_that_of_the_ratio():
     assert equal == pytest.approx(0.6 * stats.f(3, 12).ppf(0.975), rel=1e-4)
 
 
-def test_the_note_stands_beside_the_error_that_the_command_prints(tmp_path: Path, capsys):
+def test_the_command_prints_the_note_beside_the_error(tmp_path: Path, capsys):
     path = tmp_path / "points.csv"
     rows = [f"{i},{x},{y},{z}" for i, (x, y, z) in enumerate(fiducials(6), start=1)]
     path.write_text("\n".join(["label,x,y,z", *rows]))

@@ -66,5 +66,5 @@ def test_a_quantile_is_to_the_bit_that_of_plain_bisection_in_fewer_steps(probabi
     assert len(taken) < steps
 
 
-def test_the_quantile_of_a_distribution_with_a_jump_is_where_it_jumps():
+def test_the_quantile_of_a_step_distribution_is_its_step():
     assert _quantile(lambda value: float(value >= 2.0), 0.5, 1.0, 1e-8) == pytest.approx(2.0)

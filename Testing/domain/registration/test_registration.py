@@ -85,7 +85,7 @@ def test_more_freedom_never_fits_worse_than_rigid(touched_head):
         assert affine <= rigid
 
 
-def test_a_mirrored_set_still_gets_a_rotation(touched_head):
+def test_a_mirrored_set_still_yields_a_rotation(touched_head):
     moving, fixed, _ = touched_head(2)
     matrix = register(moving * [-1, 1, 1], fixed, "rigid").matrix
     assert np.linalg.det(matrix[:3, :3]) == pytest.approx(1.0)
@@ -100,7 +100,7 @@ def test_points_in_a_plane_are_enough_for_a_rigid_registration(touched_head):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_leaving_points_out_is_the_registration_of_the_others(kind, touched_head):
+def test_leaving_points_out_registers_the_others(kind, touched_head):
     moving, fixed, _ = touched_head(4)
     labels = [f"F-{i}" for i in range(15)]
     fewer = register(moving, fixed, kind, labels).without("F-3", "F-7")
@@ -111,14 +111,14 @@ def test_leaving_points_out_is_the_registration_of_the_others(kind, touched_head
     assert fewer.fre_mm == again.fre_mm
 
 
-def test_leaving_out_an_unknown_point_says_which_there_are(touched_head):
+def test_leaving_out_an_unknown_point_lists_the_labels(touched_head):
     moving, fixed, _ = touched_head(4, count=4)
     with pytest.raises(InputError, match='No point is labeled "x"; the labels are 1, 2, 3, 4'):
         register(moving, fixed).without("x")
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_leave_one_out_tells_how_far_the_others_put_each_point(kind, touched_head):
+def test_leave_one_out_returns_the_distance_predicted_by_the_other_points(kind, touched_head):
     moving, fixed, _ = touched_head(8)
     distances = register(moving, fixed, kind).leave_one_out_mm()
     for i in range(15):
@@ -127,13 +127,13 @@ def test_leave_one_out_tells_how_far_the_others_put_each_point(kind, touched_hea
         assert distances[i] == pytest.approx(expected, abs=1e-6)
 
 
-def test_leave_one_out_says_when_the_others_are_too_few(touched_head):
+def test_leave_one_out_is_refused_if_too_few_points_remain(touched_head):
     moving, fixed, _ = touched_head(8, count=3)
     with pytest.raises(InputError, match="at least 3 pairs"):
         register(moving, fixed).leave_one_out_mm()
 
 
-def test_the_inputs_stay_the_callers(touched_head):
+def test_the_inputs_are_not_changed(touched_head):
     moving, fixed, _ = touched_head(9)
     registration = register(moving, fixed)
     moving[0] = 0.0
@@ -183,13 +183,13 @@ def spoiled(row, value):
         (np.zeros((1001, 3)), np.zeros((1001, 3)), "rigid", "at most 1000"),
     ],
 )
-def test_unfit_points_are_refused_with_a_sentence(moving, fixed, kind, words):
+def test_unusable_points_are_refused_with_a_message(moving, fixed, kind, words):
     with pytest.raises(InputError, match=words) as caught:
         register(moving, fixed, kind)
     assert "\n" not in str(caught.value)
 
 
-def test_a_line_on_the_mri_is_refused_although_the_touches_scatter_about_it():
+def test_collinear_fixed_points_are_refused_even_if_the_touches_scatter():
     touches = line() + np.random.default_rng(0).normal(size=(5, 3))
     with pytest.raises(InputError, match=r"fixed points .* lie on one line"):
         register(touches, line())
@@ -199,23 +199,23 @@ def test_a_line_on_the_mri_is_refused_although_the_touches_scatter_about_it():
     ("labels", "words"),
     [(["a", "b"], "2 labels for 5"), (["a", "b", "c", "a", "d"], '"a" is given to two points')],
 )
-def test_labels_must_name_each_point_once(labels, words):
+def test_labels_must_be_unique(labels, words):
     with pytest.raises(InputError, match=words):
         register(GOOD, GOOD, labels=labels)
 
 
-def test_far_from_the_origin_and_small_sets_are_judged_by_their_own_extent():
+def test_small_sets_far_from_the_origin_are_judged_by_their_own_extent():
     assert register(GOOD / 1000 + 1000, GOOD / 1000).fre_mm < 1e-9
 
 
-def test_points_in_one_plane_have_the_rigid_and_the_similarity_fit():
+def test_coplanar_points_have_a_rigid_and_a_similarity_fit():
     assert list(register_all_kinds(plane(), plane())) == ["rigid", "similarity"]
     assert list(register_all_kinds(GOOD, GOOD)) == ["rigid", "similarity", "affine"]
     with pytest.raises(InputError, match="lie on one line"):
         register_all_kinds(line(), line())
 
 
-def test_weights_are_of_the_rigid_fit_alone():
+def test_weights_apply_only_to_the_rigid_fit():
     weights = np.arange(1.0, 6.0)
     fits = register_all_kinds(GOOD, GOOD + spoiled(1, 0.5), weights=weights)
     assert [fit.weights is None for fit in fits.values()] == [False, True, True]

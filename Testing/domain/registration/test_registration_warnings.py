@@ -45,7 +45,7 @@ def test_small_and_large_sets_raise_no_alarm(count, touched_head):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_mirrored_set_is_told_even_where_the_fit_hides_it(kind, touched_head):
+def test_a_mirrored_set_is_reported_even_if_the_fit_hides_it(kind, touched_head):
     for seed in SEEDS:
         moving, fixed, rng = touched_head(seed)
         moving[:, rng.integers(3)] *= -1
@@ -54,19 +54,19 @@ def test_a_mirrored_set_is_told_even_where_the_fit_hides_it(kind, touched_head):
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("scale", [1 / 1000, 1 / 25.4, 0.1, 0.9, 1.05, 10, 1000])
-def test_a_wrong_scale_is_told_even_where_the_fit_hides_it(kind, scale, touched_head):
+def test_a_wrong_scale_is_reported_even_if_the_fit_hides_it(kind, scale, touched_head):
     for seed in range(15):
         moving, fixed, _ = touched_head(seed)
         assert faults(moving * scale, fixed, kind) == [("scale", ALL)]
 
 
-def test_meters_for_millimeters_are_named_on_the_side_that_has_them(touched_head):
+def test_meters_instead_of_millimeters_are_reported_for_the_right_list(touched_head):
     moving, fixed, _ = touched_head(0)
     assert "moving points seem to be in meters" in register(moving / 1e3, fixed).warnings[0].message
     assert "fixed points seem to be in meters" in register(moving, fixed / 1e3).warnings[0].message
 
 
-def test_two_exchanged_labels_are_named(touched_head):
+def test_two_exchanged_labels_are_reported(touched_head):
     for seed in SEEDS:
         moving, fixed, rng = touched_head(seed)
         a, b = rng.choice(15, 2, replace=False)
@@ -76,7 +76,7 @@ def test_two_exchanged_labels_are_named(touched_head):
         assert faults(moving, fixed) == [("order", labels(a, b))]
 
 
-def test_a_list_in_reverse_or_begun_elsewhere_is_told(touched_head):
+def test_a_reversed_or_shifted_list_is_reported(touched_head):
     moving, fixed, _ = touched_head(1)
     backwards = register(moving[::-1], fixed).warnings
     assert [w.code for w in backwards] == ["order"]
@@ -87,7 +87,7 @@ def test_a_list_in_reverse_or_begun_elsewhere_is_told(touched_head):
 
 
 @pytest.mark.parametrize("size_mm", [12, 30, 1000])
-def test_one_bad_touch_is_named(size_mm, touched_head):
+def test_one_bad_touch_is_reported(size_mm, touched_head):
     for seed in SEEDS:
         moving, fixed, rng = touched_head(seed)
         row = rng.integers(15)
@@ -104,7 +104,7 @@ def test_two_bad_touches_do_not_hide_each_other(touched_head):
         assert faults(moving, fixed) == [("outlier", labels(a)), ("outlier", labels(b))]
 
 
-def test_the_wrong_fiducial_touched_is_a_bad_touch_at_anothers_place(touched_head):
+def test_touching_the_wrong_fiducial_is_reported_as_a_bad_touch(touched_head):
     for seed in SEEDS:
         moving, fixed, rng = touched_head(seed)
         a, b = rng.choice(15, 2, replace=False)
@@ -114,13 +114,13 @@ def test_the_wrong_fiducial_touched_is_a_bad_touch_at_anothers_place(touched_hea
         assert faults(moving, fixed) == [("duplicate", labels(a, b)), ("outlier", labels(a))]
 
 
-def test_lists_that_do_not_belong_together_are_told(touched_head):
+def test_unrelated_lists_are_reported(touched_head):
     for seed in SEEDS:
         moving, fixed, rng = touched_head(seed)
         assert ("poor-fit", ALL) in faults(moving[rng.permutation(15)], fixed)
 
 
-def test_each_of_several_faults_is_told(touched_head):
+def test_each_of_several_faults_is_reported(touched_head):
     moving, fixed, _ = touched_head(3)
     moving[[2, 9]] = moving[[9, 2]]
     moving[5] += [0, 0, 30]
@@ -133,7 +133,7 @@ def test_each_of_several_faults_is_told(touched_head):
     ]
 
 
-def test_flat_sets_are_told_when_they_leave_the_fit_uncertain(touched_head):
+def test_flat_sets_are_reported_if_they_make_the_fit_uncertain(touched_head):
     _, fixed, _ = touched_head(4)
     assert [code for code, _ in faults(fixed * [1, 1, 0.01], fixed * [1, 1, 0.01], "affine")] == [
         "nearly-coplanar"
@@ -143,7 +143,7 @@ def test_flat_sets_are_told_when_they_leave_the_fit_uncertain(touched_head):
     assert [code for code, _ in faults(thin, thin)] == ["nearly-collinear"] * 2
 
 
-def test_sentences_name_the_points_and_the_gain(touched_head):
+def test_warnings_name_the_points_and_the_improvement(touched_head):
     moving, fixed, _ = touched_head(0)
     moving[[3, 10]] = moving[[10, 3]]
     (warning,) = register(moving, fixed).warnings

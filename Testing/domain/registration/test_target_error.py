@@ -107,7 +107,7 @@ def test_the_interval_holds_the_true_error_in_95_of_100_trials(kind, count, offs
 
 
 @pytest.mark.parametrize("trials", [80, pytest.param(200, marks=pytest.mark.soak)])
-def test_heads_touched_with_noise_have_their_true_error_inside_the_interval(touched_head, trials):
+def test_the_interval_holds_the_true_error_of_noisy_touches_on_heads(touched_head, trials):
     inside = 0
     for seed in range(trials):
         _, fixed, rng = touched_head(seed)
@@ -166,7 +166,7 @@ def test_the_interval_holds_the_true_error_of_touches_that_slip_along_the_skin(k
     assert 0.90 <= inside / 120 <= 1.0
 
 
-def test_touches_on_one_side_of_a_head_are_worth_more_than_an_isotropic_error_says():
+def test_touches_on_one_side_determine_the_pose_better_than_an_isotropic_error_suggests():
     rng = np.random.default_rng(7)
     target = np.zeros((1, 3))
     true_mm, known_mm, ignored_mm = [], [], []
@@ -182,7 +182,7 @@ def test_touches_on_one_side_of_a_head_are_worth_more_than_an_isotropic_error_sa
     assert ignored > 1.3 * true
 
 
-def test_an_isotropic_error_of_the_same_size_gives_the_same_answer_by_either_way():
+def test_isotropic_covariances_give_the_same_result_as_the_isotropic_formula():
     fixed, _ = ball_cap(12, 3)
     registration = noisy(fixed)
     error = isotropic_error(registration)
@@ -191,7 +191,7 @@ def test_an_isotropic_error_of_the_same_size_gives_the_same_answer_by_either_way
 
 
 @pytest.mark.parametrize("normals", [np.eye(3), 2.0 * np.ones((8, 3)), np.full((8, 3), np.nan)])
-def test_normals_that_are_none_are_refused(normals):
+def test_invalid_normals_are_refused(normals):
     with pytest.raises(InputError, match="8 normals of length 1"):
         error_along_surface(noisy(fiducials(8)), normals)
 
@@ -213,12 +213,12 @@ def test_a_perfect_fit_without_a_common_offset_expects_no_error():
     assert error.interval_mm == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-def test_three_points_say_little():
+def test_three_points_give_a_wide_interval():
     three = target_error(noisy(fiducials(3)), [400, -250, 120], common_bias_sd_mm=0.0)
     assert three.interval_mm[1] / three.expected_mm > 3
 
 
-def test_an_exact_affine_fit_of_four_points_says_nothing():
+def test_an_exact_affine_fit_of_four_points_gives_no_estimate():
     fixed = fiducials(4)
     with pytest.raises(InputError, match=r"Any 4 pairs of points fit .* affine exactly"):
         target_error(noisy(fixed, "affine"), fixed[0])
@@ -230,7 +230,7 @@ def test_a_target_must_be_a_point(target):
         target_error(noisy(fiducials(5)), target)
 
 
-def test_the_true_error_is_how_far_the_registration_puts_a_point_from_where_it_is():
+def test_the_true_error_is_the_displacement_of_a_point_by_the_registration():
     head_to_world = transforms.rigid(TILT, [10, 700, -40])
     found = transforms.rigid(np.eye(3), [0.3, 0.0, -0.4]) @ transforms.inverse(head_to_world)
     errors = true_errors(found, head_to_world, fiducials(4))

@@ -87,7 +87,7 @@ def test_equal_weights_change_nothing():
     assert ends[0] == pytest.approx(ends[1], rel=1e-6)
 
 
-def test_a_point_of_no_weight_counts_for_nothing():
+def test_a_point_of_negligible_weight_has_no_effect():
     fixed = fiducials()
     moving = posed(fixed)[0] + np.random.default_rng(7).normal(size=fixed.shape)
     weights = np.ones(12)
@@ -133,7 +133,7 @@ def test_equal_errors_expect_the_fre_of_sibsons_formula():
     assert found == pytest.approx(1.5 * np.sqrt(1 - 2 / 12), rel=1e-9)
 
 
-def test_weights_make_unequal_errors_do_less_harm():
+def test_weights_reduce_the_effect_of_unequal_errors():
     _, weighted = simulated(1500)
     _, plain = simulated(1500, weighted=False)
     assert np.sqrt((weighted**2).sum(axis=1).mean()) < 0.7 * np.sqrt((plain**2).sum(axis=1).mean())
@@ -162,7 +162,7 @@ def test_the_size_of_the_errors_is_recovered_from_the_weighted_residuals():
     assert np.sqrt(np.mean(np.square(found))) == pytest.approx(stated, rel=0.03)
 
 
-def test_residuals_that_the_stated_errors_do_not_allow_are_seldom_false_alarms():
+def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm():
     stated = [misfit_probability(*weighted_registration(seed)) for seed in range(400)]
     assert 0.02 <= np.mean(np.array(stated) < 0.05) <= 0.09
     registration, fle = weighted_registration()
@@ -181,7 +181,7 @@ def test_residuals_that_the_stated_errors_do_not_allow_are_seldom_false_alarms()
     ],
     ids=["few", "zero", "none", "far apart", "words", "affine"],
 )
-def test_weights_that_are_none_are_refused_with_a_sentence(weights, kind, told):
+def test_invalid_weights_are_refused_with_a_message(weights, kind, told):
     with pytest.raises(InputError, match=told):
         register(fiducials(), fiducials(), kind, weights=weights)
 
@@ -221,7 +221,7 @@ def test_the_command_weights_by_a_column_of_the_points_themselves(files, capsys)
     assert answer["expected_tre"]["fle_mm"] == pytest.approx(np.sqrt(np.mean(fle**2)))
 
 
-def test_the_command_tells_weights_and_expected_fre_to_people(files, capsys):
+def test_the_command_prints_weights_and_expected_fre(files, capsys):
     moving, fixed, _, fle = files
     status, out = run(capsys, moving, fixed, "--fle", moving)
     assert status == 0
@@ -257,7 +257,7 @@ def test_the_command_takes_weights_by_label_in_any_order(files, capsys):
     ],
     ids=["missing", "doubled", "too few", "zero", "header"],
 )
-def test_a_file_that_does_not_fit_the_points_is_refused_with_a_sentence(files, capsys, text, told):
+def test_a_file_that_does_not_match_the_points_is_refused_with_a_message(files, capsys, text, told):
     moving, fixed, *_ = files
     path = moving.with_name("fle.csv")
     path.write_text(text)

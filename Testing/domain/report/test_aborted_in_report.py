@@ -56,12 +56,12 @@ def test_the_report_says_how_many_trials_were_started_and_why_steps_were_repeate
     assert "For 1 aborted trial no reason of a repeat is stored" in words
 
 
-def test_who_did_not_agree_to_research_is_left_out_with_the_aborted_trials(path):
+def test_aborted_trials_without_consent_are_left_out(path):
     data = read_study_data(path)
     assert {stored.record.trainee for stored in data.aborted} == {"A", "B"}
 
 
-def test_where_none_was_aborted_the_report_says_so(tmp_path):
+def test_a_report_without_aborted_trials_says_so(tmp_path):
     study_with_trials(tmp_path / "study.db")
     data = read_study_data(tmp_path / "study.db")
     count = len(data.trials)
@@ -70,12 +70,12 @@ def test_where_none_was_aborted_the_report_says_so(tmp_path):
     assert "played again" not in words
 
 
-def test_a_csv_of_finished_trials_says_nothing_of_what_was_started():
+def test_a_report_of_a_csv_has_no_section_on_started_trials():
     row = TrialRow("A", "hmd", "1", 1, {"completion_time_s": 9.0, "rmse_mm": 1.0})
     assert "started trials" not in words_of(report_html(StudyData("x", (row,))))
 
 
-def test_an_aborted_trial_stands_in_the_lc_cusum_as_not_passed_in_its_place():
+def test_an_aborted_trial_counts_as_not_passed_in_the_lc_cusum():
     def row(number):
         values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 90.0}
         utc = f"2024-05-17T{number + 8:02d}:00:00Z"
@@ -97,7 +97,7 @@ def test_an_aborted_trial_stands_in_the_lc_cusum_as_not_passed_in_its_place():
     assert f"13 12 (92 %) {competent} of 1 {told} 1" in words_of(report_html(with_one))
 
 
-def test_aborted_trials_and_their_touches_are_tables(path):
+def test_aborted_trials_and_their_touches_are_exported(path):
     data = read_study_data(path)
     rows = list(csv.DictReader(io.StringIO(aborted_csv(data.aborted))))
     assert [(row["trainee"], row["touches"], row["phase"], row["trial_run"]) for row in rows] == [
@@ -111,7 +111,7 @@ def test_aborted_trials_and_their_touches_are_tables(path):
     assert len(touches) == 18
 
 
-def test_no_reason_becomes_a_formula_in_a_spreadsheet():
+def test_a_reason_never_becomes_a_formula_in_a_spreadsheet():
     record = AbortedTrial.from_json(make_aborted(reason="=1+1"))
     text = aborted_csv([StoredAborted(record, "s", "@SUM(A1:A9)")])
     assert "'=1+1" in text
@@ -136,7 +136,7 @@ def test_the_commands_count_them(path, tmp_path, capsys):
     assert sum(each["verb"]["display"]["en-US"] == "terminated" for each in told) == 3
 
 
-def test_a_trainees_history_as_a_table_has_the_aborted_trials_beside_it(path, tmp_path):
+def test_a_trainees_history_is_written_with_the_aborted_trials(path, tmp_path):
     with Study.open(path) as study:
         study.create_trainee("D")
         write_history(study, ["A"], tmp_path / "a.csv")

@@ -134,7 +134,7 @@ def test_the_report_says_what_four_subjects_cannot_show(page):
     assert "None are reported. Groups of trainees are not reported for fewer than 12" in words
 
 
-def test_the_papers_inconsistencies_stand_beside_its_numbers(page):
+def test_the_papers_inconsistencies_are_reported_with_its_numbers(page):
     words = words_of(page)
     for sentence in (
         "Equation 3 divides that by 2",
@@ -147,7 +147,7 @@ def test_the_papers_inconsistencies_stand_beside_its_numbers(page):
     assert "± of the overall CTPS, desktop 20 trials 25.96 25.963" in words
 
 
-def test_the_page_needs_no_other_file_and_runs_nothing(page):
+def test_the_page_is_self_contained_and_has_no_scripts(page):
     assert "<script" not in page
     assert not re.findall(r'(?:src|href)="', page)
     links = set(re.findall(r"https?://[^\s\"'<]+", page))
@@ -155,7 +155,7 @@ def test_the_page_needs_no_other_file_and_runs_nothing(page):
     assert "@page { size: A4;" in page
 
 
-def test_every_head_of_a_table_says_what_it_heads(page):
+def test_every_table_header_has_a_scope(page):
     heads = re.findall(r"<th[ >][^>]*>?", page)
     assert len(heads) > 70
     assert all(re.search(' scope="(col|colgroup|row)"', head) for head in heads)
@@ -167,7 +167,7 @@ def test_every_head_of_a_table_says_what_it_heads(page):
     assert 'colspan="2" class="group" scope="colgroup"' in page
 
 
-def test_negative_numbers_have_a_minus_and_no_hyphen(page):
+def test_negative_numbers_have_a_minus_sign_not_a_hyphen(page):
     words = words_of(re.sub("<style>.*</style>", "", page, flags=re.DOTALL))
     assert "−3.26 [−20.46, 13.94]" in words
     assert not re.search(r"(?<![\w.–-])-\d", words)
@@ -185,7 +185,7 @@ def mean_ctps_of_tasks(mode):
     return [scores[tasks == task].mean() for task in range(1, 6)]
 
 
-def test_the_claim_that_ctps_falls_with_complexity_is_examined_as_the_others(published, page):
+def test_the_claim_that_ctps_falls_with_complexity_is_checked(published, page):
     words = words_of(page)
     found = []
     for mode in ("hmd", "desktop"):
@@ -206,7 +206,7 @@ def test_the_claim_that_ctps_falls_with_complexity_is_examined_as_the_others(pub
     assert "over the 20 trials: time r = 0.47" in words
 
 
-def test_the_published_order_of_modes_is_unknown_and_said_to_be_so(published, page):
+def test_the_unknown_order_of_modes_is_stated(published, page):
     words = words_of(page)
     assert "Which mode came first is not in the data" in words.split("Performance as")[0]
     assert (
@@ -240,7 +240,7 @@ def test_a_balanced_order_of_modes_separates_the_period_and_is_tabulated():
     assert "does not allow the effect of the period" in words.split("Performance")[0]
 
 
-def test_modes_that_take_turns_are_counted_by_their_runs():
+def test_alternating_modes_are_counted_as_periods():
     modes = ("desktop", "hmd", "desktop", "hmd")
     rows = [TrialRow("a", mode, "1", 1, {"completion_time_s": 10.0}) for mode in modes]
     assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 1.0}
@@ -271,7 +271,7 @@ def test_registering_and_scoring_need_no_scipy():
     assert done.returncode == 0, done.stderr
 
 
-def test_every_chart_is_well_formed_and_described(page):
+def test_every_chart_is_well_formed_and_has_a_description(page):
     charts = re.findall(r"<svg.*?</svg>", page, re.DOTALL)
     assert len(charts) >= 10
     for chart in charts:
@@ -307,7 +307,7 @@ def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
         ([str(STUDIES / "README.md")], "is not a study database"),
     ],
 )
-def test_a_study_that_cannot_be_read_is_one_sentence(words, sentence, tmp_path, capsys):
+def test_an_unreadable_study_raises_one_sentence(words, sentence, tmp_path, capsys):
     assert main(["report", *words, "-o", str(tmp_path)]) == 2
     printed = capsys.readouterr().err
     assert sentence in printed
@@ -334,7 +334,7 @@ def test_one_mode_alone_is_described_and_not_tested():
     assert "No trainee did two modes" in words
 
 
-def test_trainees_count_with_the_tasks_they_did_in_both_modes():
+def test_trainees_are_compared_on_the_tasks_done_in_both_modes():
     def row(mode, task, time):
         return TrialRow("a", mode, task, 1, {"completion_time_s": time})
 
@@ -346,7 +346,7 @@ def test_trainees_count_with_the_tasks_they_did_in_both_modes():
     )
 
 
-def test_trials_with_long_pauses_are_counted_among_the_limits():
+def test_trials_with_long_pauses_are_reported_as_a_limitation():
     def row(number, paused):
         values = {"completion_time_s": 10.0, "pause_time_s": paused}
         return TrialRow("a", "desktop", "1", number, values)
@@ -357,7 +357,7 @@ def test_trials_with_long_pauses_are_counted_among_the_limits():
     assert "were paused" not in words_of(report_html(never))
 
 
-def test_who_reached_the_pass_mark_and_whom_lc_cusum_calls_competent_is_counted():
+def test_passed_trials_and_competent_trainees_are_counted():
     rows = []
     for trainee, score, acceptable in (("A", 70.0, True), ("B", 69.9, True), ("C", 90.0, False)):
         for number in range(1, 31):
@@ -383,7 +383,7 @@ def scored(trainee, number, score, version, acceptable=True):
     )
 
 
-def test_scores_of_two_versions_are_told_and_never_compared(tmp_path):
+def test_scores_of_different_versions_are_reported_but_never_compared(tmp_path):
     old = [scored("A", number, 99.5, "1") for number in range(1, 16)]
     new = [scored("A", number, 55.5, "2") for number in range(16, 20)]
     data = StudyData("Mixed", (*old, *new), has_order=True)
@@ -401,7 +401,7 @@ def test_scores_of_two_versions_are_told_and_never_compared(tmp_path):
     ]
 
 
-def test_a_report_says_what_the_scores_of_its_version_are_made_of():
+def test_a_report_explains_the_score_of_its_version():
     def words(version):
         return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, version),))))
 
@@ -420,7 +420,7 @@ def test_a_report_says_what_the_scores_of_its_version_are_made_of():
         assert "Harrington 1965, The desirability function" in each
 
 
-def test_a_mark_for_scores_of_another_version_is_called_so():
+def test_a_pass_mark_for_another_score_version_is_labeled():
     published = read_study_protocol(STUDIES / "published-protocol.json")
     protocol = replace(published, pass_mark=65.0, score_version="1")
     rows = (scored("A", 1, 80.0, "2"),)
@@ -432,7 +432,7 @@ def test_a_mark_for_scores_of_another_version_is_called_so():
 
 
 @pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])
-def test_a_mark_that_no_protocol_sets_is_called_the_default(has_protocol):
+def test_a_pass_mark_without_protocol_is_called_the_default(has_protocol):
     published = read_study_protocol(STUDIES / "published-protocol.json")
     values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 80.0}
     rows = (TrialRow("A", "hmd", "task-1", 1, values, acceptable=True),)
@@ -442,7 +442,7 @@ def test_a_mark_that_no_protocol_sets_is_called_the_default(has_protocol):
     assert "70 of 100 points (the default, since the study sets no mark; no data" in words
 
 
-def test_hostile_pseudonyms_and_titles_stay_text():
+def test_hostile_pseudonyms_and_titles_are_escaped():
     evil = '<script>alert("x")</script>'
     rows = [
         TrialRow(evil, mode, "task-1", 1, {"completion_time_s": 10.0 + i, "rmse_mm": 1.0 + i})
@@ -453,7 +453,7 @@ def test_hostile_pseudonyms_and_titles_stay_text():
     assert "&lt;script&gt;" in page
 
 
-def test_a_study_database_gives_scores_motion_questionnaires_and_what_was_skipped(tmp_path):
+def test_a_report_of_a_database_has_scores_motion_questionnaires_and_skipped_steps(tmp_path):
     study_with_trials(tmp_path / "study.db")
     data = read_study_data(tmp_path / "study.db")
     assert data.trials[0].values["sparc"] == -2.5
@@ -478,7 +478,7 @@ def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
     assert "Left out: 1 trainee who did not agree" in words_of(report_html(data))
 
 
-def test_a_study_of_nobody_who_consents_is_refused(tmp_path):
+def test_a_study_without_any_consent_is_refused(tmp_path):
     with Study.open(tmp_path / "study.db") as study:
         study.add_trial(make_record())
     with pytest.raises(InputError, match="no trials of trainees who agreed"):

@@ -14,11 +14,11 @@ def of(*places):
     return complexity(np.array([on_sphere(*place) for place in places]), MESH, GRAPH, FRONT)
 
 
-def test_each_part_counts_in_its_unit():
+def test_each_part_is_counted_in_its_unit():
     assert Complexity(300, 90, 4, 180).index == pytest.approx(3 + 1 + 4 + 2)
 
 
-def test_straight_over_the_sphere_has_no_turn_and_turns_the_tool_by_its_angle():
+def test_a_great_circle_has_no_turn_and_reorients_the_tool_by_its_angle():
     found = of((90, -40), (90, -10), (90, 20), (90, 50))
     assert found.path_length_mm == pytest.approx(np.radians(90) * RADIUS_MM, rel=0.08)
     assert found.turning_deg == pytest.approx(0, abs=1.0)
@@ -26,7 +26,7 @@ def test_straight_over_the_sphere_has_no_turn_and_turns_the_tool_by_its_angle():
     assert found.hidden_points == 0
 
 
-def test_back_and_forth_turns_by_half_a_circle_each_time():
+def test_each_reversal_turns_by_half_a_circle():
     assert of((80, 0), (100, 0), (80, 0), (100, 0)).turning_deg == pytest.approx(360, abs=2)
 
 
@@ -44,7 +44,7 @@ def test_a_corner_is_measured_in_the_plane_of_the_skin():
         pytest.param(270, 1, id="behind"),
     ],
 )
-def test_a_point_is_hidden_where_the_default_view_cannot_show_its_number(longitude, hidden):
+def test_a_point_is_hidden_if_the_default_view_cannot_show_its_number(longitude, hidden):
     assert of((90, 0), (longitude, 0)).hidden_points == hidden
 
 

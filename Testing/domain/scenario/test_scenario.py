@@ -67,7 +67,7 @@ def changed(path, value):
     return content
 
 
-def test_a_scenario_is_read_whole(folder):
+def test_a_scenario_is_read_completely(folder):
     scenario = load_scenario(folder)
     assert (scenario.name, scenario.title, scenario.folder) == ("sphere", "A sphere", folder)
     assert scenario.head_mesh == (folder / "head.ply").resolve()
@@ -84,19 +84,19 @@ def test_a_scenario_is_read_whole(folder):
     assert scenario.provenance.license == "none needed"
 
 
-def test_an_unknown_task_is_answered_with_those_there_are(folder):
+def test_an_unknown_task_is_refused_with_the_list_of_tasks(folder):
     with pytest.raises(InputError, match="it has trial-run, task-1"):
         load_scenario(folder).task("task-9")
 
 
-def test_the_same_seed_puts_the_head_into_the_same_place(folder):
+def test_the_same_seed_gives_the_same_pose(folder):
     scenario = load_scenario(folder)
     first, again = (scenario.perturbed_head_to_world(7) for _ in range(2))
     assert np.array_equal(first, again)
     assert not np.allclose(first, scenario.perturbed_head_to_world(8), atol=0.01)
 
 
-def test_the_head_of_every_trial_stands_within_the_limits_and_uses_them(folder):
+def test_perturbed_poses_fill_the_limits_and_stay_within_them(folder):
     scenario = load_scenario(folder)
     center = transforms.apply(scenario.head_to_world, scenario.target_position)
     shifts, tilts, yaws = [], [], []
@@ -114,7 +114,7 @@ def test_the_head_of_every_trial_stands_within_the_limits_and_uses_them(folder):
     assert np.abs(np.mean(shifts, axis=0)).max() < 1.5
 
 
-def test_no_perturbation_leaves_the_head_where_it_is(folder):
+def test_no_perturbation_keeps_the_nominal_pose(folder):
     write(folder, {**SCENARIO, "perturbation": {"translationMm": 0, "yawDeg": 0, "tiltDeg": 0}})
     scenario = load_scenario(folder)
     assert np.allclose(scenario.perturbed_head_to_world(5), scenario.head_to_world)
@@ -162,14 +162,14 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
         ("provenance.license", 5, "provenance.license must be printable text"),
     ],
 )
-def test_a_wrong_field_is_named_with_what_it_must_be(folder, path, value, sentence):
+def test_an_invalid_field_is_named_with_what_it_must_be(folder, path, value, sentence):
     write(folder, changed(path, value))
     with pytest.raises(InputError, match=sentence) as caught:
         load_scenario(folder)
     assert "\n" not in str(caught.value)
 
 
-def test_a_link_that_leads_out_of_the_folder_is_not_followed(folder, tmp_path):
+def test_a_link_out_of_the_folder_is_not_followed(folder, tmp_path):
     outside = tmp_path / "outside.mrk.json"
     write_markups(outside, PointList(LABELS, POINTS))
     (folder / "tasks" / "link.mrk.json").symlink_to(outside)
@@ -190,7 +190,7 @@ def test_a_link_that_leads_out_of_the_folder_is_not_followed(folder, tmp_path):
         pytest.param(bytes(2**20 + 1), id="too large"),
     ],
 )
-def test_a_scenario_file_that_is_none_is_refused_with_one_sentence(folder, content):
+def test_an_invalid_scenario_file_is_refused_with_one_sentence(folder, content):
     (folder / "scenario.json").write_bytes(content)
     with pytest.raises(InputError) as caught:
         load_scenario(folder)
@@ -199,6 +199,6 @@ def test_a_scenario_file_that_is_none_is_refused_with_one_sentence(folder, conte
 
 
 @pytest.mark.parametrize("name", ["none", "n" * 300])
-def test_a_folder_that_is_none_is_refused_with_a_sentence(tmp_path, name):
+def test_a_missing_folder_is_refused_with_a_message(tmp_path, name):
     with pytest.raises(InputError, match="scenario"):
         load_scenario(tmp_path / name)

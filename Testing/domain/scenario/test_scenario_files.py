@@ -30,7 +30,7 @@ def written(folder, skull=None, volume=None):
     return load_scenario(folder)
 
 
-def test_what_is_written_is_read_back_with_targets_and_trajectory(tmp_path):
+def test_a_scenario_is_read_back_with_targets_and_trajectory(tmp_path):
     scenario = written(tmp_path / "ball", skull=ball_head(80.0))
     wanted = made_up_scenario()
     assert (scenario.name, scenario.title, scenario.target_name) == ("ball", "A ball", "Tumor")
@@ -47,7 +47,7 @@ def test_what_is_written_is_read_back_with_targets_and_trajectory(tmp_path):
     assert scenario.preview is None
 
 
-def test_a_scenario_with_a_volume_is_read_back_with_it_and_one_without_has_none(tmp_path):
+def test_a_volume_is_read_back_and_optional(tmp_path):
     images = ball_volume()
     read = read_head_volume(written(tmp_path / "with", volume=images).volume)
     assert np.array_equal(read.values, images.values)
@@ -56,7 +56,7 @@ def test_a_scenario_with_a_volume_is_read_back_with_it_and_one_without_has_none(
     assert written(tmp_path / "without").volume is None
 
 
-def test_a_folder_that_holds_something_is_not_written_into(tmp_path):
+def test_a_folder_that_is_not_empty_is_not_written_into(tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "notes.txt").write_text("mine")
     with pytest.raises(InputError, match="is there already"), new_folder(tmp_path / "mine"):
@@ -98,7 +98,7 @@ def test_a_failure_leaves_no_folder_behind(tmp_path):
         ("volume", {"file": "v.nrrd", "window": 9, "level": "x"}, "volume.level must be a number"),
     ],
 )
-def test_a_plan_or_skull_that_is_wrong_is_named(tmp_path, field, value, sentence):
+def test_an_invalid_plan_or_skull_is_named(tmp_path, field, value, sentence):
     written(tmp_path / "ball")
     path = tmp_path / "ball" / "scenario.json"
     path.write_text(json.dumps({**json.loads(path.read_text()), field: value}))
@@ -121,7 +121,7 @@ def test_scenarios_are_listed_by_title_with_picture_or_problem(tmp_path):
 @pytest.mark.parametrize(
     "content", [b"", b"picture", png(5000, 1), png(1, 5000), png() + bytes(4_000_000)]
 )
-def test_a_picture_that_no_view_could_show_is_left_out_of_lists(tmp_path, content):
+def test_an_unusable_picture_is_not_listed(tmp_path, content):
     written(tmp_path / "ball")
     (tmp_path / "ball" / "preview.png").write_bytes(content)
     (ball,) = list_scenarios([tmp_path])
@@ -136,7 +136,7 @@ def test_a_draft_is_read_back(tmp_path):
     assert len(draft.skull.vertices) == len(draft.head.vertices)
 
 
-def test_the_usual_setup_is_the_default_scenarios(tmp_path):
+def test_the_default_setup_is_that_of_the_default_scenario(tmp_path):
     (tmp_path / "setup.json").write_text("{}")
     assert read_setup(tmp_path / "setup.json") == SetUp()
     pose = SetUp().head_to_world(np.array([1.0, 2.0, 3.0]))
@@ -158,7 +158,7 @@ def test_a_title_becomes_a_name_or_is_refused():
         scenario_name("頭")
 
 
-def test_a_moved_robot_base_moves_everything_else_the_other_way():
+def test_moving_the_robot_base_moves_everything_else_oppositely():
     usual, moved = SetUp(), SetUp(robot_base=(100.0, -50.0))
     shift = [-100, 50, 0]
     middle = np.zeros(3)
@@ -181,7 +181,7 @@ def test_a_moved_robot_base_moves_everything_else_the_other_way():
         ({"robotBaseMm": [0, 0, 0]}, "robotBaseMm must be a list of 2"),
     ],
 )
-def test_a_wrong_setup_is_refused_with_a_sentence(tmp_path, content, sentence):
+def test_an_invalid_setup_is_refused_with_a_message(tmp_path, content, sentence):
     (tmp_path / "setup.json").write_text(json.dumps(content))
     with pytest.raises(InputError, match=sentence):
         read_setup(tmp_path / "setup.json")

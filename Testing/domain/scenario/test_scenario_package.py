@@ -57,7 +57,7 @@ def refused(package, library, sentence):
     assert outside <= {"source", "good.zip", "bad.zip", "library"}
 
 
-def test_a_scenario_travels_as_one_file(folder, library):
+def test_a_scenario_is_packed_and_unpacked(folder, library):
     package = pack(folder, folder.parent / "good.zip")
     goal = unpack(package, library)
     assert goal == library / "ball"
@@ -98,7 +98,7 @@ def test_nothing_is_overwritten(folder, library):
         "name\n.txt",
     ],
 )
-def test_a_path_that_leads_elsewhere_is_refused(folder, library, name):
+def test_a_path_out_of_the_folder_is_refused(folder, library, name):
     bad = zip_of(folder.parent / "bad.zip", {**members(folder), name: b"x"})
     refused(bad, library, "holds a file with the path")
 
@@ -115,13 +115,13 @@ def test_a_link_is_refused(folder, library):
     refused(bad, library, "holds a link or a device")
 
 
-def test_a_bomb_is_stopped_by_what_it_unpacks_to_not_by_what_it_says(folder, library, monkeypatch):
+def test_a_zip_bomb_is_stopped_by_its_unpacked_size(folder, library, monkeypatch):
     monkeypatch.setattr(scenario_package, "MOST_BYTES", 3_000_000)
     bomb = zip_of(folder.parent / "bad.zip", {**members(folder), "bomb.bin": bytes(20_000_000)})
     refused(bomb, library, "holds more than 3 MB")
 
 
-def test_too_many_files_and_files_twice_are_refused(folder, library):
+def test_too_many_and_duplicate_files_are_refused(folder, library):
     files = members(folder)
     many = {**files, **{f"f{index}": b"" for index in range(100)}}
     refused(zip_of(folder.parent / "bad.zip", many), library, "holds .* files")
@@ -129,7 +129,7 @@ def test_too_many_files_and_files_twice_are_refused(folder, library):
     refused(zip_of(folder.parent / "bad.zip", twice), library, "holds a file twice")
 
 
-def test_a_mesh_that_is_huge_or_open_is_refused(folder, library, monkeypatch):
+def test_a_huge_or_open_mesh_is_refused(folder, library, monkeypatch):
     files = members(folder)
     head = ball_head()
     write_head_mesh(folder / "open.ply", HeadMesh(head.vertices, head.triangles[:-1]))
@@ -150,18 +150,18 @@ def test_a_mesh_that_is_huge_or_open_is_refused(folder, library, monkeypatch):
         ("volume.nrrd", b"NRRD0004\ntype: float\n\n", r"volume volume\.nrrd must have the type"),
     ],
 )
-def test_a_file_that_cannot_be_used_is_named(folder, library, name, content, sentence):
+def test_an_unusable_file_is_named(folder, library, name, content, sentence):
     bad = zip_of(folder.parent / "bad.zip", {**members(folder), name: content})
     refused(bad, library, sentence)
 
 
-def test_a_file_that_the_scenario_names_and_lacks_is_missed(folder, library):
+def test_a_missing_file_of_the_scenario_is_reported(folder, library):
     files = members(folder)
     del files["head.ply"]
     refused(zip_of(folder.parent / "bad.zip", files), library, "head.ply does not exist")
 
 
-def test_a_volume_that_lies_elsewhere_than_the_head_is_refused(folder, library):
+def test_a_volume_that_does_not_cover_the_head_is_refused(folder, library):
     files = members(folder)
     images = ball_volume()
     elsewhere = transforms.rigid(np.eye(3), [150.0, 0.0, 0.0]) @ images.ijk_to_ras
@@ -171,14 +171,14 @@ def test_a_volume_that_lies_elsewhere_than_the_head_is_refused(folder, library):
     refused(bad, library, r"volume\.nrrd must lie where the head is")
 
 
-def test_what_a_volume_says_beside_its_voxels_stays_out(folder):
+def test_texts_in_a_volume_are_not_packed(folder):
     path = folder / "volume.nrrd"
     magic, rest = path.read_bytes().split(b"\n", 1)
     path.write_bytes(magic + b"\ncontent: Mustermann\nPatientName:=Mustermann\n" + rest)
     assert b"Mustermann" not in members(folder)["volume.nrrd"]
 
 
-def test_a_name_that_leads_elsewhere_is_refused(folder, library):
+def test_a_name_with_a_path_is_refused(folder, library):
     files = members(folder)
     content = {**json.loads(files["scenario.json"]), "name": "../../evil"}
     files["scenario.json"] = json.dumps(content).encode()
@@ -186,13 +186,13 @@ def test_a_name_that_leads_elsewhere_is_refused(folder, library):
 
 
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04" + bytes(100)])
-def test_what_is_no_zip_file_is_refused(folder, library, content):
+def test_a_file_that_is_not_a_zip_file_is_refused(folder, library, content):
     bad = folder.parent / "bad.zip"
     bad.write_bytes(content)
     refused(bad, library, "is no zip file, or a damaged one")
 
 
-def test_a_damaged_package_is_refused_wherever_it_is_damaged(folder, library):
+def test_a_damaged_package_is_refused(folder, library):
     whole = pack(folder, folder.parent / "good.zip").read_bytes()
     bad = folder.parent / "bad.zip"
     for cut in range(100, len(whole), len(whole) // 12):
@@ -205,6 +205,6 @@ def test_a_damaged_package_is_refused_wherever_it_is_damaged(folder, library):
     refused(bad, library, "bad.zip")
 
 
-def test_a_package_that_is_missing_is_named(tmp_path):
+def test_a_missing_package_is_named(tmp_path):
     with pytest.raises(InputError, match=r"There is no file .*none\.zip"):
         unpack(tmp_path / "none.zip", tmp_path / "library")

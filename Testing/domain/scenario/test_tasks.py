@@ -46,7 +46,7 @@ def test_the_fiducials_of_a_task_cannot_be_changed(task_file):
         pytest.param(LABELS, POINTS * 1e4, "not within ±2000 mm", id="in metres? far away"),
     ],
 )
-def test_a_file_that_is_no_task_is_refused_with_a_sentence(tmp_path, labels, points, sentence):
+def test_an_invalid_task_file_is_refused_with_a_message(tmp_path, labels, points, sentence):
     path = tmp_path / "broken.mrk.json"
     write_markups(path, PointList(labels, points))
     with pytest.raises(InputError, match=sentence) as caught:
@@ -55,14 +55,14 @@ def test_a_file_that_is_no_task_is_refused_with_a_sentence(tmp_path, labels, poi
 
 
 @pytest.mark.parametrize("name", ["trial-run", "task-1", "a", "task-12-b"])
-def test_names_of_tasks(name):
+def test_valid_task_names_are_accepted(name):
     assert is_task_name(name)
 
 
 @pytest.mark.parametrize(
     "name", ["", "Task 1", "task_1", "../task", "-task", "task-", "t" * 41, "é"]
 )
-def test_names_that_could_not_stand_in_commands_and_file_names(name):
+def test_invalid_task_names_are_refused(name):
     assert not is_task_name(name)
 
 
@@ -76,7 +76,7 @@ def test_names_that_could_not_stand_in_commands_and_file_names(name):
         pytest.param(["left", "ear", *["nose"] * 13], list(range(15)), id="names alone"),
     ],
 )
-def test_the_numbers_of_the_labels_are_the_order_else_it_is_the_lists(labels, order):
+def test_touch_order_follows_the_numbers_of_labels_or_the_list(labels, order):
     assert touch_order(labels) == order
 
 
@@ -89,7 +89,7 @@ def test_the_numbers_of_the_labels_are_the_order_else_it_is_the_lists(labels, or
         pytest.param(["nose", *[str(n) for n in range(2, 16)]], "no number", id="one without"),
     ],
 )
-def test_labels_that_are_no_order_are_refused_with_a_sentence(labels, sentence):
+def test_labels_without_a_clear_order_are_refused_with_a_message(labels, sentence):
     with pytest.raises(InputError, match=sentence) as caught:
         touch_order(labels)
     assert "\n" not in str(caught.value)

@@ -37,7 +37,7 @@ def test_three_groups_are_found_with_their_members_and_means():
     assert min(found.stability) > 0.9
 
 
-def test_one_group_is_not_cut_into_several():
+def test_one_group_is_not_split():
     refused = 0
     for seed in range(10):
         with contextlib.suppress(NoClustersError):
@@ -47,7 +47,7 @@ def test_one_group_is_not_cut_into_several():
     assert refused >= 9
 
 
-def test_few_trainees_and_constant_metrics_are_refused_in_words():
+def test_few_trainees_and_constant_metrics_are_refused_with_a_message():
     few = cohort([(90, 1, -2), (200, 3, -4)], 2, (1, 0.01, 0.01))
     with pytest.raises(NoClustersError, match=r"fewer than 12 trainees .* there are 4"):
         cluster_trainees(few, METRICS)

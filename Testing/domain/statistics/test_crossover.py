@@ -105,7 +105,7 @@ def test_sequences_are_compared_by_their_means_over_both_conditions():
     [None, np.ones(6), np.array([1.0, 2.0, 2.0, 1.0]), np.array([1.0, -1.0, 1.0])],
     ids=["unknown", "the same for all", "never the other way round", "too few"],
 )
-def test_without_different_orders_the_paired_t_test_remains(order):
+def test_without_different_orders_a_paired_t_test_is_used(order):
     n = 6 if order is None else len(order)
     values = rng.normal(1, 1, n)
     found = compare_paired(np.zeros(n), values, order)
@@ -114,7 +114,7 @@ def test_without_different_orders_the_paired_t_test_remains(order):
     assert found.p == pytest.approx(scipy.stats.ttest_1samp(values, 0.0).pvalue, rel=1e-9)
 
 
-def test_a_period_that_explains_everything_leaves_nothing_to_test():
+def test_differences_explained_by_the_period_cannot_be_tested():
     order = ORDERS["balanced"]
     with pytest.raises(InputError, match="by the same amount"):
         compare_paired(np.zeros(12), 3.0 + 2.0 * order, order)
@@ -139,7 +139,7 @@ def test_the_rank_sum_test_is_scipys_exact_one_and_stays_exact_with_ties():
     assert rank_sum_test(*many).p == pytest.approx(asymptotic, rel=1e-9)
 
 
-def test_carry_over_is_named_as_what_two_periods_cannot_tell():
+def test_carry_over_is_reported_as_not_separable():
     order = np.array([1.0, -1.0, 1.0, -1.0])
     found = compare_paired(np.zeros(4), np.array([1.0, 3.0, 2.0, 2.5]), order)
     words = " ".join(what_cannot_be_concluded(4, found))

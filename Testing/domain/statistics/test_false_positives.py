@@ -63,14 +63,14 @@ def test_modes_that_differ_by_the_margin_are_called_equivalent_in_5_percent_of_s
     assert LEAST <= np.mean(np.array(margins) < 1.0) <= MOST
 
 
-def test_what_is_not_correlated_is_found_so_in_5_percent_of_studies():
+def test_uncorrelated_values_correlate_in_5_percent_of_studies():
     random = np.random.default_rng(13)
     found = [correlation(*random.normal(size=(2, 10))) for _ in range(STUDIES)]
     assert LEAST <= np.mean([one.p < 0.05 for one in found]) <= MOST
     assert LEAST <= np.mean([not one.interval[0] <= 0 <= one.interval[1] for one in found]) <= MOST
 
 
-def test_who_is_not_competent_is_said_to_be_in_at_most_5_percent():
+def test_incompetent_trainees_are_called_competent_in_at_most_5_percent():
     limit = lc_cusum_limit(0.1, 0.4, 25)
     failures = np.random.default_rng(15).random((STUDIES, 25)) < 0.4
     passed = [lc_cusum(row, 0.1, 0.4, limit).competent_at is not None for row in failures]

@@ -156,7 +156,7 @@ def test_a_correlation_has_scipys_p_and_fishers_interval():
     ("first", "second", "words"),
     [([1.0], [2.0], "at least two subjects"), ([1.0, 2.0], [2.0, 3.0], "by the same amount")],
 )
-def test_what_cannot_be_compared_is_refused(first, second, words):
+def test_incomparable_values_are_refused(first, second, words):
     with pytest.raises(InputError, match=words):
         compare_paired(np.array(first), np.array(second))
 
@@ -166,7 +166,7 @@ def test_differences_of_zero_alone_are_refused():
         signed_rank_test(np.zeros(5))
 
 
-def test_the_words_about_few_subjects_tell_the_limits():
+def test_the_limits_of_few_subjects_are_stated():
     four = compare_paired(np.zeros(4), SAMPLES[1])
     words = " ".join(what_cannot_be_concluded(4, four, order_known=False))
     assert "smallest possible p is .125" in words

@@ -22,7 +22,7 @@ from rastrainer.statistics.trend import TrendVerdict, cohort_trend_p, falling_tr
 
 
 @pytest.mark.parametrize("rates", [(0.4, 0.2), (0.0, 0.2), (0.2, 1.0), (float("nan"), 0.5)])
-def test_rates_that_are_none_are_refused(rates):
+def test_invalid_rates_are_refused(rates):
     with pytest.raises(InputError, match="acceptable failure rate above 0"):
         lc_cusum([True], *rates, 1.0)
 
@@ -65,7 +65,7 @@ def test_a_learning_curve_is_scipys_least_squares():
     np.testing.assert_allclose(curve.at(n), expected[0] * n ** -expected[1] + expected[2], atol=0.2)
 
 
-def test_too_few_trials_and_values_that_are_no_times_have_no_curve():
+def test_too_few_or_invalid_values_have_no_curve():
     with pytest.raises(InputError, match="at least 5 trials"):
         fit_learning_curve([1.0, 2.0])
     with pytest.raises(InputError, match="not below 0"):
@@ -91,7 +91,7 @@ def test_the_trend_is_tested_by_all_orders_of_the_values():
     np.testing.assert_allclose(trend.interval, (trend.change - reach, trend.change + reach))
 
 
-def test_what_five_trials_allow_both_ways_is_undecided_and_what_stays_alike_is_steady():
+def test_inconclusive_trials_are_undecided_and_constant_ones_steady():
     assert falling_trend([120.0, 119.0, 121.0, 120.5, 119.5]).verdict is TrendVerdict.STEADY
     assert falling_trend([120.0] * 5).verdict is TrendVerdict.STEADY
     assert falling_trend([140.0, 100.0, 150.0, 95.0, 125.0]).verdict is TrendVerdict.UNDECIDED
@@ -109,7 +109,7 @@ def test_the_trend_of_all_trainees_is_pages():
         cohort_trend_p(rows[:1])
 
 
-def test_competence_takes_eleven_passed_trials_at_least():
+def test_competence_takes_at_least_eleven_passed_trials():
     limit = lc_cusum_limit(0.05, 0.4, 30)
     assert fewest_trials(0.05, 0.4, limit) == 11
     assert lc_cusum([False] * 10, 0.05, 0.4, limit).competent_at is None
@@ -126,7 +126,7 @@ def test_fewer_than_eleven_trials_cannot_show_competence_at_the_accepted_risk():
     assert chances[0] > FALSE_DISCOVERY > chances[1]
 
 
-def test_the_pass_mark_of_equal_spreads_is_in_the_middle():
+def test_the_pass_mark_of_equal_spreads_is_midway():
     rng = np.random.default_rng(0)
     spread = rng.normal(0, 1, 40)
     spread = (spread - spread.mean()) / spread.std(ddof=1)

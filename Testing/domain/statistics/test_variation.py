@@ -19,7 +19,7 @@ def drawn(trainees=12, seed=1, protocol=PROTOCOL, **changes):
     return draw_protocol_study(replace(MODEL, **changes), protocol, trainees, random)
 
 
-def test_without_chance_the_truth_is_found_exactly():
+def test_noise_free_parameters_are_recovered_exactly():
     time = study_variation(drawn(**NOISELESS)).time
     assert time.learning == pytest.approx(MODEL.learning, abs=1e-12)
     assert time.lapse == pytest.approx(np.log(MODEL.lapse_time), abs=1e-12)
@@ -71,12 +71,12 @@ def test_the_interval_of_the_trade_off_holds_the_truth_as_often_as_it_says():
     ],
     ids=["three trainees", "one mode", "no order", "hardly any trials"],
 )
-def test_what_the_trials_cannot_tell_is_not_told(study):
+def test_estimates_that_the_trials_do_not_allow_are_omitted(study):
     assert study_variation(study) is None
     assert variation(study) == ""
 
 
-def test_who_lacks_a_mode_is_left_out():
+def test_trainees_without_all_modes_are_left_out():
     whole = drawn()
     lacking = tuple(t for t in whole.trials if (t.trainee, t.mode) != ("V0001", "hmd"))
     without = tuple(t for t in whole.trials if t.trainee != "V0001")
@@ -87,7 +87,7 @@ def test_who_lacks_a_mode_is_left_out():
     assert found.time.learning == expected.time.learning
 
 
-def test_the_report_tells_it_in_a_table_with_n():
+def test_the_report_has_a_table_of_variation_with_n():
     page = report_html(drawn())
     assert "What completion time and error vary with" in page
     assert "120 trials of the 12 trainees who did every mode" in page

@@ -99,7 +99,7 @@ def test_balanced_orders_are_balanced_over_trainees():
     assert {mode_order(balanced, place) for place in range(0, 20, 2)} == {("hmd", "desktop")}
 
 
-def test_a_trainee_is_led_step_by_step_and_resumes_after_an_interruption(tmp_path):
+def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(tmp_path):
     path = tmp_path / "study.db"
     with Study.open(path) as study:
         study.create_trainee()
@@ -127,7 +127,7 @@ def test_a_trainee_is_led_step_by_step_and_resumes_after_an_interruption(tmp_pat
         assert progress.finish("T001", "hmd/1/task-1", done).next_step.name == "hmd/1/task-2"
 
 
-def test_the_whole_way_ends_with_thanks_and_all_answers_scored(study):
+def test_a_completed_protocol_ends_with_thanks_and_scored_answers(study):
     progress = StudyProgress(study)
     progress.begin(protocol(tasks=["task-1"]))
     progress.enroll("T001")
@@ -152,7 +152,7 @@ def test_the_whole_way_ends_with_thanks_and_all_answers_scored(study):
         progress.skip("T001", "x", "a good long reason")
 
 
-def test_every_step_can_be_told_to_the_simulator_and_comes_back_the_same(study):
+def test_every_step_survives_the_study_step_command(study):
     progress = StudyProgress(study)
     progress.begin(protocol())
     progress.enroll("T001")
@@ -172,7 +172,7 @@ def test_every_step_can_be_told_to_the_simulator_and_comes_back_the_same(study):
     )
 
 
-def test_a_protocol_may_say_its_pass_mark():
+def test_a_protocol_may_set_the_pass_mark():
     shipped = json.loads(SHIPPED.read_text())
     assert "passMark" not in shipped["scoring"]
     silent = protocol()
@@ -225,7 +225,7 @@ def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
         progress.finish("T001", again.name, done)
 
 
-def test_a_questionnaire_is_not_done_without_all_its_answers(study):
+def test_a_questionnaire_is_done_only_with_all_answers(study):
     progress = StudyProgress(study)
     progress.begin(protocol())
     progress.enroll("T001")
@@ -246,7 +246,7 @@ def test_a_trial_run_or_a_break_ends_too_early_only_with_a_reason(study):
         progress.practice("T001", "hmd/trial-run", 1.0)
 
 
-def test_trials_count_by_themselves_in_the_order_of_the_protocol_and_none_from_before(study):
+def test_trials_are_counted_automatically_in_protocol_order_since_enrollment(study):
     progress = StudyProgress(study)
     progress.begin(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
     first = steps_for(progress.protocol(), 0)[0]
@@ -272,7 +272,7 @@ def test_trials_count_by_themselves_in_the_order_of_the_protocol_and_none_from_b
     assert progress.count_played("T001").next_step.name == "hmd/2/task-1"
 
 
-def test_a_study_keeps_its_protocol(study):
+def test_the_protocol_of_a_running_study_cannot_change(study):
     progress = StudyProgress(study)
     assert progress.protocol() is None
     with pytest.raises(InputError, match="no protocol yet"):
@@ -284,7 +284,7 @@ def test_a_study_keeps_its_protocol(study):
         progress.progress("T002")
 
 
-def test_the_place_of_a_deleted_trainee_is_given_again(study):
+def test_the_place_of_a_deleted_trainee_is_reused(study):
     progress = StudyProgress(study)
     progress.begin(protocol())
     assert (progress.enroll("T001"), progress.enroll("T002")) == (0, 1)
@@ -330,7 +330,9 @@ def test_the_place_of_a_deleted_trainee_is_given_again(study):
         ({"taskorder": "fixed"}, "taskorder must be left out"),
     ],
 )
-def test_a_wrong_protocol_is_told_in_one_sentence_that_names_the_field(change, words, tmp_path):
+def test_an_invalid_protocol_is_refused_with_one_sentence_that_names_the_field(
+    change, words, tmp_path
+):
     path = tmp_path / "protocol.json"
     path.write_text(json.dumps({**json.loads(SHIPPED.read_text()), **change}))
     with pytest.raises(InputError, match=words) as caught:

@@ -54,7 +54,7 @@ def test_raw_tlx_is_scored_as_by_another_program():
     assert raw(21, 1, 21, 1, 21, 1) == 50.0
 
 
-def test_ssq_items_are_on_the_published_scales():
+def test_ssq_items_belong_to_the_published_scales():
     """Kennedy et al. 1993, by the items' numbers on the form."""
     nausea, oculomotor = {1, 6, 7, 8, 9, 15, 16}, {1, 2, 3, 4, 5, 9, 11}
     disorientation = {5, 8, 10, 11, 12, 13, 14}
@@ -112,11 +112,11 @@ def test_scores_stay_in_their_range_and_answers_may_come_by_name(questionnaire):
         ({"sus_1": 3}, "needs the answers sus_1"),
     ],
 )
-def test_missing_or_wrong_answers_are_refused_never_filled_in(answers, words):
+def test_missing_or_invalid_answers_are_refused(answers, words):
     with pytest.raises(InputError, match=words):
         SUS.score(answers)
 
 
-def test_an_unknown_questionnaire_is_told_the_known_ones():
+def test_an_unknown_questionnaire_is_refused_with_the_known_ones():
     with pytest.raises(InputError, match="known are sus, nasa-tlx, ssq"):
         find_questionnaire("mmpi")

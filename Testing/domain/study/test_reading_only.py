@@ -79,7 +79,7 @@ def test_a_study_in_mid_protocol_keeps_every_byte_and_its_time(path, tmp_path, w
     assert capsys.readouterr().out
 
 
-def test_a_reader_sees_what_counting_would_count_and_counts_nothing(path):
+def test_reading_shows_played_steps_without_storing_them(path):
     with Study.open_for_reading(path) as study:
         progress = StudyProgress(study)
         stored, played = progress.progress("B"), progress.played("B")
@@ -90,7 +90,7 @@ def test_a_reader_sees_what_counting_would_count_and_counts_nothing(path):
     assert played.next_step == counted.next_step
 
 
-def test_who_opened_for_reading_can_write_nothing(path):
+def test_a_study_opened_for_reading_cannot_be_changed(path):
     before = seen(path)
     with Study.open_for_reading(path) as study:
         with pytest.raises(InputError, match="read-only"):
@@ -100,7 +100,7 @@ def test_who_opened_for_reading_can_write_nothing(path):
     assert seen(path) == before
 
 
-def test_a_study_of_an_earlier_format_is_read_and_not_brought_up_to_date(tmp_path):
+def test_reading_a_study_of_an_earlier_format_does_not_migrate_it(tmp_path):
     path = tmp_path / "study.db"
     connection = sqlite3.connect(path)
     for statement in MIGRATIONS[0]:
@@ -129,7 +129,7 @@ def test_a_file_without_write_permission_in_such_a_folder_can_be_read(path):
         path.parent.chmod(0o700)
 
 
-def test_nothing_is_begun_where_there_is_no_study(tmp_path):
+def test_reading_a_missing_study_creates_nothing(tmp_path):
     with pytest.raises(InputError, match="There is no file"):
         Study.open_for_reading(tmp_path / "study.db")
     assert not list(tmp_path.iterdir())
@@ -148,7 +148,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills by a signal")
-def test_what_a_killed_writer_left_half_written_is_read_as_it_was_before(path):
+def test_a_study_of_a_killed_writer_is_read_as_before_its_change(path):
     with Study.open(path) as study:
         names = [trainee.pseudonym for trainee in study.trainees()]
     killed = subprocess.run([sys.executable, "-c", KILLED, path], check=False)
@@ -166,11 +166,11 @@ def test_what_a_killed_writer_left_half_written_is_read_as_it_was_before(path):
     ],
 )
 @pytest.mark.skipif(sys.platform == "win32", reason="names as on Unix")
-def test_no_name_of_a_file_is_taken_for_more_than_a_name(name, uri):
+def test_file_names_are_quoted_in_the_uri(name, uri):
     assert read_only_uri(Path(name)) == uri
 
 
-def test_a_study_whose_name_holds_signs_of_a_uri_is_read(path):
+def test_a_study_with_uri_characters_in_its_name_is_read(path):
     odd = path.with_name("s?mode=rwc#%41.db")
     shutil.copy(path, odd)
     with Study.open_for_reading(odd) as study:

@@ -52,7 +52,7 @@ def play(study, number, minute):
     study.add_trial(make_record(trialId=trial_id, trainee="A", startedUtc=started))
 
 
-def test_no_trial_is_begun_again_until_it_is_said_why(study):
+def test_an_aborted_trial_is_repeated_only_with_a_reason(study):
     progress = StudyProgress(study)
     assert progress.progress("A").check_start("desktop", "task-1").kind is StepKind.TRIAL
     abort(study, 900, 1, touches=15)
@@ -68,7 +68,7 @@ def test_no_trial_is_begun_again_until_it_is_said_why(study):
     assert (stored.step, stored.repeat_reason) == ("desktop/1/task-1", REASON)
 
 
-def test_a_repeat_that_was_begun_all_the_same_counts_only_with_the_reason(study):
+def test_a_repeat_counts_only_once_its_reason_is_given(study):
     progress = StudyProgress(study)
     abort(study, 900, 1)
     play(study, 1, 2)
@@ -110,7 +110,7 @@ def test_a_repeat_without_a_real_reason_is_refused(study, reason):
     assert StudyProgress(study).progress("A").unexplained
 
 
-def test_nothing_is_asked_where_nothing_of_this_step_was_aborted(study):
+def test_no_reason_is_needed_unless_this_step_was_aborted(study):
     progress = StudyProgress(study)
     abort(study, 900, 1, mode="hmd")
     abort(study, 901, 1, task="trial-run")
@@ -129,7 +129,7 @@ def test_an_aborted_trial_belongs_to_one_step_only(study):
     assert [record.elapsed_s for record in progress.progress("A").unexplained] == [60.0]
 
 
-def test_a_step_that_is_skipped_takes_its_aborted_trials_along(study):
+def test_skipping_a_step_settles_its_aborted_trials(study):
     started = datetime.now(timezone.utc).isoformat()
     AbortedTrials(study).add(make_aborted(trainee="A", startedUtc=started))
     progress = StudyProgress(study)

@@ -51,7 +51,7 @@ def test_a_trainee_is_a_pseudonym_with_a_consent(study):
     assert study.trainee("Blue Heron").consent
 
 
-def test_pseudonyms_are_proposed_and_never_given_twice(study):
+def test_pseudonyms_are_proposed_and_never_reused(study):
     assert [study.create_trainee().pseudonym for _ in range(3)] == ["T001", "T002", "T003"]
     study.delete_trainee("T003")
     study.create_trainee("T005")
@@ -67,7 +67,7 @@ def test_a_pseudonym_is_unique_and_printable(study):
 
 
 @pytest.mark.parametrize("name", ["", " ", " T-001", "T-001 ", "T\n1", "T\u202e1", "x" * 65])
-def test_a_trial_brings_no_pseudonym_that_could_not_be_typed_in(study, name):
+def test_a_trial_with_an_invalid_pseudonym_is_refused(study, name):
     with pytest.raises(InputError):
         study.create_trainee(name)
     with pytest.raises(InputError):
@@ -90,7 +90,7 @@ def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
         study.check_trial(trial)
 
 
-def test_the_history_reads_again_only_what_has_changed_whoever_changed_it(study, path, monkeypatch):
+def test_only_changed_trials_are_read_again(study, path, monkeypatch):
     read = []
 
     def watched(connection, trial_id):
@@ -118,7 +118,7 @@ def test_the_history_reads_again_only_what_has_changed_whoever_changed_it(study,
     assert study.history("T-001") == ()
 
 
-def test_an_archived_trainee_leaves_the_list_and_comes_back(study):
+def test_an_archived_trainee_is_hidden_and_can_be_restored(study):
     study.create_trainee("a")
     study.create_trainee("b")
     study.set_archived("a", True)
@@ -128,7 +128,7 @@ def test_an_archived_trainee_leaves_the_list_and_comes_back(study):
     assert [t.pseudonym for t in study.trainees()] == ["a", "b"]
 
 
-def test_an_unknown_trainee_or_trial_is_told(study):
+def test_an_unknown_trainee_or_trial_is_reported(study):
     for ask in (study.trainee, study.history, study.delete_trainee):
         with pytest.raises(InputError, match='no trainee "x"'):
             ask("x")
@@ -154,7 +154,7 @@ def test_a_trial_is_stored_with_all_its_results(study, results):
     assert stored.true_tre_mm is None
 
 
-def test_twice_is_once(study, results):
+def test_a_trial_delivered_twice_is_stored_once(study, results):
     assert study.add_trial(record(), *results)
     assert not study.add_trial(record(seed=None))
     assert not study.add_trial(TrialRecord.from_json(record()))
@@ -162,7 +162,7 @@ def test_twice_is_once(study, results):
     assert study.trial(record()["trialId"]).score == results[2]
 
 
-def test_another_trial_under_the_same_uuid_is_refused_and_the_first_kept(study):
+def test_another_trial_with_the_same_uuid_is_refused(study):
     study.add_trial(record())
     with pytest.raises(InputError, match="Another trial is stored"):
         study.add_trial(record(completionTimeS=1.0))
@@ -184,13 +184,13 @@ def test_an_unknown_trainee_is_added_without_consent_so_that_no_trial_is_lost(st
         (record(extra="x" * 2**20), "larger than 1 MiB"),
     ],
 )
-def test_a_bad_record_is_refused_and_nothing_is_stored(bad, words, study):
+def test_an_invalid_record_is_refused_and_not_stored(bad, words, study):
     with pytest.raises(InputError, match=words):
         study.add_trial(bad)
     assert study.trainees() == ()
 
 
-def test_later_results_count_and_earlier_ones_stay(study, results, path):
+def test_the_latest_results_count_and_earlier_ones_remain(study, results, path):
     registrations, errors, score = results
     study.add_trial(record(), registrations, errors, score)
     fewer = registrations[0].without("3")
@@ -257,7 +257,7 @@ def test_deleting_a_trainee_leaves_no_trace_in_the_file(study, path, results):
     assert list(path.parent.iterdir()) == [path]
 
 
-def test_everything_is_there_after_opening_again(path, results):
+def test_everything_is_stored_across_reopening(path, results):
     with Study.open(path) as study:
         study.create_trainee("a", consent=True)
         study.add_trial(record(trainee="a"), *results)
@@ -267,7 +267,7 @@ def test_everything_is_there_after_opening_again(path, results):
         assert study.has_trial(record()["trialId"])
 
 
-def test_a_deleted_trainee_does_not_come_back_with_a_trial_that_is_offered_again(study, path):
+def test_a_deleted_trial_that_is_offered_again_is_refused(study, path):
     study.add_trial(record(1, trainee="gone"))
     study.delete_trainee("gone")
     with pytest.raises(DeletedTrialError, match="deleted from the study"):
@@ -293,7 +293,7 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     assert (first.score_version, second.score_version) == (better.version, None)
 
 
-def test_past_trials_are_the_scored_ones_of_a_trainee_as_they_were_started(study, results):
+def test_past_trials_are_the_scored_ones_in_order_of_starting(study, results):
     score = results[2]
     for number, day in ((1, 19), (2, 17), (3, 18)):
         record = make_record(

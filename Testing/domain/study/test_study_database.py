@@ -52,7 +52,7 @@ def check(path):
         connection.close()
 
 
-def test_two_processes_that_write_at_once_lose_and_double_nothing(tmp_path):
+def test_concurrent_writers_lose_and_duplicate_nothing(tmp_path):
     path = tmp_path / "study.db"
     writers = [writer(path, 0, 60), writer(path, 30, 90)]
     for process in writers:
@@ -91,7 +91,7 @@ class KilledWriter:
 
 
 @pytest.mark.parametrize("wanted", [40, pytest.param(400, marks=pytest.mark.soak)])
-def test_kills_of_two_writers_lose_and_double_nothing(tmp_path, wanted):
+def test_killed_writers_lose_and_duplicate_nothing(tmp_path, wanted):
     path = tmp_path / "study.db"
     rng = random.Random(5)
     acknowledged, kills = set(), 0
@@ -121,7 +121,7 @@ def test_kills_of_two_writers_lose_and_double_nothing(tmp_path, wanted):
         (b"\0" * 5000, "is not a study database"),
     ],
 )
-def test_a_file_that_is_no_database_is_told_and_left_alone(content, words, tmp_path):
+def test_a_file_that_is_no_database_is_refused_and_left_unchanged(content, words, tmp_path):
     path = tmp_path / "file"
     path.write_bytes(content)
     with pytest.raises(InputError, match=words):
@@ -136,7 +136,7 @@ def test_an_empty_file_becomes_a_study(tmp_path):
         assert study.trainees() == ()
 
 
-def test_another_programs_database_is_told_and_left_alone(tmp_path):
+def test_another_programs_database_is_refused_and_left_unchanged(tmp_path):
     path = tmp_path / "other.db"
     connection = sqlite3.connect(path)
     connection.execute("CREATE TABLE recipes (name TEXT)")
@@ -148,7 +148,7 @@ def test_another_programs_database_is_told_and_left_alone(tmp_path):
     assert path.read_bytes() == content
 
 
-def test_a_newer_study_is_told_and_left_alone(tmp_path):
+def test_a_newer_study_is_refused_and_left_unchanged(tmp_path):
     path = tmp_path / "study.db"
     Study.open(path).close()
     connection = sqlite3.connect(path)
@@ -160,7 +160,7 @@ def test_a_newer_study_is_told_and_left_alone(tmp_path):
         Study.open(path)
 
 
-def test_a_damaged_study_is_told(tmp_path):
+def test_a_damaged_study_is_reported(tmp_path):
     path = tmp_path / "study.db"
     with Study.open(path) as study:
         for number in range(40):
@@ -177,7 +177,7 @@ def test_a_damaged_study_is_told(tmp_path):
     "change",
     ["'[1]'", """replace(record_json, '{', '{"a": NaN, ')""", "replace(record_json, '{', '[')"],
 )
-def test_a_value_that_we_did_not_write_is_told(tmp_path, change):
+def test_a_foreign_value_is_reported(tmp_path, change):
     path = tmp_path / "study.db"
     with Study.open(path) as study:
         study.add_trial(make_record())
@@ -190,7 +190,7 @@ def test_a_value_that_we_did_not_write_is_told(tmp_path, change):
 
 
 @pytest.mark.parametrize("version", range(len(MIGRATIONS) + 1))
-def test_every_schema_so_far_migrates_to_the_present_one(version, tmp_path):
+def test_every_earlier_schema_is_migrated(version, tmp_path):
     path, fresh = tmp_path / "old.db", tmp_path / "fresh.db"
     connection = sqlite3.connect(path)
     for step in MIGRATIONS[:version]:
@@ -214,7 +214,7 @@ def test_every_schema_so_far_migrates_to_the_present_one(version, tmp_path):
     ("name", "words"),
     [("", "is a folder"), ("missing/study.db", "no folder"), ("a\0b", "null character")],
 )
-def test_a_place_that_cannot_hold_a_study_is_told(name, words, tmp_path):
+def test_an_unusable_path_is_reported(name, words, tmp_path):
     with pytest.raises(InputError, match=words):
         Study.open(f"{tmp_path}/{name}")
 
@@ -231,7 +231,7 @@ def use_without_rights(path):
     return trials, "written"
 
 
-def test_a_read_only_study_can_be_read_and_says_why_it_cannot_be_written():
+def test_a_read_only_study_can_be_read_and_reports_failed_writes():
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "study.db")
         with Study.open(path) as study:
@@ -257,7 +257,7 @@ def fill_disk(path):
     return stored, "written"
 
 
-def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path):
+def test_a_full_disk_is_reported_and_stored_data_remain(tmp_path):
     path = tmp_path / "study.db"
     Study.open(path).close()
     stored, sentence = in_child(fill_disk, path)
@@ -278,7 +278,7 @@ def locked(tmp_path):
     other.close()
 
 
-def test_a_study_locked_by_another_program_is_told(locked):
+def test_a_study_locked_by_another_program_is_reported(locked):
     with pytest.raises(StudyBusyError, match=r"Another program has the study .* locked; try again"):
         Study.open(locked, Patience(0.01))
 
@@ -297,7 +297,7 @@ class CountedPatience(Patience):
         return self.allowed[-1]
 
 
-def test_a_window_waits_once_for_a_lock_and_not_for_every_question_again(locked):
+def test_a_window_waits_only_once_for_a_lock(locked):
     patience = CountedPatience()
     for _ in range(5):
         with pytest.raises(StudyBusyError):
@@ -309,7 +309,7 @@ def test_a_window_waits_once_for_a_lock_and_not_for_every_question_again(locked)
     assert sum(patience.allowed) == 0.1
 
 
-def test_a_study_that_was_open_when_it_was_locked_is_told_and_usable_afterwards(tmp_path):
+def test_an_open_study_reports_a_lock_and_is_usable_afterwards(tmp_path):
     path, patience = tmp_path / "study.db", CountedPatience()
     with Study.open(path, patience) as study:
         other = sqlite3.connect(path, isolation_level=None)
@@ -324,7 +324,7 @@ def test_a_study_that_was_open_when_it_was_locked_is_told_and_usable_afterwards(
         assert study.create_trainee("a").pseudonym == "a"
 
 
-def test_an_exception_in_the_middle_stores_nothing(tmp_path):
+def test_an_exception_in_a_transaction_stores_nothing(tmp_path):
     with Study.open(tmp_path / "study.db") as study:
         with pytest.raises(AttributeError):
             study.add_trial(make_record(), registrations=[None])

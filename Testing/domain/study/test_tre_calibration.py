@@ -25,7 +25,7 @@ def report(*rows):
     return calibration(StudyData("Study", rows))
 
 
-def test_trials_stand_in_the_order_of_their_expected_errors_and_are_judged_by_their_intervals():
+def test_trials_are_ordered_by_expected_error_and_judged_by_their_interval():
     found = TreCalibration.of([point(2.0, expected_mm=0.9), point(0.3), point(0.05)])
     assert [one.expected_mm for one in found.points] == [0.5, 0.5, 0.9]
     assert [one.is_inside for one in found.points] == [False, True, False]
@@ -34,14 +34,14 @@ def test_trials_stand_in_the_order_of_their_expected_errors_and_are_judged_by_th
 
 
 @pytest.mark.parametrize(("count", "total"), [(0, 3), (3, 3), (57, 60), (1, 1)], ids=str)
-def test_the_interval_of_a_share_is_wilsons(count, total):
+def test_the_interval_of_a_proportion_is_wilsons(count, total):
     z, share = stats.norm.ppf(0.975), count / total
     middle = (share + z**2 / (2 * total)) / (1 + z**2 / total)
     half = z / (1 + z**2 / total) * np.sqrt(share * (1 - share) / total + z**2 / (4 * total**2))
     assert proportion(count, total).interval == pytest.approx((middle - half, middle + half))
 
 
-def test_few_trials_are_drawn_and_said_to_be_few():
+def test_few_trials_are_drawn_with_a_note():
     told = TreCalibration.of([point(0.3), point(0.4)], without_truth=3).sentences()
     assert "2 of 2 true errors" in told[0]
     assert told[1:] == [
@@ -53,12 +53,12 @@ def test_few_trials_are_drawn_and_said_to_be_few():
     assert "1 trial can say nothing" in page
 
 
-def test_intervals_from_before_there_was_an_allowance_for_a_common_offset_are_counted():
+def test_older_intervals_without_a_common_offset_are_counted():
     told = TreCalibration.of([point(0.3), point(0.4, allows_for_offset=False)]).sentences()
     assert any("1 of the intervals" in sentence for sentence in told)
 
 
-def test_the_report_counts_what_is_missing_and_tells_modes_apart():
+def test_the_report_counts_missing_errors_and_separates_modes():
     page = report(
         *(row(n, **KNOWN, true_tre_mm=0.4, tre_common_bias_sd_mm=0.25) for n in range(1, 8)),
         row(1, "hmd", **KNOWN, true_tre_mm=3.0, tre_common_bias_sd_mm=0.25),
@@ -74,6 +74,6 @@ def test_the_report_counts_what_is_missing_and_tells_modes_apart():
     assert INTERVAL_NOTE in page
 
 
-def test_a_study_that_knows_no_target_errors_has_no_such_section():
+def test_a_study_without_target_errors_has_no_calibration_section():
     assert report(row(1), row(2)) == ""
     assert "No trial has both" in report(row(1, **KNOWN))

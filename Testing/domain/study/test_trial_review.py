@@ -56,7 +56,7 @@ def reviewed(study, number, task="task-1"):
     return with_progress(analysis, study)
 
 
-def test_a_trial_is_told_how_it_stands_and_a_trial_run_is_not(study):
+def test_trials_get_progress_feedback_and_trial_runs_do_not(study):
     assert reviewed(study, 1, TRIAL_RUN).feedback.progress is None
     assert len(reviewed(study, 2).feedback.progress.scores) == 1
     assert reviewed(study, 3, TRIAL_RUN).feedback.progress is None
@@ -71,7 +71,7 @@ def test_the_pass_mark_is_that_of_the_studys_protocol(study):
     assert not reviewed(study, 3).feedback.progress.passes
 
 
-def test_a_delivered_trial_is_checked_once_and_kept_with_what_is_unknown(study, monkeypatch):
+def test_a_delivered_trial_is_checked_once_and_stored_with_unknown_keys(study, monkeypatch):
     checks = []
     read = TrialRecord.from_json
     monkeypatch.setattr(TrialRecord, "from_json", lambda value: checks.append(value) or read(value))

@@ -22,14 +22,14 @@ def study(tmp_path):
         yield study
 
 
-def test_a_record_survives_json_whole():
+def test_a_record_survives_json():
     for touches in (0, 3, 15):
         record = AbortedTrial.from_json(make_aborted(touches=touches))
         assert AbortedTrial.from_json(json.loads(json.dumps(record.to_json()))) == record
         assert record.is_after_all_touches == (touches == 15)
 
 
-def test_what_a_later_simulator_adds_is_ignored_and_its_reasons_are_taken():
+def test_unknown_keys_are_ignored_and_unknown_reasons_accepted():
     record = AbortedTrial.from_json(make_aborted(reason="head was dropped", weather="rain"))
     assert record.reason == "head was dropped"
 
@@ -61,13 +61,13 @@ def test_what_a_later_simulator_adds_is_ignored_and_its_reasons_are_taken():
         pytest.param({"touchRule": "near"}, "touchRule must be one of", id="rule"),
     ],
 )
-def test_a_hostile_record_is_refused_in_a_sentence_and_stores_nothing(study, change, words):
+def test_an_invalid_record_is_refused_with_a_message_and_not_stored(study, change, words):
     with pytest.raises(InputError, match=words):
         AbortedTrials(study).add(make_aborted(**change))
     assert study.trainees() == ()
 
 
-def test_a_record_without_a_key_or_larger_than_a_mebibyte_is_refused(study):
+def test_an_incomplete_or_too_large_record_is_refused(study):
     lacking = make_aborted()
     del lacking["phase"]
     with pytest.raises(InputError, match='needs the key "phase"'):
@@ -81,7 +81,7 @@ def test_a_record_without_a_key_or_larger_than_a_mebibyte_is_refused(study):
     assert study.trainees() == ()
 
 
-def test_it_is_stored_once_however_often_it_is_offered(study):
+def test_an_aborted_trial_is_stored_once(study):
     aborted = AbortedTrials(study)
     assert aborted.add(make_aborted())
     assert not aborted.add(make_aborted())
@@ -91,19 +91,19 @@ def test_it_is_stored_once_however_often_it_is_offered(study):
         aborted.add(make_aborted(elapsedS=3.0))
 
 
-def test_a_finished_trial_and_an_aborted_one_are_never_the_same(study):
+def test_finished_and_aborted_trials_have_different_uuids(study):
     study.add_trial(make_record())
     with pytest.raises(InputError, match="Another trial is stored"):
         AbortedTrials(study).add(make_aborted(number=7))
 
 
-def test_it_is_not_among_the_finished_trials(study):
+def test_an_aborted_trial_is_not_listed_as_finished(study):
     AbortedTrials(study).add(make_aborted())
     assert study.history("T-001") == study.past_trials("T-001") == ()
     assert study.cohort() == []
 
 
-def test_deleting_a_trainee_deletes_it_and_it_never_comes_back(study, tmp_path):
+def test_deleting_a_trainee_deletes_aborted_trials_for_good(study, tmp_path):
     AbortedTrials(study).add(make_aborted())
     records = tmp_path / "records"
     records.mkdir()
@@ -117,7 +117,7 @@ def test_deleting_a_trainee_deletes_it_and_it_never_comes_back(study, tmp_path):
     assert make_aborted()["trialId"].encode() not in left
 
 
-def test_everything_about_a_trainee_tells_of_it(study, tmp_path):
+def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
     AbortedTrials(study).add(make_aborted())
     assert export_trainee(study, "T-001", tmp_path / "all.json") == 0
     told = json.loads((tmp_path / "all.json").read_text())["aborted_trials"]
@@ -126,7 +126,7 @@ def test_everything_about_a_trainee_tells_of_it(study, tmp_path):
     ]
 
 
-def test_a_study_of_the_format_before_takes_aborted_trials(tmp_path):
+def test_a_migrated_study_stores_aborted_trials(tmp_path):
     path = tmp_path / "study.db"
     connection = sqlite3.connect(path)
     for version in MIGRATIONS[:5]:
@@ -159,7 +159,7 @@ def test_an_aborted_trial_of_a_scored_task_with_a_touch_counts_as_not_passed(
     assert not any(passes(each.score, each.acceptable, 0.0) for each in attempts)
 
 
-def test_attempts_stand_in_the_order_they_were_begun(study):
+def test_attempts_are_in_order_of_starting(study):
     score = gentle_score(110.0, 0.5)
     for number, minute in ((1, 10), (2, 30)):
         utc = f"2024-05-17T09:{minute}:00Z"
@@ -175,7 +175,7 @@ def test_attempts_stand_in_the_order_they_were_begun(study):
         progress_of(attempts, attempts[1].trial_id, 10.0)
 
 
-def test_who_aborts_every_bad_trial_gains_nothing_on_the_way_to_competence(study):
+def test_aborting_bad_trials_does_not_help_to_show_competence(study):
     score = gentle_score(110.0, 0.4)
     for number in range(24):
         utc = f"2024-05-17T{10 + number // 2}:{30 * (number % 2):02d}:00Z"

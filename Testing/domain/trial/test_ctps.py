@@ -88,11 +88,11 @@ def test_slower_is_better_in_ctps_and_time_cancels_from_the_mean(modes):
     assert gain == pytest.approx(7.7, abs=0.1)
 
 
-def test_one_trial_is_scored_against_a_cohort_given():
+def test_one_trial_is_scored_against_a_given_cohort():
     assert published_ctps(126.0, 1.5, CohortReference(120.0, 1.2)) == pytest.approx(105 - 25)
 
 
-def test_what_one_trial_cannot_define_is_none():
+def test_undefined_values_of_one_trial_are_none():
     scores = score_cohort([Trial("desktop", "a", "task-1", 100.0, 1.0)])
     assert scores.overall == 100.0
     assert (scores.sd_sample, scores.pearson_r, scores.r_squared) == (None, None, None)

@@ -50,7 +50,7 @@ def recording(hurried=(), shaking=()):
     return Trajectory(times, tip, np.full(len(times), 5.0), tuple(touches))
 
 
-def test_an_error_in_depth_is_told_from_one_along_the_skin():
+def test_errors_in_depth_and_along_the_skin_are_distinguished():
     errors = np.zeros((15, 3))
     errors[3] = 4.0 * NORMALS[3]
     errors[9] = 4.0 * TANGENTS[9]
@@ -66,7 +66,7 @@ def test_an_error_in_depth_is_told_from_one_along_the_skin():
     )
 
 
-def test_hurry_and_tremor_are_seen_in_the_recording():
+def test_hurry_and_tremor_are_found_in_the_recording():
     errors = np.zeros((15, 3))
     errors[[4, 11]] = 4.0 * TANGENTS[[4, 11]]
     findings = touch_findings(registered(errors), NORMALS, recording(hurried=[4], shaking=[11]))
@@ -78,14 +78,14 @@ def test_hurry_and_tremor_are_seen_in_the_recording():
     assert findings[4].dwell_s < 0.15 < findings[7].dwell_s
 
 
-def test_without_recording_and_skin_only_the_residuals_are_told():
+def test_without_recording_and_skin_only_residuals_are_reported():
     findings = touch_findings(registered(np.zeros((15, 3))))
     assert all(f.depth_mm is None and f.replay_s is None for f in findings)
     feedback = trial_feedback(gentle_score(100.0, 0.4), registered(np.zeros((15, 3))))
     assert feedback.score_sentences[0] == "Score 52 of 100."
 
 
-def test_the_most_rewarding_advice_comes_first_and_safety_before_all():
+def test_safety_advice_comes_first_then_the_most_rewarding():
     errors = np.zeros((15, 3))
     errors[3] = 6.0 * TANGENTS[3]
     findings = touch_findings(registered(errors), NORMALS)
@@ -103,14 +103,14 @@ def test_the_most_rewarding_advice_comes_first_and_safety_before_all():
     assert advice[1].gain > advice[2].gain > 0
 
 
-def test_a_slow_and_exact_trial_is_told_to_be_faster():
+def test_a_slow_accurate_trial_gets_advice_to_be_faster():
     findings = touch_findings(registered(np.zeros((15, 3))))
     motion = {"idle_time_s": 150.0, "path_efficiency": 0.2}
     topics = [a.topic for a in advise(gentle_score(400.0, 0.1), findings, motion)]
     assert set(topics) == {"idle time", "detours", "pace"}
 
 
-def test_depth_is_advised_where_most_of_the_error_is_in_depth():
+def test_depth_advice_is_given_if_most_of_the_error_is_in_depth():
     errors = NORMALS * np.random.default_rng(4).normal(0, 3.0, (15, 1))
     findings = touch_findings(registered(errors), NORMALS)
     topics = [a.topic for a in advise(gentle_score(100.0, 1.0), findings, {})]
@@ -137,7 +137,7 @@ def past(number, score, mode="desktop", acceptable=True):
     return PastTrial(str(number), "task-1", mode, 110.0, score, acceptable)
 
 
-def test_progress_tells_best_mark_and_competence():
+def test_progress_reports_best_score_pass_mark_and_competence():
     history = [past(i, 40.0 + i) for i in range(12)]
     progress = progress_of(history, history[-1].trial_id, pass_mark=45.0)
     assert progress.is_best
@@ -168,7 +168,7 @@ def test_a_trial_is_not_compared_with_scores_of_another_version():
     assert twice.sentences[0].startswith("1 points more than in your last trial")
 
 
-def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
+def test_competence_is_shown_by_passed_trials_in_the_same_mode():
     history = [past(i, 80.0) for i in range(20)]
     progress = progress_of(history, history[-1].trial_id, pass_mark=60.0)
     assert progress.competence.competent_at is not None
@@ -183,7 +183,7 @@ def test_competence_is_proven_by_a_run_of_passed_trials_in_the_same_mode():
     assert progress_of(other, other[-1].trial_id, 60.0).competence.competent_at is None
 
 
-def test_a_trial_with_an_unacceptable_error_never_passes():
+def test_a_trial_with_an_unacceptable_error_does_not_pass():
     bad = past(1, 99.0, acceptable=False)
     progress = progress_of([bad], bad.trial_id, pass_mark=10.0)
     assert not progress.passes
@@ -192,7 +192,7 @@ def test_a_trial_with_an_unacceptable_error_never_passes():
         progress_of([], bad.trial_id, 10.0)
 
 
-def test_the_feedback_reads_in_order():
+def test_the_feedback_sentences_are_in_order():
     errors = np.zeros((15, 3))
     errors[3] = 5.0 * NORMALS[3]
     history = [past(1, 50.0), past(2, 60.0)]

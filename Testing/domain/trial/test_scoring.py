@@ -57,20 +57,20 @@ def score(measures, reference):
 
 
 @given(trials, references)
-def test_bounded_from_0_to_100(trial, reference):
+def test_the_score_is_between_0_and_100(trial, reference):
     assert 0.0 < score(trial, reference) <= 100.0
 
 
 @pytest.mark.parametrize("measure", MEASURES)
 @given(trial=trials, step=st.floats(1e-3, 1e4), reference=references)
-def test_faster_nearer_and_gentler_are_each_strictly_better(measure, trial, step, reference):
+def test_faster_more_accurate_and_gentler_are_each_strictly_better(measure, trial, step, reference):
     worse = replace(trial, **{measure: getattr(trial, measure) + step})
     assert score(trial, reference) > score(worse, reference)
 
 
 @pytest.mark.parametrize("measure", LIMITS)
 @given(trial=trials, other=acceptable, excess=st.floats(0.0, 1000.0), reference=references)
-def test_what_is_beyond_a_limit_is_never_bought_back(measure, trial, other, excess, reference):
+def test_exceeding_a_limit_cannot_be_compensated(measure, trial, other, excess, reference):
     beyond = math.nextafter(LIMITS[measure], math.inf) + excess
     worse = score_trial(replace(trial, **{measure: beyond}), reference)
     assert not worse.acceptable
@@ -79,7 +79,7 @@ def test_what_is_beyond_a_limit_is_never_bought_back(measure, trial, other, exce
 
 
 @given(trials, trials)
-def test_what_is_better_in_all_is_better_whatever_the_references(one, other):
+def test_better_in_all_measures_is_better_for_any_reference(one, other):
     """Mode, cohort and task only choose a reference; the order of trials is the same with all."""
     pairs = [(getattr(one, name), getattr(other, name)) for name in MEASURES]
     better, worse = ScoreMeasures(*map(min, pairs)), ScoreMeasures(*map(max, pairs))
@@ -87,7 +87,7 @@ def test_what_is_better_in_all_is_better_whatever_the_references(one, other):
         assert score(better, reference) >= score(worse, reference)
 
 
-def test_one_trial_is_enough_and_the_mode_plays_no_part():
+def test_the_score_depends_on_one_trial_and_not_on_the_mode():
     assert list(inspect.signature(score_trial).parameters) == ["measures", "reference"]
     assert list(inspect.signature(score_reference).parameters) == [
         "scenario",
@@ -113,7 +113,7 @@ def test_a_gentle_trial_has_the_geometric_mean_of_time_and_accuracy():
     )
 
 
-def test_version_2_keeps_its_values():
+def test_scores_of_version_2_do_not_change():
     assert scoring.SCORE_VERSION == "2"
     reference = ScoreReference(100.0, 0.4)
     assert gentle_score(100.0, 0.4, reference).score == pytest.approx(100 * math.sqrt(0.52 * 0.5))
@@ -126,7 +126,7 @@ def test_version_2_keeps_its_values():
     )
 
 
-def test_a_score_of_the_first_version_is_read_as_it_was_made():
+def test_a_score_of_the_first_version_is_read_unchanged():
     stored = {
         "score": 51.0,
         "time_desirability": 0.52,
@@ -146,14 +146,14 @@ def test_a_score_of_the_first_version_is_read_as_it_was_made():
 
 
 @pytest.mark.parametrize("time", [0.0, -1.0, math.nan, math.inf])
-def test_a_time_that_is_none_is_refused(time):
+def test_an_invalid_time_is_refused(time):
     with pytest.raises(InputError, match="completion time"):
         gentle_score(time, 1.0)
 
 
 @pytest.mark.parametrize("value", [-0.1, math.nan, math.inf])
 @pytest.mark.parametrize("measure", LIMITS)
-def test_a_measure_that_is_none_is_refused(measure, value):
+def test_an_invalid_measure_is_refused(measure, value):
     measures = ScoreMeasures(100.0, 0.4, 0.0, 0.0, 0.0)
     with pytest.raises(InputError, match="0 or above"):
         score_trial(replace(measures, **{measure: value}), REFERENCES[0])

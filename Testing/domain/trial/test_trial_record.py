@@ -16,19 +16,19 @@ def changed_point(index, **changes):
     return record
 
 
-def test_a_record_survives_the_way_through_json_unchanged():
+def test_a_trial_record_survives_json():
     record = TrialRecord.from_json(make_record())
     assert TrialRecord.from_json(json.loads(json.dumps(record.to_json()))) == record
 
 
-def test_touches_are_offered_as_arrays_in_their_order():
+def test_touches_are_arrays_in_their_order():
     record = TrialRecord.from_json(make_record())
     assert record.labels == tuple(str(i) for i in range(1, 16))
     np.testing.assert_allclose(record.positions_mm[2], [502.0, -40.0, 300.25])
     np.testing.assert_allclose(record.touch_times_s[[0, 14]], [5.0, 110.0])
 
 
-def test_a_record_older_than_the_rule_for_touches_has_that_of_the_paper():
+def test_a_record_without_touch_rule_has_the_papers_rule():
     record = make_record()
     assert "touchRule" not in record
     assert TrialRecord.from_json(record).touch_rule == "within radius"
@@ -73,7 +73,7 @@ def test_keys_of_a_newer_simulator_are_ignored():
         (changed_point(3, simTime=0.5), "4 was touched before 3"),
     ],
 )
-def test_anything_else_is_refused_with_one_sentence(record, words):
+def test_other_records_are_refused_with_one_sentence(record, words):
     with pytest.raises(InputError, match=words) as caught:
         TrialRecord.from_json(record)
     assert "\n" not in str(caught.value)
