@@ -31,6 +31,26 @@ class EventKind(str, Enum):
     REACH = "reach"
 
 
+class TouchStage(str, Enum):
+    """How the next touch is going; the last four are errors, which views show in red.
+
+    `ON_SKIN`: the tip is on the skin where a touch counts. `TOO_DEEP`: it is pressed in.
+    `ELSEWHERE`: it is on the skin away from the next point. `SHAFT`: the tool touches the head
+    behind its tip. `ARM`: the arm is stopped by the head, the table or itself.
+    """
+
+    FAR = "far"
+    NEAR = "near"
+    ON_SKIN = "on skin"
+    TOO_DEEP = "too deep"
+    ELSEWHERE = "elsewhere"
+    SHAFT = "shaft"
+    ARM = "arm"
+
+
+TOUCH_ERRORS = (TouchStage.TOO_DEEP, TouchStage.ELSEWHERE, TouchStage.SHAFT, TouchStage.ARM)
+
+
 class Motion(str, Enum):
     """What moves the tool's tip."""
 
@@ -159,7 +179,7 @@ class SimulationState:
     are (4, 4) float arrays that are never written again. `clearance` is the signed distance of the
     tool to the head, `depth` how far the commanded motion has gone into it beyond where the tool
     could go (`collision.pressing`), 0 without contact. `elapsed` is the running trial's time,
-    pauses excluded. `operator` is who moved the arm last.
+    pauses excluded. `operator` is who moved the arm last. `touch` is how the next touch is going.
     """
 
     tick: int
@@ -178,6 +198,7 @@ class SimulationState:
     camera: str
     planned_target: PlanInWorld | None
     depth: float = 0.0
+    touch: TouchStage = TouchStage.FAR
 
 
 @dataclass(frozen=True)

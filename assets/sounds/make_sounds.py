@@ -63,6 +63,7 @@ SOUNDS = {
         ),
         0.55,
     ),
+    "on-skin": Sound((Note(587.33, 0.0, 0.28),), 0.30),
     "error": Sound(
         (Note(311.13, 0.0, 0.22, WOOD), Note(233.08, 0.15, 0.36, WOOD)),
         0.65,

@@ -36,6 +36,7 @@ from rastrainer_simulator.teleoperation.commanded_motion import MotionOutcome, c
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
 from rastrainer_simulator.training.phase_rules import refusal
 from rastrainer_simulator.training.touch_rule import TouchMoment
+from rastrainer_simulator.training.touch_stage import touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, subtract, vector
@@ -136,10 +137,7 @@ class Simulation:
 
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
         if self._training.handles(command.name):
-            posture = self._posture
-            tip_m = posture.clearance.tip_m
-            now = TouchMoment(sim_time, posture.tip.position, tip_m, self._pressing.depth)
-            return self._training.handle(command, now)
+            return self._training.handle(command, self._touch_moment(sim_time))
         sentence = refusal(command, self._training.state, self._texts)
         if sentence is not None:
             return TrainingReply(False, sentence)
@@ -259,7 +257,19 @@ class Simulation:
             camera=self._view.camera,
             planned_target=self._view.planned_target,
             depth=self._pressing.depth,
+            touch=touch_stage(
+                self._touch_moment(sim_time),
+                self._proximity,
+                self._obstacle,
+                self._training.state,
+                self._training.goal,
+                self.setup.settings.training,
+            ),
         )
+
+    def _touch_moment(self, sim_time: float) -> TouchMoment:
+        tip, clearance = self._posture.tip.position, self._posture.clearance
+        return TouchMoment(sim_time, tip, clearance.tip_m, self._pressing.depth)
 
 
 class SceneView:

@@ -16,7 +16,17 @@ from rastrainer_simulator.desktop.glb_parts import Part
 from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
 from rastrainer_simulator.net.views.screen import Screen
 
-STATE_MEMBERS = ("tick", "phase", "proximity", "camera", "view", "inset", "next", "touched")
+STATE_MEMBERS = (
+    "tick",
+    "phase",
+    "touch",
+    "clearanceMm",
+    "camera",
+    "view",
+    "inset",
+    "next",
+    "touched",
+)
 
 _log = logging.getLogger(__name__)
 

@@ -22,6 +22,7 @@ from rastrainer_simulator.desktop.panels.target_arrow import (
     target_arrow,
 )
 from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, paint_ring
 from rastrainer_simulator.net.views.screen import Screen
 
 MOST_WARNINGS = 3
@@ -35,7 +36,8 @@ class Content:
 
     Attributes:
         screen: what the trainee reads.
-        is_contact: whether the tool touches the head.
+        is_error: whether the touch goes wrong: the picture is framed in red.
+        ring: about the tool's tip; None without one.
         inset: where the second view is; None without one.
         target: direction to a target out of sight, and its distance in mm.
         hovered: name of the item under the mouse.
@@ -43,7 +45,8 @@ class Content:
     """
 
     screen: Screen
-    is_contact: bool = False
+    is_error: bool = False
+    ring: TouchRing | None = None
     inset: Box | None = None
     target: tuple[Direction, int] | None = None
     hovered: str = ""
@@ -73,7 +76,8 @@ class Overlay:
             return False
         self._shown, self._size = content, size
         self._brush = Brush(theme.scale_of(*size))
-        self._show_contact(content.is_contact)
+        self._show_error(content.is_error)
+        self._show_ring(content.ring)
         self._show_inset(content.inset)
         self._show_target(content.target)
         top = self._show_top(content.screen)
@@ -146,7 +150,13 @@ class Overlay:
         self._menu_box = box
         self._place("menu", box.left, box.top)
 
-    def _show_contact(self, is_contact: bool) -> None:
+    def _show_ring(self, ring: TouchRing | None) -> None:
+        look = None if ring is None else (ring.radius, ring.stage)
+        if self._paint("ring", look, paint_ring, self._brush) and ring is not None:
+            half = self._slots["ring"].sprite.size[0] // 2
+            self._place("ring", ring.x - half, ring.y - half)
+
+    def _show_error(self, is_error: bool) -> None:
         """Frame the whole picture in red."""
         width, height = self._size
         thick = self._brush.px(GLOW)
@@ -157,8 +167,8 @@ class Overlay:
             Side.RIGHT: (width - thick, 0, thick, height),
         }
         for side, place in places.items():
-            name = f"contact {side.value}"
-            if self._paint(name, is_contact and thick, edges.glow, theme.CONTACT, side):
+            name = f"error {side.value}"
+            if self._paint(name, is_error and thick, edges.glow, theme.CONTACT, side):
                 self._slots[name].sprite.show(*place)
 
     def _show_inset(self, box: Box | None) -> None:
@@ -200,7 +210,8 @@ class Overlay:
 # From the farthest to the nearest.
 _SLOTS = (
     "inset",
-    *(f"contact {side.value}" for side in Side),
+    "ring",
+    *(f"error {side.value}" for side in Side),
     "scrim",
     "target",
     "status",

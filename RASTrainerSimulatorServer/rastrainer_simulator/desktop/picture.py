@@ -11,18 +11,20 @@ from typing import Any
 import numpy as np
 import pygame
 
-from rastrainer.protocol import Phase
+from rastrainer.protocol import OPEN_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.target_arrow import Direction, direction_out_of_sight
+from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, touch_ring
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.desktop.viewports import Viewports
 from rastrainer_simulator.net.views.screen import Menu, Screen, focused_picture
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 
 REST_S = 3.0
 NOWHERE = (-1, -1)
@@ -156,7 +158,7 @@ class Picture:
         state = self._inbox.state
         if self._scene is None or state is None:
             return
-        self._scene.mark(state["next"], state["touched"], state["proximity"])
+        self._scene.mark(state["next"], state["touched"], TouchStage(state["touch"]))
         if state["next"] is None or self._inbox.problem:
             return
         step = math.floor(now * PULSE_HZ[self.viewports.quality])
@@ -175,12 +177,21 @@ class Picture:
         facts = own_facts(screen.language, self._inbox.holder, pairing)
         return Content(
             screen=replace(screen, status=(*screen.status, *facts)),
-            is_contact=is_free and state.get("proximity") == "contact",
+            is_error=is_free and state.get("touch") in TOUCH_ERRORS,
+            ring=self._ring() if is_free else None,
             inset=self.viewports.inset_box if self.viewports.has_inset else None,
             target=self._target() if is_free else None,
             hovered=self.item_at_pointer(now),
             thumbnail=self._inbox.thumbnails.get(focused_picture(screen.menu)),
         )
+
+    def _ring(self) -> TouchRing | None:
+        """Return the ring about the tip, where it is near the head."""
+        state = self._inbox.state
+        tool = None if self._scene is None else self._scene.poses.get("tool")
+        if state is None or tool is None or state["phase"] not in OPEN_PHASES:
+            return None
+        return touch_ring(state, tool[:3, 3], self.viewports.main, self._window.size)
 
     def _target(self) -> tuple[Direction, int] | None:
         """Return the direction to the next fiducial and its distance in mm, if out of sight."""
@@ -200,5 +211,5 @@ class Picture:
 
 def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
     """Return whether two states look different."""
-    names = ("poses", "proximity", "next", "touched", "camera", "view", "inset")
+    names = ("poses", "touch", "next", "touched", "camera", "view", "inset")
     return other is None or any(state[name] != other[name] for name in names)

@@ -12,8 +12,17 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 
 from rastrainer_simulator.desktop.glb_parts import Finish, Part
 from rastrainer_simulator.desktop.plain_light import AMBIENT, DIFFUSE, lit_colors
-from rastrainer_simulator.scene.nodes import NEXT, TIP_FREE, TIP_NEAR, TOUCHED, WAITING
+from rastrainer_simulator.scene.nodes import (
+    NEXT,
+    TIP_ERROR,
+    TIP_FREE,
+    TIP_NEAR,
+    TIP_ON_SKIN,
+    TOUCHED,
+    WAITING,
+)
 from rastrainer_simulator.scene.surfaces import surface
+from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 
 Shade = tuple[float, float, float]
 
@@ -59,7 +68,11 @@ def glow(target: vtkProperty, color: Shade) -> None:
 
 TIP_MARKER = "tip_marker"
 FIDUCIAL = "fiducial_"
-FREE = "free"
+_TIPS = {
+    TouchStage.FAR: TIP_FREE,
+    TouchStage.NEAR: TIP_NEAR,
+    TouchStage.ON_SKIN: TIP_ON_SKIN,
+}
 PULSE_COLOR = (1.0, 0.97, 0.75)
 STILL_BODIES = ("", "head", "stand")
 """Do not move during a trial; "" is the room."""
@@ -130,13 +143,14 @@ class ShownScene:
                 data = actor.GetMapper().GetInput().GetPointData()
                 data.SetScalars(numpy_to_vtk(colors, deep=True))
 
-    def mark(self, next_point: str | None, touched: Collection[str], proximity: str) -> None:
+    def mark(self, next_point: str | None, touched: Collection[str], touch: TouchStage) -> None:
         """Color the tool's tip and the fiducials."""
-        wanted = (next_point, tuple(touched), proximity == FREE)
+        tip = TIP_ERROR if touch in TOUCH_ERRORS else _TIPS[touch]
+        wanted = (next_point, tuple(touched), tip)
         if wanted == self._marked:
             return
         self._marked = wanted
-        self._paint(TIP_MARKER, TIP_FREE.color if proximity == FREE else TIP_NEAR.color)
+        self._paint(TIP_MARKER, tip.color)
         done = set(touched)
         for name in list(self._named):
             if name.startswith(FIDUCIAL):

@@ -14,11 +14,11 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.feedback_event import feedback_event
+from rastrainer_simulator.net.views.feedback_event import feedback_event, touch_feedback
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LocalizedText
 from rastrainer_simulator.replay.playback import Playback
-from rastrainer_simulator.state import EventKind, SimulationState, StepResult, TrialResult
+from rastrainer_simulator.state import SimulationState, StepResult, TouchStage, TrialResult
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = "interrupted"
@@ -37,6 +37,7 @@ class Flow:
         self._trial_screen = TrialScreen(session)
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
+        self._touch = TouchStage.FAR
         self._had_slicer = False
         self._unseen = ""
         session.pages.home = lambda: StartPage(session)
@@ -58,15 +59,20 @@ class Flow:
         for event in result.events:
             said = result.state.training.instruction
             is_back = isinstance(said, LocalizedText) and said.key == NOT_RECORDED
-            felt = feedback_event(event, is_back and event.kind is EventKind.PHASE)
+            felt = feedback_event(event, result.state.touch, is_back)
             if felt is not None:
                 self._session.happened(felt)
             self._trial_screen.take(event)
+        self._touch = result.state.touch
 
     def advance(self, dt: float, state: SimulationState) -> None:
         """Advance by `dt` seconds with the newest state."""
         session = self._session
         session.advance(dt, state)
+        felt = touch_feedback(self._touch, state.touch)
+        self._touch = state.touch
+        if felt is not None:
+            session.happened(felt)
         training = state.training
         if (training.trial_id, training.phase) != self._seen:
             before, self._seen = self._seen, (training.trial_id, training.phase)

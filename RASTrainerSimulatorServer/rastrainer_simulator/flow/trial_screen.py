@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, Proximity, StepKind
+from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, StepKind
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.start import StartPage
@@ -20,7 +20,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
-from rastrainer_simulator.state import Event, EventKind
+from rastrainer_simulator.state import Event, EventKind, TouchStage
 from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, distance
@@ -29,8 +29,6 @@ from rastrainer_simulator.viewpoint.orbit import FRONT
 TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
 
-PRESSED_MM = 0.5
-"""How deep the tool may be pressed into the head before the depth is shown."""
 STEP_MM = 5.0
 """The distance to the target is shown in such steps: a running figure cannot be read."""
 DEPTH_STEP_MM = 0.5
@@ -150,6 +148,9 @@ class TrialScreen:
             return ScreenMessage(text, Tone.GOOD)
         if self._was_refused:
             return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
+        if session.state.touch is TouchStage.ON_SKIN:
+            key = session.label(ControlName.TOUCH)
+            return ScreenMessage(session.texts.say("work.on skin", touch=key), Tone.GOOD)
         if self._is_off_the_way():
             text = session.texts.say(
                 "work.off the way", trainee=training.trainee, point=training.next_point
@@ -163,13 +164,15 @@ class TrialScreen:
         say = self._session.texts.say
         warnings = []
         state = self._session.state
-        if state.proximity is Proximity.CONTACT:
+        if state.touch is TouchStage.TOO_DEEP:
             depth_mm = DEPTH_STEP_MM * round(MM_PER_M * state.depth / DEPTH_STEP_MM)
-            is_pressed = MM_PER_M * state.depth > PRESSED_MM
-            text = say("warning.pressing", depth=depth_mm) if is_pressed else say("warning.contact")
-            warnings.append(ScreenMessage(text, Tone.ERROR))
+            warnings.append(ScreenMessage(say("warning.pressing", depth=depth_mm), Tone.ERROR))
+        elif state.touch is TouchStage.SHAFT:
+            warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
+        elif state.touch is TouchStage.ELSEWHERE:
+            warnings.append(ScreenMessage(say("warning.elsewhere"), Tone.ERROR))
         if self._obstacle:
-            warnings.append(ScreenMessage(say(f"warning.obstacle.{self._obstacle}"), Tone.WARNING))
+            warnings.append(ScreenMessage(say(f"warning.obstacle.{self._obstacle}"), Tone.ERROR))
         elif not self._is_within_reach:
             warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
         return tuple(warnings)

@@ -30,6 +30,8 @@ from rastrainer_simulator.state import (
     TouchState,
     TrainingState,
 )
+from rastrainer_simulator.training.touch_rule import TouchMoment
+from rastrainer_simulator.training.touch_stage import touch_stage
 from rastrainer_simulator.vectors import Vector
 
 AFTER_S = 0.25
@@ -94,6 +96,11 @@ class RecordedTrial:
         self._situations = _situations(
             track, scenario.task(self.task).labels, header["before"]["camera"] or settings.camera
         )
+        places = self._head_to_world[:3, :3] @ (scenario.task(self.task).fiducials / MM_PER_M).T
+        places = (places + self._head_to_world[:3, 3:]).T
+        labels = scenario.task(self.task).labels
+        self._goals = dict(zip(labels, map(tuple, places.tolist()), strict=True))
+        self._training_settings = settings.training
         self._start_tick, self._tick_s = int(header["before"]["tick"]), float(header["tickS"])
         self._start_s = float(header["simTime"]) - self._tick_s
         self.worst = _worst(track, setup)
@@ -114,6 +121,9 @@ class RecordedTrial:
         depth = trajectory.depth_mm
         # What happened in the first tick is seen from the beginning.
         now = self._situations[max(0, bisect.bisect_right(self._event_times, time_s) - 1)]
+        clearance = float(between(trajectory.clearance_mm)) / MM_PER_M
+        depth_m = 0.0 if depth is None else float(between(depth)) / MM_PER_M
+        tip = tuple(poses[self._tip][:3, 3].tolist())
         return SimulationState(
             tick=self._start_tick + round(time_s / self._tick_s),
             sim_time=self._start_s + time_s,
@@ -123,14 +133,23 @@ class RecordedTrial:
             head_to_world=self._head_to_world,
             stand_to_world=self._stand_to_world,
             proximity=now.proximity,
-            clearance=float(between(trajectory.clearance_mm)) / MM_PER_M,
+            clearance=clearance,
             training=now.training,
             elapsed=_elapsed(now.training, time_s),
             motion=Motion.NONE,
             operator="",
             camera=now.camera,
             planned_target=now.planned_target,
-            depth=0.0 if depth is None else float(between(depth)) / MM_PER_M,
+            depth=depth_m,
+            # The journal has one clearance for the whole tool: a contact counts as the tip's.
+            touch=touch_stage(
+                TouchMoment(time_s, tip, clearance, depth_m),
+                now.proximity,
+                "",
+                now.training,
+                self._goals.get(now.training.next_point or ""),
+                self._training_settings,
+            ),
         )
 
     def events_between(self, after_s: float, until_s: float) -> tuple[Event, ...]:

@@ -143,7 +143,7 @@ class ReplayPresenter:
     def _feel(self, result: StepResult) -> None:
         """Tell what happened then, to be heard and felt again."""
         for event in result.events:
-            kind = feedback_event(event)
+            kind = feedback_event(event, result.state.touch)
             if kind is None:
                 continue
             self._count += 1

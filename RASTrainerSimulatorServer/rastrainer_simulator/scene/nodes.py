@@ -47,7 +47,9 @@ TRACE = Material("trace", (0.30, 0.62, 0.60), glowing=True)
 LAMP_GLASS = Material("lamp_glass", (0.96, 0.97, 0.94), glowing=True)
 
 TIP_FREE = Material("tip_free", (0.05, 0.30, 1.0), glowing=True)
-TIP_NEAR = Material("tip_near", (1.0, 0.05, 0.05), glowing=True)
+TIP_NEAR = Material("tip_near", (0.35, 0.85, 1.0), glowing=True)
+TIP_ON_SKIN = Material("tip_on_skin", (0.20, 0.85, 0.40), glowing=True)
+TIP_ERROR = Material("tip_error", (1.0, 0.05, 0.05), glowing=True)
 
 WAITING = Material("waiting", (0.10, 0.24, 0.62), glowing=True)
 NEXT = Material("next", (1.0, 0.80, 0.05), glowing=True)

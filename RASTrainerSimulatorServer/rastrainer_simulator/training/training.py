@@ -106,6 +106,11 @@ class Training:
         for command, moment in steps:
             self.handle(command, moment)
 
+    @property
+    def goal(self) -> Vector | None:
+        """Where the next fiducial is, World, m; None without one."""
+        return self._fiducials.get(self.state.next_point or "")
+
     def handles(self, command: str) -> bool:
         """Return whether a command is the trial's business."""
         return command in self._handlers

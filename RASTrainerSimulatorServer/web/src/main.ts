@@ -6,7 +6,7 @@ import { FlatView } from "./flat_view";
 import { FrameCount } from "./frame_count";
 import { Gamepads } from "./gamepads";
 import { Keyboard } from "./keyboard";
-import type { ControlNews, EventNews, Hello, News, SceneNews, Screen, StateNews } from "./messages";
+import { isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "./messages";
 import { byId, Overlay } from "./overlay";
 import { pair } from "./pairing";
 import { PoseStream } from "./pose_stream";
@@ -15,6 +15,7 @@ import { Sounds } from "./sounds";
 import { Stage } from "./stage";
 import { TargetArrow } from "./target_arrow";
 import { say, useLanguage } from "./texts";
+import { TouchRing } from "./touch_ring";
 import { ViewMouse } from "./view_mouse";
 import { Headset } from "./xr/headset";
 
@@ -33,6 +34,7 @@ export class Page {
   private readonly sounds = new Sounds();
   private readonly frames = new FrameCount(this.connection);
   private readonly arrow = new TargetArrow();
+  private readonly ring = new TouchRing(this.stage.scene);
   private readonly enter = new EnterButton((session) => void this.enterHeadset(session));
   private headset: Headset | null = null;
   private screen: Screen | null = null;
@@ -185,6 +187,7 @@ export class Page {
       this.poses.place(model.bodies, performance.now() / 1000);
       model.mark(state);
       model.pulse(now);
+      this.ring.show(model, state, this.stage.renderer.xr.getCamera(), this.screen?.menu == null);
       this.headset.draw(now, frame, model);
       this.frames.drawn();
     } else {
@@ -203,7 +206,8 @@ export class Page {
     const isWorking = this.screen?.menu == null;
     const inset = isWorking ? this.flat.insetName : "";
     this.overlay.showInset(inset);
-    this.overlay.showContact(state.proximity === "contact");
+    this.overlay.showError(isWorking && isTouchError(state.touch));
+    this.ring.show(model, state, this.flat.camera, isWorking);
     this.arrow.show(model, this.flat.camera, isWorking ? state.next : null);
     this.flat.draw(inset !== "");
     this.frames.drawn();

@@ -77,13 +77,21 @@ export interface SceneNews {
   readonly fiducials: Readonly<Record<string, Triple>>;
 }
 
+/** How the next touch is going; views show the last four in red. */
+export type TouchStage = "far" | "near" | "on skin" | "too deep" | "elsewhere" | "shaft" | "arm";
+
+/** Whether a touch goes wrong. */
+export function isTouchError(stage: TouchStage): boolean {
+  return !["far", "near", "on skin"].includes(stage);
+}
+
 export interface StateNews {
   readonly type: "state";
   readonly tick: number;
   readonly time: number;
   readonly poses: readonly (readonly number[])[];
   readonly clearanceMm: number;
-  readonly proximity: "free" | "near" | "contact";
+  readonly touch: TouchStage;
   readonly camera: string;
   /** Where the main picture is looked from: the camera of that name, as it is turned now. */
   readonly view: CameraPlace;

@@ -59,8 +59,9 @@ export class Overlay {
     this.showWarnings();
   }
 
-  showContact(isContact: boolean): void {
-    byId("contact").hidden = !isContact;
+  /** Frame the picture in red while a touch goes wrong. */
+  showError(isError: boolean): void {
+    byId("contact").hidden = !isError;
   }
 
   /** Frame the small picture of the camera that does not fill the window. */

@@ -12,7 +12,7 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 import { batch, ownColor } from "./batch";
-import type { SceneNews, StateNews } from "./messages";
+import { isTouchError, type SceneNews, type StateNews, type TouchStage } from "./messages";
 
 const FIDUCIAL = "fiducial_";
 const FURNITURE = ["table", "floor", "room"];
@@ -20,12 +20,14 @@ const PULSE_S = 1.4;
 const PULSE_COLOR = new Color(1, 0.97, 0.75);
 
 /** sRGB, as in the simulator's scene/nodes.py. */
-const COLORS = {
+export const COLORS = {
   waiting: new Color().setRGB(0.1, 0.24, 0.62, "srgb"),
   next: new Color().setRGB(1.0, 0.8, 0.05, "srgb"),
   touched: new Color().setRGB(0.1, 0.62, 0.25, "srgb"),
   free: new Color().setRGB(0.05, 0.3, 1.0, "srgb"),
-  near: new Color().setRGB(1.0, 0.05, 0.05, "srgb"),
+  near: new Color().setRGB(0.35, 0.85, 1.0, "srgb"),
+  onSkin: new Color().setRGB(0.2, 0.85, 0.4, "srgb"),
+  error: new Color().setRGB(1.0, 0.05, 0.05, "srgb"),
 };
 
 export class SceneModel {
@@ -68,7 +70,7 @@ export class SceneModel {
 
   /** Color the tool's tip and the fiducials. */
   mark(state: StateNews): void {
-    this.tip.color.copy(state.proximity === "free" ? COLORS.free : COLORS.near);
+    this.tip.color.copy(tipColor(state.touch));
     if (state.next === this.markedNext && state.touched.length === this.markedTouches) return;
     this.markedNext = state.next;
     this.markedTouches = state.touched.length;
@@ -133,6 +135,11 @@ export class SceneModel {
     const node = this.named.get(name);
     if (node !== undefined) batch(node, finish, apart);
   }
+}
+
+function tipColor(stage: TouchStage): Color {
+  if (isTouchError(stage)) return COLORS.error;
+  return stage === "on skin" ? COLORS.onSkin : stage === "near" ? COLORS.near : COLORS.free;
 }
 
 /** Load the scene that `news` tells of. */

@@ -3,10 +3,10 @@
 import type { Vector3 } from "three";
 
 const NAMES = [
-  "touch", "proximity", "contact", "error", "finish", "undo", "focus", "accept",
+  "touch", "proximity", "contact", "on-skin", "error", "finish", "undo", "focus", "accept",
 ] as const;
 /** These come from the tool's tip, all others from everywhere. */
-const AT_THE_TIP = new Set(["touch", "proximity", "contact", "undo", "error"]);
+const AT_THE_TIP = new Set(["touch", "proximity", "contact", "on-skin", "undo", "error"]);
 
 export class Sounds {
   private readonly context = new AudioContext({ latencyHint: "interactive" });

@@ -13,6 +13,7 @@ from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.read_png import read_png
 from Testing.simulator.desktop.conftest import (
     BODIES,
@@ -26,6 +27,7 @@ from Testing.simulator.desktop.conftest import (
 )
 
 BLUE, RED = ((0, 40, 200), (60, 120, 255)), ((220, 0, 0), (255, 70, 70))
+WHITE, ON_SKIN = ((245, 245, 245), (255, 255, 255)), ((55, 200, 120), (65, 207, 132))
 GREEN, YELLOW = ((10, 130, 40), (70, 190, 100)), ((220, 170, 0), (255, 255, 215))
 
 
@@ -73,13 +75,30 @@ def main_view(pixels):
     return pixels[SIZE[1] // 4 : int(SIZE[1] * 0.86), : int(SIZE[0] * 0.75)]
 
 
-def test_the_tip_is_blue_when_free_and_red_in_proximity_and_contact(show):
-    free = main_view(show())
-    assert len(found(free, BLUE)) > 20
-    assert len(found(free, RED)) == 0
-    near = main_view(show(proximity="proximity"))
-    assert len(found(near, RED)) > 20
-    assert len(found(near, BLUE)) == 0
+@pytest.mark.parametrize("touch", [stage.value for stage in TouchStage])
+def test_the_tip_is_red_only_where_a_touch_goes_wrong(show, touch):
+    pixels = main_view(show(touch=touch, clearanceMm=0.0))
+    assert (len(found(pixels, BLUE)) > 20) is (touch == "far")
+    assert (len(found(pixels, RED)) > 20) is (touch in [stage.value for stage in TOUCH_ERRORS])
+
+
+def ring_of(pixels, color):
+    """Return how high and wide what has a color is about the tip, in pixels; None for nothing."""
+    places = found(pixels[130:255, 400:560], color)
+    return np.ptp(places, axis=0) if len(places) else None
+
+
+def test_a_ring_about_the_tip_closes_as_it_comes_nearer_and_is_green_on_the_skin(show):
+    assert ring_of(show(touch="far", clearanceMm=30.0), WHITE) is None
+    wide, narrow = (
+        ring_of(show(touch="near", clearanceMm=clearance), WHITE) for clearance in (15.0, 5.0)
+    )
+    # 20 mm and 10 mm in radius, seen at 0.65 m, 30 degrees of sight over the window's height.
+    pixels_a_meter = SIZE[1] / (2 * 0.65 * np.tan(np.radians(15)))
+    np.testing.assert_allclose(wide, 2 * 0.020 * pixels_a_meter, atol=10)
+    np.testing.assert_allclose(narrow, 2 * 0.010 * pixels_a_meter, atol=10)
+    on_skin = ring_of(show(touch="on skin", clearanceMm=0.0), ON_SKIN)
+    assert on_skin is not None
 
 
 def test_touched_fiducials_are_green_the_next_is_yellow_and_others_wait(show):
@@ -100,9 +119,9 @@ def test_the_tool_is_where_the_stream_says(show):
     assert after[1] - before[1] == pytest.approx(0.05 * pixels_a_meter, rel=0.1)
 
 
-def test_contact_frames_the_whole_picture_in_red(show):
+def test_only_an_error_frames_the_whole_picture_in_red(show):
     edges = {"top": (1, 480), "bottom": (-2, 300), "left": (270, 1), "right": (300, -2)}
-    calm, alarmed = show(proximity="proximity"), show(proximity="contact")
+    calm, alarmed = show(touch="on skin"), show(touch="too deep")
     for place in edges.values():
         assert alarmed[place][0] > 200 > 100 > alarmed[place][1]
         assert calm[place][1] > 100
@@ -141,7 +160,7 @@ def test_nothing_is_drawn_twice_while_nothing_changes(show, picture, inbox):
     assert not picture.is_due(1e5)
     inbox.take_state(state_text(next=None, tick=99))
     assert not picture.is_due(1e5)
-    inbox.take_state(state_text(next=None, proximity="proximity"))
+    inbox.take_state(state_text(next=None, touch="near"))
     assert picture.is_due(1e5)
 
 

@@ -16,8 +16,9 @@ from rastrainer_simulator.net.views.feedback_event import (
     FEEDBACK_EFFECTS,
     FeedbackEvent,
     feedback_event,
+    touch_feedback,
 )
-from rastrainer_simulator.state import Event, EventKind
+from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,16 @@ def shared(setup):
 def feedback_events_of(loop):
     """Return a list that fills with what the loop's events mean."""
     heard = []
-    loop.subscribe(lambda result: heard.extend(filter(None, map(feedback_event, result.events))))
+
+    before = [TouchStage.FAR]
+
+    def hear(result):
+        touch = result.state.touch
+        felt = [feedback_event(event, touch) for event in result.events]
+        heard.extend(filter(None, felt or [touch_feedback(before[0], touch)]))
+        before[0] = touch
+
+    loop.subscribe(hear)
     return heard
 
 
@@ -68,7 +78,8 @@ def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(
     assert counted["touch"] == 16
     assert counted["undo"] == counted["finish"] == 1
     assert counted["proximity-in"] == counted["proximity-out"] >= 1
-    assert counted["contact"] == counted["contact-out"] >= 1
+    assert counted["on-skin"] >= counted["contact-out"] >= 1
+    assert counted["contact"] >= 1
     strengths = [FEEDBACK_EFFECTS[each].rumble for each in expected]
     assert [low for low, _ in felt if low > 0.0] == pytest.approx(strengths, abs=1e-4)
     numbers = [feedback.number for feedback in pilot.watcher.feedbacks]
@@ -99,10 +110,29 @@ def test_muted_sounds_have_no_volume(trainee):
     [
         (EventKind.REJECTED, {}, FeedbackEvent.ERROR),
         (EventKind.PROXIMITY, {"from": "free", "to": "contact"}, FeedbackEvent.CONTACT),
+        (EventKind.PROXIMITY, {"from": "free", "to": "proximity"}, FeedbackEvent.PROXIMITY_IN),
         (EventKind.PROXIMITY, {"from": "contact", "to": "free"}, FeedbackEvent.PROXIMITY_OUT),
         (EventKind.PHASE, {"phase": "paused"}, None),
         (EventKind.CAMERA, {"camera": "far"}, None),
     ],
 )
 def test_what_an_event_means(kind, data, meant):
-    assert feedback_event(Event(kind, 0.0, data)) is meant
+    assert feedback_event(Event(kind, 0.0, data), TouchStage.ELSEWHERE) is meant
+
+
+def test_reaching_the_skin_where_a_touch_counts_is_a_soft_tone_and_no_alarm():
+    reached = Event(EventKind.PROXIMITY, 0.0, {"from": "proximity", "to": "contact"})
+    assert feedback_event(reached, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
+    soft, alarm = (
+        FEEDBACK_EFFECTS[event] for event in (FeedbackEvent.ON_SKIN, FeedbackEvent.CONTACT)
+    )
+    assert soft.sound != alarm.sound
+    assert soft.rumble < 0.5 * alarm.rumble
+
+
+@pytest.mark.parametrize("error", TOUCH_ERRORS)
+def test_a_touch_that_goes_wrong_sounds_the_alarm_once(error):
+    assert touch_feedback(TouchStage.ON_SKIN, error) is FeedbackEvent.CONTACT
+    assert touch_feedback(error, error) is None
+    assert touch_feedback(error, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
+    assert touch_feedback(TouchStage.ON_SKIN, TouchStage.NEAR) is None

@@ -8,6 +8,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.flow.session.progress import DoneTasks
+from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.german import GERMAN
 from rastrainer_simulator.ops.texts.texts import Texts
 from Testing.simulator.flow.trainee import STEP_S
@@ -304,6 +305,19 @@ def test_leaving_the_way_to_the_next_point_is_told_and_keeping_to_it_is_not(pilo
     pilot.steer_to(1.4 * (second - center) + center, 0.02)
     pilot.step(20)
     assert pilot.presenter.screen.instruction.text.endswith("Now touch point 3.")
+
+
+def test_a_correct_touch_is_no_alarm_and_names_the_button(pilot):
+    pilot.start("task-1")
+    truth = pilot.loop.truth
+    point, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["1"], truth.target))
+    pilot.touch(point, center)
+    shown = [screen for screen in pilot.watcher.screens if screen.menu is None]
+    assert [screen.warnings for screen in shown if screen.warnings] == []
+    on_skin = [screen.instruction for screen in shown if "skin" in screen.instruction.text]
+    assert on_skin[0] == ScreenMessage("On the skin: press A.", Tone.GOOD)
+    assert pilot.watcher.kinds.count("on-skin") == 1
+    assert "contact" not in pilot.watcher.kinds
 
 
 def test_a_pressed_tool_is_told_by_its_depth_in_both_languages(pilot):

@@ -51,6 +51,8 @@ BANNERS: dict[Tone, Color] = {
     Tone.ERROR: rgba(0xB3141E, 0.96),
 }
 CONTACT = rgba(0xE5101C)
+NEAR = rgba(0xFFFFFF)
+ON_SKIN = rgba(0x3CCB7F)
 TARGET = rgba(0xFFCC0D)
 INSET_EDGE = rgba(0xFFFFFF)
 

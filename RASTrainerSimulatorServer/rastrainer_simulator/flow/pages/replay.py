@@ -96,7 +96,7 @@ class ReplayPage(SessionPage):
     def _feel(self, result: StepResult) -> None:
         """Play the sounds and vibrations of what happened again."""
         for event in result.events:
-            felt = feedback_event(event)
+            felt = feedback_event(event, result.state.touch)
             if felt is not None:
                 self.session.happened(felt)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import Phase, Proximity
-from rastrainer_simulator.state import Event, EventKind
+from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
 
 
 class FeedbackEvent(str, Enum):
@@ -19,6 +19,7 @@ class FeedbackEvent(str, Enum):
     PROXIMITY_IN = "proximity-in"
     PROXIMITY_OUT = "proximity-out"
     CONTACT = "contact"
+    ON_SKIN = "on-skin"
     CONTACT_OUT = "contact-out"
     FINISH = "finish"
     FOCUS = "focus"
@@ -48,6 +49,7 @@ FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
     FeedbackEvent.PROXIMITY_IN: FeedbackEffect("proximity", 0.35, 0.2),
     FeedbackEvent.PROXIMITY_OUT: FeedbackEffect("", 0.15, 0.08),
     FeedbackEvent.CONTACT: FeedbackEffect("contact", 1.0, 0.4),
+    FeedbackEvent.ON_SKIN: FeedbackEffect("on-skin", 0.25, 0.1),
     FeedbackEvent.CONTACT_OUT: FeedbackEffect("", 0.2, 0.08),
     FeedbackEvent.FINISH: FeedbackEffect("finish", 0.6, 0.5),
     FeedbackEvent.FOCUS: FeedbackEffect("focus"),
@@ -56,9 +58,12 @@ FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
 }
 
 
-def feedback_event(event: Event, not_recorded: bool = False) -> FeedbackEvent | None:
+def feedback_event(
+    event: Event, touch: TouchStage, not_recorded: bool = False
+) -> FeedbackEvent | None:
     """Return the feedback to an event of the simulation, None where it has none.
 
+    `touch` is how the touch is going when it happens: a contact where a touch counts is no alarm.
     `not_recorded` says that a change of the phase took back what the disk had refused.
     """
     if event.kind is EventKind.TOUCH:
@@ -68,7 +73,7 @@ def feedback_event(event: Event, not_recorded: bool = False) -> FeedbackEvent | 
     if event.kind is EventKind.REJECTED:
         return FeedbackEvent.ERROR
     if event.kind is EventKind.PROXIMITY:
-        return _of_proximity(Proximity(event.data["from"]), Proximity(event.data["to"]))
+        return _of_proximity(Proximity(event.data["from"]), Proximity(event.data["to"]), touch)
     if event.kind is EventKind.PHASE and not_recorded:
         return FeedbackEvent.ERROR
     if event.kind is EventKind.PHASE and event.data["phase"] == Phase.REGISTERED:
@@ -76,9 +81,17 @@ def feedback_event(event: Event, not_recorded: bool = False) -> FeedbackEvent | 
     return None
 
 
-def _of_proximity(before: Proximity, after: Proximity) -> FeedbackEvent:
+def touch_feedback(before: TouchStage, after: TouchStage) -> FeedbackEvent | None:
+    """Return the feedback to a touch that becomes right or wrong while the tool is in contact."""
+    if after is TouchStage.ON_SKIN and before in TOUCH_ERRORS:
+        return FeedbackEvent.ON_SKIN
+    is_worse = after in TOUCH_ERRORS and before not in TOUCH_ERRORS
+    return FeedbackEvent.CONTACT if is_worse else None
+
+
+def _of_proximity(before: Proximity, after: Proximity, touch: TouchStage) -> FeedbackEvent:
     if after is Proximity.CONTACT:
-        return FeedbackEvent.CONTACT
+        return FeedbackEvent.ON_SKIN if touch is TouchStage.ON_SKIN else FeedbackEvent.CONTACT
     if after is Proximity.FREE:
         return FeedbackEvent.PROXIMITY_OUT
     return FeedbackEvent.CONTACT_OUT if before is Proximity.CONTACT else FeedbackEvent.PROXIMITY_IN

@@ -65,6 +65,7 @@ def state(now: SimulationState, delayed: int, pictures: Pictures) -> str:
         poses=[_pose(matrix) for matrix in matrices],
         clearanceMm=round(now.clearance * MM_PER_M, 3),
         proximity=now.proximity.value,
+        touch=now.touch.value,
         camera=now.camera,
         view=_camera(pictures.main),
         inset=None if pictures.inset is None else _camera(pictures.inset),

@@ -96,8 +96,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "the head, one after the other, as exactly as you can.",
         "introduction.title.2": "How a task goes",
         "introduction.text.2": "Follow the numbers and the arrows on the skin from point 1 to "
-        "point 15. The tool's tip is blue; within 20 mm of the head it turns red, and a tone "
-        "warns you. Touch the skin gently and record the point. A slip can be taken back.",
+        "point 15. Within 20 mm of the head a tone sounds, and a ring about the tip closes "
+        "as you come nearer. It turns green where a touch counts: record the point there. Red "
+        "means that something is wrong. A slip can be taken back.",
         "introduction.title.3": "What you get",
         "introduction.text.3": "After the last point you register: 3D Slicer matches your points "
         "with the MRI and tells you the error and your score. Both count: exactness and time. You "
@@ -413,8 +414,10 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # While the trainee works.
         "work.complete": "{trainee}, all {count} points are touched. Press {touch} to register "
         "them.",
+        "work.on skin": "On the skin: press {touch}.",
         "work.off the way": "{trainee}, you are off the path to point {point}.",
-        "warning.contact": "Contact: the tool is on the head. Do not press.",
+        "warning.shaft": "The shaft touches the head: lift the tool.",
+        "warning.elsewhere": "The tip is on the skin away from the point: lift it.",
         "warning.pressing": "Pressing {depth:.1f} mm: ease off.",
         "warning.reach": "The arm cannot reach farther this way.",
         "warning.obstacle.links": "The head is in the arm's way: approach from another side.",

@@ -181,9 +181,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "Punkte am Kopf, einen nach dem anderen, so genau du kannst.",
         "introduction.title.2": "Wie eine Aufgabe abläuft",
         "introduction.text.2": "Folge den Nummern und Pfeilen auf der Haut von Punkt 1 bis Punkt "
-        "15. Die Werkzeugspitze ist blau; näher als 20 mm am Kopf wird sie rot, und ein Ton warnt "
-        "dich. Berühre die Haut sanft und nimm den Punkt auf. Ein Ausrutscher lässt sich "
-        "zurücknehmen.",
+        "15. Näher als 20 mm am Kopf erklingt ein Ton, und ein Ring um die Spitze schließt sich, "
+        "je näher du kommst. Wo eine Berührung zählt, wird er grün: Nimm den Punkt dort auf. Rot "
+        "heißt, dass etwas nicht stimmt. Ein Ausrutscher lässt sich zurücknehmen.",
         "introduction.title.3": "Was daraus wird",
         "introduction.text.3": "Nach dem letzten Punkt registrierst du: 3D Slicer bringt deine "
         "Punkte mit der MRT zur Deckung und nennt dir den Fehler und deine Punktzahl. Beides "
@@ -509,8 +509,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         # While the trainee works.
         "work.complete": "{trainee}, alle {count} Punkte sind berührt. Drücke {touch}, um sie zu "
         "registrieren.",
+        "work.on skin": "Auf der Haut: Drücke {touch}.",
         "work.off the way": "{trainee}, du bist abseits des Weges zu Punkt {point}.",
-        "warning.contact": "Kontakt: Das Werkzeug ist auf dem Kopf. Nicht drücken.",
+        "warning.shaft": "Der Schaft berührt den Kopf: Hebe das Werkzeug an.",
+        "warning.elsewhere": "Die Spitze ist auf der Haut, aber nicht am Punkt: Hebe sie an.",
         "warning.pressing": "Du drückst {depth:.1f} mm tief: Lass nach.",
         "warning.reach": "Weiter reicht der Arm in diese Richtung nicht.",
         "warning.obstacle.links": "Der Arm ist am Kopf: Komm von einer anderen Seite.",

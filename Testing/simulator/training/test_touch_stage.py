@@ -1,0 +1,47 @@
+"""Contact is the goal at the next point, and an error everywhere else."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.protocol import Phase, Proximity
+from rastrainer_simulator.state import TouchStage, TouchState, TrainingState
+from rastrainer_simulator.training.touch_rule import TouchMoment, TrainingSettings
+from rastrainer_simulator.training.touch_stage import touch_stage
+
+RUNNING = TrainingState(phase=Phase.RUNNING, next_point="2")
+TOUCHED = TrainingState(
+    phase=Phase.COMPLETE, touches=(TouchState("15", (0.0, 0.0, 0.0), 1.0, 1.0),)
+)
+HERE, BESIDE = (0.0, 0.0, 0.0), (0.02, 0.0, 0.0)
+CONTACT = Proximity.CONTACT
+
+
+@pytest.mark.parametrize(
+    ("proximity", "clearance", "depth", "obstacle", "training", "goal", "stage"),
+    [
+        (Proximity.FREE, 0.05, 0.0, "", RUNNING, HERE, TouchStage.FAR),
+        (Proximity.PROXIMITY, 0.015, 0.0, "", RUNNING, HERE, TouchStage.NEAR),
+        (CONTACT, 0.0, 0.0, "", RUNNING, HERE, TouchStage.ON_SKIN),
+        (CONTACT, 0.0, 0.0004, "", RUNNING, HERE, TouchStage.ON_SKIN),
+        (CONTACT, 0.0, 0.0006, "", RUNNING, HERE, TouchStage.TOO_DEEP),
+        (CONTACT, 0.0, 0.0, "", RUNNING, BESIDE, TouchStage.ELSEWHERE),
+        (CONTACT, 0.004, 0.0, "", RUNNING, HERE, TouchStage.SHAFT),
+        (CONTACT, 0.0, 0.0, "links", RUNNING, HERE, TouchStage.ARM),
+        (Proximity.FREE, 0.05, 0.0, "table", RUNNING, HERE, TouchStage.ARM),
+        (CONTACT, 0.0, 0.0, "", TOUCHED, None, TouchStage.NEAR),
+        (CONTACT, 0.0, 0.0, "", TrainingState(), None, TouchStage.NEAR),
+    ],
+)
+def test_each_stage_is_told_from_the_others(
+    proximity, clearance, depth, obstacle, training, goal, stage
+):
+    now = TouchMoment(1.0, HERE, clearance, depth)
+    assert touch_stage(now, proximity, obstacle, training, goal, TrainingSettings()) is stage
+
+
+def test_a_tip_that_rests_where_it_has_just_touched_is_no_error():
+    last = TouchState("1", (0.001, 0.0, 0.0), 1.0, 1.0)
+    training = TrainingState(phase=Phase.RUNNING, next_point="2", touches=(last,))
+    now = TouchMoment(2.0, HERE, 0.0)
+    assert touch_stage(now, CONTACT, "", training, BESIDE, TrainingSettings()) is TouchStage.NEAR

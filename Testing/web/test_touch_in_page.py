@@ -1,0 +1,54 @@
+"""How a touch is going, as the page draws it: red is kept for what is wrong."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
+from Testing.simulator.conftest import setup  # noqa: F401
+from Testing.simulator.flow.conftest import loop, shared  # noqa: F401
+from Testing.simulator.net.views.served import ServedViews
+from Testing.web.chromium import open_page
+
+RED = 0xFF0D0D
+DRAW = """
+(changes) => {
+  const state = { ...page.state, ...changes };
+  page.drawFlat(1, page.stage.model, state);
+  return {
+    ring: page.ring.mesh.visible ? page.ring.mesh.scale.x : 0,
+    color: page.ring.material.color.getHex(),
+    tip: page.stage.model.tip.color.getHex(),
+    isFramed: !document.getElementById("contact").hidden,
+  };
+}
+"""
+
+
+@pytest.fixture
+def draw(browser, loop, loop_thread):  # noqa: F811
+    """Return a function that draws a state with some changes and returns what is seen of it."""
+    served = ServedViews(loop_thread, loop)
+    page = open_page(browser, served.url, served.code)
+    served.tell(Screen(status=("Task 1",)))
+    page.wait_for_selector("#status:has-text('Task 1')")
+    yield lambda **changes: page.evaluate(DRAW, changes)
+    assert page.problems == []
+    served.close()
+
+
+def test_tip_ring_and_frame_are_red_only_where_a_touch_goes_wrong(draw):
+    for stage in TouchStage:
+        seen = draw(touch=stage.value, clearanceMm=0.0)
+        is_wrong = stage in TOUCH_ERRORS
+        assert seen["isFramed"] is is_wrong
+        assert (seen["tip"] == RED) is is_wrong
+        assert (seen["ring"] > 0) is (stage is not TouchStage.FAR)
+        if seen["ring"]:
+            assert (seen["color"] == RED) is is_wrong
+
+
+def test_the_ring_closes_as_the_tip_comes_nearer(draw):
+    radii = [draw(touch="near", clearanceMm=clearance)["ring"] for clearance in (20.0, 10.0, 0.0)]
+    assert radii == pytest.approx([0.025, 0.015, 0.005])
