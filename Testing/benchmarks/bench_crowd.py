@@ -13,7 +13,7 @@ import numpy as np
 from Testing.benchmarks.crowd import SETTLE_S, Served, serve_crowd
 from Testing.benchmarks.process_cost import cpu_share, resident_mb
 from Testing.benchmarks.row import row
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import ViewedSimulator
 
 
 def rows(quick: bool) -> list[dict]:

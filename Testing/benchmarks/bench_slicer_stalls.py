@@ -27,8 +27,8 @@ from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.slicer.head.debian_heads import COLIN27
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.volume_file import write_volume
+from Testing.slicer.host.event_loop import StallWatch
 from Testing.slicer.host.host import Host
-from Testing.slicer.host.stall_watch import StallWatch
 from Testing.slicer.recorded_trial import write_recorded_trial
 from Testing.slicer.simulator_double import SimulatorDouble
 

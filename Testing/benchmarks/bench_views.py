@@ -14,7 +14,7 @@ from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.scene.scene_glb import scene_glb
 from Testing.benchmarks.process_cost import cpu_share, resident_mb
 from Testing.benchmarks.row import row
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 from Testing.simulator.scene.glb_reader import Glb

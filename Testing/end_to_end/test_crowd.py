@@ -8,7 +8,7 @@ import secrets
 import pytest
 
 from Testing.benchmarks.crowd import CLIENTS, VIEWS, serve_crowd
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import ViewedSimulator
 
 SECONDS = 2.0
 PATIENCE_S = 120.0

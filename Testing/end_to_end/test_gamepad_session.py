@@ -18,10 +18,9 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer_simulator.desktop.camera import TRANSITION_S
 from rastrainer_simulator.ops.texts.texts import Texts
 from Testing.end_to_end.hands import GamepadHands
-from Testing.end_to_end.heard import BYTES_A_SECOND, times_heard
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
-from Testing.end_to_end.window_process import WindowProcess, wait_until
+from Testing.end_to_end.window_process import BYTES_A_SECOND, WindowProcess, times_heard, wait_until
 from Testing.read_png import read_png
 
 # A window that the processor draws wants the machine for itself.

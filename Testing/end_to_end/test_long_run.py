@@ -22,9 +22,9 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.benchmarks.process_cost import resident_mb
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE
 from Testing.end_to_end.lab import SlicerProcess
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.surviving_player import SurvivingPlayer
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 

@@ -17,7 +17,7 @@ from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import fiducials
 from Testing.slicer.head.volume_file import write_volume
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
-from Testing.slicer.host.other_modules import SampleDataLogic
+from Testing.slicer.host.sample_data import SampleDataLogic
 
 SAMPLE_SHAPE, SAMPLE_SPACING = (256, 256, 112), (0.9375, 0.9375, 1.4)
 """Of MRBrainTumor1."""

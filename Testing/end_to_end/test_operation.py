@@ -18,8 +18,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import DeviceName
 from rastrainer_simulator.record.trial_archive import SUFFIX
-from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess, ViewedSimulator
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 

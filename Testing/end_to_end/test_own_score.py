@@ -22,9 +22,9 @@ from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_al
 from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
+from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.end_to_end.slicer_side import SlicerSide
 
 PATIENCE_S = 120.0
 TRIALS = 100

@@ -3,7 +3,7 @@
 import pytest
 
 from rastrainer.slicer.link.heartbeat import LinkState
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 
 

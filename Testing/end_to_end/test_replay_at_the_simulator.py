@@ -12,8 +12,8 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.stream_trainee import WatchingView
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ViewClient
 

@@ -7,7 +7,7 @@ import secrets
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.protocol.study_step import StudyStep
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.net.views.served import ViewClient
 
 

@@ -15,9 +15,9 @@ from rastrainer.study.protocol.questionnaires import NASA_TLX, SUS
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import study_protocol_from_json
 from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.study_side import RECORDS, STUDY, StudySide
 from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
 from Testing.simulator.net.views.served import ViewClient
 
 COLIN = asset_path("scenarios", "colin27")

@@ -14,7 +14,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
 from Testing.end_to_end.private_packages import SIMULATOR, fill, run, trim
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.virtual_display import VirtualDisplay
 from Testing.end_to_end.window_process import wait_until
 

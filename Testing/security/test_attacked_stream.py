@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from Testing.benchmarks.watched_loop import WatchedLoop
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.security.attacked_process import check_unharmed, cost_of, settled, told
 from Testing.security.stream_attack import StreamAttack
 from Testing.simulator.net.igtl.servers import LoopThread

@@ -5,7 +5,7 @@ import uuid
 import pytest
 import slicer
 
-from Testing.slicer.scored_trials import store_trial_on_colin
+from Testing.slicer.recorded_trial import store_trial_on_colin
 
 OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 

@@ -17,8 +17,7 @@ from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer_simulator.assets import asset_path
-from Testing.slicer.recorded_trial import write_recorded_trial
-from Testing.slicer.scored_trials import store_trial_on_colin
+from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
 
 OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"

@@ -1,11 +1,24 @@
 """The host has PythonQt's manners, as they were measured in Slicer 5.13."""
 
+import json
 import logging
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from Testing.slicer.host.members import (
+    FACTS,
+    MODULES,
+    OFFERED,
+    TARGET,
+    members_of,
+    module_of,
+    reduced,
+    text_of,
+)
 
 pytestmark = pytest.mark.usefixtures("host")
 
@@ -225,3 +238,22 @@ def test_a_node_combo_box_follows_the_scene():
     slicer.mrmlScene.RemoveNode(node)
     assert combo.currentNode() is None
     assert chosen == [node, None]
+
+
+def test_the_table_holds_what_the_host_offers():
+    for module in MODULES:
+        assert list(FACTS[module]) == list(OFFERED[module])
+
+
+def test_every_widget_has_what_a_widget_has():
+    button = members_of("QPushButton")
+    assert {"enabled", "toolTip", "visible", "text"} <= button.properties
+    assert "clicked(bool)" in button.signals
+    assert {"setLayout", "click"} <= button.methods
+    assert module_of("QNoSuchWidget") is None
+
+
+def test_the_table_is_the_measurement_where_that_is_at_hand():
+    full = os.environ.get("RASTRAINER_SLICER_API")
+    measured = json.loads(Path(full).read_text()) if full else FACTS
+    assert TARGET.read_text() == text_of(reduced(measured))

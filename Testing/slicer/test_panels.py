@@ -27,8 +27,7 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
-from Testing.slicer.recorded_trial import write_recorded_trial
-from Testing.slicer.scored_trials import scored_analysis
+from Testing.slicer.recorded_trial import scored_analysis, write_recorded_trial
 
 PROTOCOL = asset_path("studies", "published-protocol.json")
 PAIRED = """

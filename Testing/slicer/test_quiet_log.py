@@ -9,8 +9,7 @@ from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.trial_replay import findReplay
-from Testing.slicer.recorded_trial import write_recorded_trial
-from Testing.slicer.scored_trials import store_trial_on_colin
+from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
 
 SECTIONS = ("trainees", "scenario", "registration", "plan", "score")
 

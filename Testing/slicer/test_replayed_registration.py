@@ -14,8 +14,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.assets import asset_path
-from Testing.slicer.recorded_trial import write_recorded_trial
-from Testing.slicer.scored_trials import scored_analysis
+from Testing.slicer.recorded_trial import scored_analysis, write_recorded_trial
 from Testing.slicer.simulator_double import SimulatorDouble
 
 TASKS = ("task-1", "task-2")

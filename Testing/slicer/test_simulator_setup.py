@@ -18,12 +18,12 @@ from rastrainer.slicer.program.simulator_package import (
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from Testing.slicer.made_up_package import (
+    PackageIndex,
     lock_entry,
     write_checkout,
     write_package,
     write_wheel,
 )
-from Testing.slicer.package_index import PackageIndex
 from Testing.slicer.simulator_double import wait_until
 
 CLI = """

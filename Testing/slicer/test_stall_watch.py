@@ -2,7 +2,7 @@
 
 import time
 
-from Testing.slicer.host.stall_watch import LOOK_AFTER_S, StallWatch
+from Testing.slicer.host.event_loop import LOOK_AFTER_S, StallWatch
 
 STALL_S = 4 * LOOK_AFTER_S
 

@@ -25,7 +25,7 @@ from rastrainer.slicer.scene.study_plots import showCalibration, showHistory, sh
 from rastrainer.study.database.study import Study
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from Testing.domain.trial.trial_records import first_score, gentle_score
-from Testing.slicer.scored_trials import scored_analysis
+from Testing.slicer.recorded_trial import scored_analysis
 
 COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
 

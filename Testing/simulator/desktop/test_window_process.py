@@ -15,7 +15,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.presenter import Feedback, Hello
-from Testing.end_to_end.heard import times_heard
+from Testing.end_to_end.window_process import times_heard
 from Testing.simulator.net.views.served import ServedViews
 
 PATIENCE_S = 60.0

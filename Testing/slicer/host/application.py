@@ -8,17 +8,15 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import slicer
 from PySide6 import QtCore, QtGui, QtWidgets
 
-from Testing.slicer.host.checked import Checked
-from Testing.slicer.host.error_log import ErrorLog
-from Testing.slicer.host.io_manager import CoreIOManager
-from Testing.slicer.host.members import FACTS
-from Testing.slicer.host.other_modules import ModuleManager
+from Testing.slicer.host.failures import ErrorLog
+from Testing.slicer.host.members import FACTS, Checked
 from Testing.slicer.host.proxy import wrap
 from Testing.slicer.host.python_slicer import write_python_slicer
-from Testing.slicer.host.slots import Slot
-from Testing.slicer.host.values import from_qt
+from Testing.slicer.host.sample_data import SampleDataLogic
+from Testing.slicer.host.values import Slot, from_qt
 
 NAME = "3D Slicer of the tests"
 
@@ -150,3 +148,61 @@ def _settings_of_last_time(folder: Path) -> QtCore.QSettings:
     if earlier:
         path.write_bytes(earlier[-1].read_bytes())
     return QtCore.QSettings(str(path), QtCore.QSettings.Format.IniFormat)
+
+
+class CoreIOManager(Checked):
+    """Stands in for `qSlicerCoreIOManager`, of which scenes alone are offered."""
+
+    measured = frozenset({"saveNodes", "loadNodes", "fileType", "fileWriterExtensions"})
+    title = "slicer.app.coreIOManager()"
+
+    def saveNodes(self, kind: str, properties: dict, _messages: Any = None) -> bool:
+        self._check(kind, properties)
+        return slicer.mrmlScene.WriteToMRB(properties["fileName"])
+
+    def loadNodes(self, kind: str, properties: dict, _nodes: Any = None, _said: Any = None) -> bool:
+        self._check(kind, properties)
+        cache, data_io = slicer.vtkCacheManager(), slicer.vtkDataIOManager()
+        cache.SetRemoteCacheDirectory(slicer.app.temporaryPath)
+        data_io.SetCacheManager(cache)
+        slicer.mrmlScene.SetDataIOManager(data_io)
+        try:
+            clears = properties.get("clear", False)
+            return slicer.mrmlScene.ReadFromMRB(properties["fileName"], clears)
+        finally:
+            slicer.mrmlScene.SetDataIOManager(None)
+
+    def _check(self, kind: str, properties: dict) -> None:
+        if kind != "SceneFile" or not str(properties["fileName"]).endswith(".mrb"):
+            raise NotImplementedError("Slicer has it, but the host reads and writes .mrb alone.")
+
+
+class qSlicerScriptedLoadableModule:
+    """`slicer.util` asks for this class; the modules here are of another one."""
+
+
+class Module:
+    """A module with its logic."""
+
+    def __init__(self, name: str, logic: Any) -> None:
+        self.name = name
+        self._logic = logic
+
+    def logic(self) -> Any:
+        return self._logic
+
+
+class ModuleManager:
+    """Finds modules by name; one that is not there is None."""
+
+    def __init__(self, application_logic: Any) -> None:
+        self._application_logic = application_logic
+        self._modules: dict[str, Any] = {"SampleData": Module("SampleData", SampleDataLogic())}
+
+    def add(self, module: Any) -> None:
+        """Add a scripted module under its name."""
+        self._modules[module.name] = module
+
+    def module(self, name: str) -> Any | None:
+        logic = self._application_logic.GetModuleLogic(name)
+        return Module(name, logic) if logic is not None else self._modules.get(name)

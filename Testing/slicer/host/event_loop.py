@@ -9,10 +9,14 @@ from __future__ import annotations
 
 import ctypes
 import sys
+import threading
+import time
+from dataclasses import dataclass
 from pathlib import Path
+from types import FrameType
 
 import PySide6
-from PySide6 import QtWidgets
+from PySide6 import QtCore, QtWidgets
 
 _PROCESS_EVENTS = "_ZN16QCoreApplication13processEventsE6QFlagsIN10QEventLoop17ProcessEventsFlagEE"
 _WAIT_US = 2000
@@ -32,3 +36,85 @@ def wait_keeping_lock() -> None:
     """Wait 2 ms for the next event."""
     if sys.platform == "linux":
         ctypes.PyDLL(None).usleep(_WAIT_US)
+
+
+PLENTY = 1 << 40
+
+
+def lend_references_to_none() -> None:
+    """Give None more references than a test session can drop."""
+    if sys.version_info < (3, 12):
+        ctypes.c_ssize_t.from_address(id(None)).value += PLENTY
+
+
+TICK_MS = 5
+LOOK_AFTER_S = 0.03
+"""A stall of this length is looked into: what the main thread runs then is noted."""
+
+
+@dataclass(frozen=True)
+class Stall:
+    """A time without a turn of the loop, and the innermost lines of ours that ran then."""
+
+    seconds: float
+    ran: str
+
+
+class StallWatch:
+    """Measures in a `with` statement; the loop must turn meanwhile.
+
+    Attributes:
+        stalls: each gap between two turns that was longer than a look.
+        longest_s: of all gaps.
+    """
+
+    def __init__(self) -> None:
+        self.stalls: list[Stall] = []
+        self.longest_s = 0.0
+        self._main = threading.get_ident()
+        self._last = time.perf_counter()
+        self._ran = ""
+        self._ends = threading.Event()
+        self._timer = QtCore.QTimer()
+        self._timer.setTimerType(QtCore.Qt.TimerType.PreciseTimer)
+        self._timer.setInterval(TICK_MS)
+        self._timer.timeout.connect(self._tick)
+        self._sampler = threading.Thread(target=self._look, daemon=True)
+
+    def __enter__(self) -> StallWatch:
+        self._last = time.perf_counter()
+        self._timer.start()
+        self._sampler.start()
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        self._tick()
+        self._timer.stop()
+        self._ends.set()
+        self._sampler.join()
+
+    def _tick(self) -> None:
+        now = time.perf_counter()
+        seconds, self._last = now - self._last, now
+        self.longest_s = max(self.longest_s, seconds)
+        if seconds > LOOK_AFTER_S:
+            self.stalls.append(Stall(seconds, self._ran))
+        self._ran = ""
+
+    def _look(self) -> None:
+        while not self._ends.wait(TICK_MS / 1000):
+            if not self._ran and time.perf_counter() - self._last > LOOK_AFTER_S:
+                self._ran = " < ".join(_ours(sys._current_frames().get(self._main))[:4])
+
+
+def _ours(frame: FrameType | None) -> list[str]:
+    """Return our functions in a stack, the innermost first.
+
+    Without a look at any file: whoever holds a frame for longer keeps what is painted with alive.
+    """
+    names = []
+    while frame is not None:
+        if "rastrainer" in frame.f_code.co_filename.lower():
+            names.append(f"{frame.f_code.co_name}:{frame.f_lineno}")
+        frame = frame.f_back
+    return names

@@ -1,12 +1,19 @@
-"""Collects what goes wrong inside slots: PythonQt prints an exception, and the click goes on."""
+"""What goes wrong in slots, where PythonQt prints it, and in VTK, and Slicer's log of it."""
 
 from __future__ import annotations
 
+import logging
 import sys
 import traceback
 from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import vtk
 
 from rastrainer.errors import InputError
+from Testing.slicer.host.members import Checked
 
 
 class Failures:
@@ -44,3 +51,68 @@ class Failures:
 
 
 FAILURES = Failures()
+
+
+class ErrorLog(Checked):
+    """Stands in for `ctkErrorLogModel`, of which the file alone is offered.
+
+    Attributes:
+        filePath: of the log.
+    """
+
+    measured = frozenset({"filePath", "logEntryCount", "logEntryDescription", "clear"})
+    title = "slicer.app.errorLogModel()"
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.filePath = str(folder / "Slicer.log")
+        self._handler = _Handler(self)
+        logging.getLogger().addHandler(self._handler)
+        self.write("INFO", "Unknown", "Slicer of the tests has started.")
+        FAILURES.heard = lambda text: self.write("CRITICAL", "Stream", text)
+
+    def write(self, level: str, origin: str, text: str) -> None:
+        """Append an entry."""
+        moment = datetime.now().strftime("%d.%m.%Y %H:%M:%S")
+        with Path(self.filePath).open("a", encoding="utf-8") as file:
+            file.write(f"[{level}][{origin}] {moment} [] (unknown:0) - {text}\n")
+
+    def close(self) -> None:
+        """Write no more."""
+        FAILURES.heard = None
+        logging.getLogger().removeHandler(self._handler)
+
+
+class _Handler(logging.Handler):
+    """Writes what Python logs."""
+
+    def __init__(self, log: ErrorLog) -> None:
+        super().__init__(logging.WARNING)
+        self._log = log
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._log.write(record.levelname, "Python", record.getMessage())
+
+
+_NO_SCREEN = "bad X server connection"
+"""A computer of tests has no screen, which Slicer has."""
+_EVENTS = ("ErrorEvent", "WarningEvent")
+
+
+class VtkMessages:
+    """Takes errors and warnings as failures, until `close`."""
+
+    def __init__(self) -> None:
+        self._window = vtk.vtkOutputWindow.GetInstance()
+        self._tags = [self._window.AddObserver(event, _take) for event in _EVENTS]
+
+    def close(self) -> None:
+        """Listen no more."""
+        for tag in self._tags:
+            self._window.RemoveObserver(tag)
+
+
+@vtk.calldata_type(vtk.VTK_STRING)
+def _take(_window: Any, _event: str, text: str) -> None:
+    if _NO_SCREEN not in text:
+        FAILURES.add(text.strip())

@@ -19,18 +19,15 @@ from rastrainer_headless.connector import HeadlessConnector
 from Testing.slicer.host import appearance, event_loop, pictures
 from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application
-from Testing.slicer.host.failures import FAILURES
-from Testing.slicer.host.home import Home
-from Testing.slicer.host.installation import Installation
-from Testing.slicer.host.lasting_none import lend_references_to_none
+from Testing.slicer.host.event_loop import lend_references_to_none
+from Testing.slicer.host.failures import FAILURES, VtkMessages
+from Testing.slicer.host.installation import Home, Installation
 from Testing.slicer.host.layout import LayoutManager
-from Testing.slicer.host.proxy import wrap
-from Testing.slicer.host.qt_module import class_named
+from Testing.slicer.host.proxy import class_named, wrap
 from Testing.slicer.host.renders import RenderCounter
 from Testing.slicer.host.scene import ApplicationScene
 from Testing.slicer.host.scripted_module import ModuleDescription
 from Testing.slicer.host.stand_ins import ctkCollapsibleButton, ctkCollapsibleGroupBox
-from Testing.slicer.host.vtk_messages import VtkMessages
 
 MODULE_FILE = Path(__file__).parents[3] / "RASTrainer" / "RASTrainer.py"
 CONNECTOR_PERIOD_MS = 5

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import slicer
+from PySide6.QtCore import QStandardPaths
 
 from Testing.slicer.host import parameter_node, sample_data, scripted_module
-from Testing.slicer.host.offered import OFFERED
-from Testing.slicer.host.other_modules import qSlicerScriptedLoadableModule
-from Testing.slicer.host.qt_module import class_named, ctk, qt
+from Testing.slicer.host.application import qSlicerScriptedLoadableModule
+from Testing.slicer.host.members import OFFERED
+from Testing.slicer.host.proxy import class_named, ctk, qt
 
 _MISSING = object()
 
@@ -69,3 +71,28 @@ class Installation:
                 delattr(slicer, name)
             else:
                 setattr(slicer, name, value)
+
+
+VARIABLES = ("HOME", "USERPROFILE", "APPDATA", "LOCALAPPDATA")
+WITHOUT = ("XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DOCUMENTS_DIR")
+
+
+class Home:
+    """Everything that Qt calls the user's lies in `folder`, until `leave`."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self._former = {name: os.environ.get(name) for name in (*VARIABLES, *WITHOUT)}
+        for name in VARIABLES:
+            os.environ[name] = str(folder)
+        for name in WITHOUT:
+            os.environ.pop(name, None)
+        QStandardPaths.setTestModeEnabled(True)
+
+    def leave(self) -> None:
+        """Restore what was there."""
+        for name, value in self._former.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

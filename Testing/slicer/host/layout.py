@@ -8,9 +8,8 @@ from typing import Any
 import slicer
 import vtk
 
-from Testing.slicer.host.checked import Checked
-from Testing.slicer.host.members import FACTS, members_of
-from Testing.slicer.host.qt_module import class_named
+from Testing.slicer.host.members import FACTS, Checked, members_of
+from Testing.slicer.host.proxy import class_named
 from Testing.slicer.host.views import SLICES, SliceView, ThreeDView, slice_logic
 
 LAYOUTS_WITHOUT_3D = (

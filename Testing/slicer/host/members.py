@@ -1,17 +1,18 @@
 """The members that real Slicer's classes have: what panels may use, and what they may not.
 
-`slicer_members.json` holds what was measured in Slicer 5.13 (Qt 5.15, PythonQt); `reduce_members`
-makes it. `unmeasured.py` adds the few classes that the measurement left out.
+`slicer_members.json` holds what was measured in Slicer 5.13 (Qt 5.15, PythonQt), by listing each
+class's meta-object and `dir()`; `python -m Testing.slicer.host.members full.json` makes it of the
+full measurement. `UNMEASURED` adds the few classes that the measurement left out.
 """
 
 from __future__ import annotations
 
 import functools
 import json
+import sys
 from dataclasses import dataclass
 from pathlib import Path
-
-from Testing.slicer.host.unmeasured import EXTRA_MEMBERS, UNMEASURED
+from typing import Any
 
 FACTS = json.loads((Path(__file__).parent / "slicer_members.json").read_text(encoding="utf-8"))
 MODULES = ("qt", "ctk", "qMRML")
@@ -78,3 +79,119 @@ def _add(members: Members, names: str) -> Members:
 def _argument_count(signature: str) -> int:
     arguments = signature.partition("(")[2].rstrip(")")
     return arguments.count(",") + 1 if arguments else 0
+
+
+class Checked:
+    """Tells apart what Slicer has not, and what only the host does not offer.
+
+    Attributes:
+        measured: names of the members of Slicer's object.
+        title: what Slicer calls it.
+    """
+
+    measured: frozenset[str]
+    title: str
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in self.measured:
+            raise AttributeError(f"Slicer's {self.title} has no {name}.")
+        raise NotImplementedError(f"{self.title} has {name}, but the host does not offer it yet.")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_") and name not in self.measured:
+            raise AttributeError(f"Slicer's {self.title} has no {name}.")
+        super().__setattr__(name, value)
+
+
+UNMEASURED: dict[str, tuple[str, str]] = {
+    "QObject": ("", ".objectName blockSignals children className deleteLater parent property"),
+    "QLayout": ("QVBoxLayout", ""),
+    "QAbstractButton": ("QPushButton", ""),
+    "QAbstractItemView": ("QTableView", ""),
+    "QHeaderView": (
+        "QFrame",
+        ".stretchLastSection .defaultSectionSize ResizeToContents Stretch Interactive Fixed"
+        " setSectionResizeMode setStretchLastSection resizeSection sectionSize hideSection"
+        " setSectionHidden setSectionsClickable resizeSections count",
+    ),
+    "QScrollBar": ("QSlider", ""),
+    "QByteArray": ("", "data isEmpty size length toBase64"),
+    "QFile": ("", "exists open close ReadOnly fileName"),
+    "QUiLoader": ("", "load"),
+    "QUrl": ("", "fromLocalFile toLocalFile toString isValid"),
+    "QFont": ("", "setBold bold setItalic setPointSize pointSize setFamily Monospace setStyleHint"),
+    "QBrush": ("", "color setColor style"),
+    "QCursor": ("", "shape pos"),
+    "qSlicerMainWindow": ("QWidget", "statusBar moduleSelector"),
+    "QPoint": ("", "x y"),
+    "QRect": ("", "x y width height"),
+    "QSizePolicy": ("", "Expanding Preferred Fixed Minimum MinimumExpanding Ignored Maximum"),
+    "QKeySequence": ("", "toString"),
+    "QDesktopServices": ("", "openUrl"),
+    "QEvent": ("", "type Resize Show Hide KeyPress"),
+    "QPalette": ("", "color setColor Window WindowText Base Text Highlight"),
+    "QSpacerItem": ("", ""),
+    "QWidgetItem": ("", "widget layout spacerItem"),
+    "QDate": ("", "toString"),
+    "QTime": ("", "toString"),
+    "QTextDocument": ("QObject", "toPlainText clear"),
+    "QTextCursor": ("", "End movePosition"),
+    "QModelIndex": ("", "row column isValid"),
+    "QClipboard": ("QObject", "setText text"),
+    "QFontMetrics": ("", "height horizontalAdvance"),
+    "QStyle": ("QObject", "standardIcon"),
+    "qSlicerScriptedLoadableModuleWidget": ("QWidget", ".isEntered .moduleName setMRMLScene"),
+}
+
+# Static functions that stood behind a property of the same name when the classes were measured.
+EXTRA_MEMBERS: dict[str, str] = {}
+
+
+_NAMES = {
+    "qt": """
+        QAction QApplication QButtonGroup QCheckBox QColor QComboBox QDateTime QDialog
+        QDoubleSpinBox QFileDialog QFormLayout QFrame QGridLayout QGroupBox QHBoxLayout QIcon
+        QInputDialog QLabel QLineEdit QListWidget QMenu QMessageBox QPixmap QPlainTextEdit
+        QProcess QProcessEnvironment QProgressBar QProgressDialog QPushButton QRadioButton
+        QScrollArea QSettings QSize QSlider QSpinBox QSplitter QStackedWidget QStandardPaths
+        QTabWidget QTableView QTableWidget QTableWidgetItem QTextBrowser QTextEdit QTimer
+        QToolButton QTreeWidget QVBoxLayout QWidget
+    """,
+    "ctk": """
+        ctkCollapsibleButton ctkCollapsibleGroupBox ctkComboBox ctkDirectoryButton
+        ctkMessageBox ctkPathLineEdit ctkPushButton ctkSliderWidget
+    """,
+    "qMRML": """
+        qMRMLNodeComboBox qMRMLPlotView qMRMLPlotWidget qMRMLTableView qMRMLWidget
+        qMRMLSliceWidget qMRMLSliceView qMRMLThreeDWidget qMRMLThreeDView
+    """,
+}
+OFFERED = {module: tuple(names.split()) for module, names in _NAMES.items()}
+
+
+TARGET = Path(__file__).with_name("slicer_members.json")
+APPLICATION = ("slicer.app", "slicer.util", "slicer.app.layoutManager()")
+
+
+def reduced(full: dict) -> dict:
+    """Return the part of the full measurement that the host needs."""
+    facts = {"about": full["about"]}
+    for module, names in OFFERED.items():
+        facts[module] = {name: full[module][name] for name in names}
+    return facts | {name: full[name] for name in APPLICATION}
+
+
+def text_of(facts: dict) -> str:
+    """Return JSON with one line a class, so that a change can be read."""
+    lines = []
+    for key, value in facts.items():
+        if isinstance(value, dict):
+            classes = (f"  {json.dumps(name)}: {json.dumps(value[name])}" for name in value)
+            lines.append(f" {json.dumps(key)}: {{\n" + ",\n".join(classes) + "\n }")
+        else:
+            lines.append(f" {json.dumps(key)}: {json.dumps(value)}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+if __name__ == "__main__":
+    TARGET.write_text(text_of(reduced(json.loads(Path(sys.argv[1]).read_text()))))

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import enum
 import typing
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
-from Testing.slicer.host.parameter_checks import Choice, Default, WithinRange
 from Testing.slicer.host.parameter_gui import Binding
 
 
@@ -155,3 +155,33 @@ def make_module() -> ModuleType:
     for kind in (WithinRange, Default, Choice):
         setattr(module, kind.__name__, kind)
     return module
+
+
+@dataclass(frozen=True)
+class Default:
+    """The value that a new node has."""
+
+    value: Any
+
+
+@dataclass(frozen=True)
+class WithinRange:
+    """The value lies from `minimum` to `maximum`."""
+
+    minimum: float
+    maximum: float
+
+    def check(self, value: float) -> None:
+        if not self.minimum <= value <= self.maximum:
+            raise ValueError(f"{value} is not within {self.minimum} to {self.maximum}.")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The value is one of these."""
+
+    choices: tuple
+
+    def check(self, value: Any) -> None:
+        if value not in self.choices:
+            raise ValueError(f"{value!r} is none of {self.choices}.")

@@ -1,4 +1,4 @@
-"""PythonQt's manners over an object of PySide6.
+"""The modules `qt` and `ctk`: objects of PySide6 with PythonQt's manners.
 
 A property is an attribute, a signal is connected by its signature, enumerations are ints, and what
 real Slicer's class does not have raises AttributeError, on reading and on assigning.
@@ -7,14 +7,27 @@ real Slicer's class does not have raises AttributeError, on reading and on assig
 from __future__ import annotations
 
 import enum
+import functools
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any
 
 import shiboken6
+from PySide6 import QtCore, QtGui, QtUiTools, QtWidgets
 
-from Testing.slicer.host import slots
-from Testing.slicer.host.members import Members
-from Testing.slicer.host.values import PROXY, call, construct, from_qt, to_qt
+from Testing.slicer.host import stand_ins
+from Testing.slicer.host.members import Members, members_of, module_of
+from Testing.slicer.host.values import (
+    PROXY,
+    BoundSignal,
+    call,
+    connect,
+    construct,
+    disconnect,
+    from_qt,
+    to_qt,
+    wrap_objects_with,
+)
 
 # PythonQt spells Python's keywords of old with an underscore.
 ALIASES = {"exec_": "exec", "raise_": "raise"}
@@ -57,11 +70,11 @@ class Proxy(metaclass=ProxyType):
         if name == "name" and "objectName" in members.properties:
             return self._qt.objectName()
         if signatures := members.signatures(name):
-            return slots.BoundSignal(self, signatures[0])
+            return BoundSignal(self, signatures[0])
         if ALIASES.get(name, name) not in members.methods:
             raise _missing(type(self), name)
         if name in ("connect", "disconnect"):
-            function = getattr(slots, name)
+            function = connect if name == "connect" else disconnect
             return lambda *arguments: function(self, *arguments)
         if name == "className":
             return lambda: type(self._qt).__name__
@@ -115,8 +128,6 @@ def wrap(value: Any) -> Any:
     proxy = getattr(value, PROXY, None)
     if proxy is not None:
         return proxy
-    from Testing.slicer.host.qt_module import class_for
-
     made = class_for(type(value))
     proxy = made.__new__(made)
     _adopt(proxy, value)
@@ -165,3 +176,66 @@ def _shown(owner: type, name: str, value: Any) -> Any:
 
 def _missing(made: type, name: str) -> AttributeError:
     return AttributeError(f"Slicer's {made.__name__} has no {name}.")
+
+
+class QtConstants:
+    """Gives each constant of the namespace Qt as the int that PythonQt gives."""
+
+    def __getattr__(self, name: str) -> Any:
+        value = getattr(QtCore.Qt, name)
+        return value.value if isinstance(value, enum.Enum) else value
+
+
+@functools.cache
+def class_named(name: str) -> type:
+    """Return the class that a module of Slicer's sees under that name.
+
+    Raises:
+        AttributeError: Slicer has no such class, or the host does not offer it.
+    """
+    if module_of(name) is None:
+        raise AttributeError(f"Neither Slicer nor the host is known to have {name}.")
+    qt_class = _qt_class(name)
+    # A stand-in may have the name of the class of Qt that it stands in for.
+    ancestors = (kind.__name__ for kind in qt_class.__mro__ if kind.__name__ != name)
+    base = next((class_named(kind) for kind in ancestors if _is_known(kind)), Proxy)
+    return make_class(name, qt_class, base, members_of(name))
+
+
+def class_for(qt_class: type) -> type:
+    """Return the class that stands for a class of PySide6, or for its nearest known base."""
+    for kind in qt_class.__mro__:
+        if _is_known(kind.__name__):
+            return class_named(kind.__name__)
+    raise TypeError(f"The host does not know {qt_class.__name__}: add it to UNMEASURED.")
+
+
+def _is_known(name: str) -> bool:
+    return module_of(name) is not None
+
+
+def _qt_class(name: str) -> type:
+    for module in (stand_ins, QtWidgets, QtGui, QtCore, QtUiTools):
+        if hasattr(module, name):
+            return getattr(module, name)
+    raise AttributeError(f"The host does not offer {name} yet.")
+
+
+class ClassModule(ModuleType):
+    """A module whose classes are made when they are asked for."""
+
+    def __init__(self, name: str, source: str) -> None:
+        super().__init__(name)
+        self._source = source
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or module_of(name) != self._source:
+            raise AttributeError(f"The module {self.__name__} has no {name}.")
+        return class_named(name)
+
+
+qt = ClassModule("qt", "qt")
+qt.Qt = QtConstants()
+ctk = ClassModule("ctk", "ctk")
+
+wrap_objects_with(wrap)

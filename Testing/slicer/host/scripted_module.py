@@ -10,7 +10,7 @@ from typing import Any
 
 import slicer
 
-from Testing.slicer.host.qt_module import class_named
+from Testing.slicer.host.proxy import class_named
 
 _PROPERTIES = """
     title categories dependencies contributors helpText acknowledgementText icon hidden path index

@@ -1,7 +1,7 @@
-"""Values on their way between Python as Slicer's modules write it and PySide6.
+"""Values and slots between Python as modules of Slicer write it and PySide6.
 
 PythonQt gives enumerations as ints and lists as tuples, and takes ints for enumerations; PySide6
-does neither.
+does neither. PythonQt connects signals with Python functions by their signatures.
 """
 
 from __future__ import annotations
@@ -14,9 +14,21 @@ from typing import Any
 
 import numpy as np
 import shiboken6
+from PySide6 import QtCore
 from shibokensupport.signature import get_signature
 
+from Testing.slicer.host.failures import FAILURES
+
 PROXY = "_proxyOfHost"
+_wrappers: list[Callable[[Any], Any]] = []
+
+
+def wrap_objects_with(wrap: Callable[[Any], Any]) -> None:
+    """Have `from_qt` return `wrap(object)` for each object of Qt.
+
+    The proxies call this: they are built on this module, which does not import them.
+    """
+    _wrappers.append(wrap)
 
 
 def to_qt(value: Any) -> Any:
@@ -32,13 +44,11 @@ def to_qt(value: Any) -> Any:
 
 def from_qt(value: Any) -> Any:
     """Return what PythonQt would give for a value of PySide6."""
-    from Testing.slicer.host.proxy import wrap
-
     if isinstance(value, enum.Enum):
         return value.value
     if isinstance(value, (list, tuple)) and type(value) in (list, tuple):
         return tuple(from_qt(item) for item in value)
-    return wrap(value) if isinstance(value, shiboken6.Object) else value
+    return _wrappers[-1](value) if isinstance(value, shiboken6.Object) else value
 
 
 def call(owner: type, function: Callable[..., Any], name: str, arguments: tuple) -> Any:
@@ -52,8 +62,6 @@ def construct(qt_class: type, made: type, arguments: tuple) -> Any:
 
 
 def _given(arguments: tuple, enumerations: list[list[type[enum.Enum] | None]]) -> list:
-    from Testing.slicer.host.slots import Slot
-
     given = [
         Slot(item) if callable(item) and not hasattr(item, "_qt") else to_qt(item)
         for item in arguments
@@ -87,3 +95,120 @@ def _enumerations(owner: type, name: str) -> list[list[type[enum.Enum] | None]]:
 
 def _is_enumeration(annotation: Any) -> bool:
     return inspect.isclass(annotation) and issubclass(annotation, enum.Enum)
+
+
+CONNECTIONS = "_connectionsOfHost"
+
+
+class Slot:
+    """Calls a function with as many arguments as it takes; what it raises is caught."""
+
+    def __init__(self, function: Callable[..., Any], argument_count: int | None = None) -> None:
+        self.function = function
+        taken = _positional_count(function)
+        self._count = taken if argument_count is None else min(taken, argument_count)
+
+    def __call__(self, *arguments: Any) -> None:
+        try:
+            self.function(*(from_qt(item) for item in arguments[: self._count]))
+        except Exception as exception:  # PythonQt prints it, and goes on.
+            FAILURES.catch(exception)
+
+
+class BoundSignal:
+    """A signal as an attribute of its object: `button.clicked`."""
+
+    def __init__(self, proxy: Any, signature: str) -> None:
+        self._proxy = proxy
+        self._signature = signature
+
+    def connect(self, function: Callable[..., Any]) -> bool:
+        return connect(self._proxy, self._signature, function)
+
+    def disconnect(self, function: Callable[..., Any]) -> bool:
+        return disconnect(self._proxy, self._signature, function)
+
+    def emit(self, *arguments: Any) -> None:
+        name = self._signature.partition("(")[0]
+        getattr(self._proxy._qt, name).emit(*map(to_qt, arguments))
+
+
+def connect(proxy: Any, signature: str, function: Callable[..., Any]) -> bool:
+    """Connect, or return False where Slicer's class has no such signal, as PythonQt does."""
+    signature = signature.replace(" ", "")
+    if signature not in proxy.members.signals:
+        return False
+    if not callable(function):
+        raise TypeError("A slot must be callable.")
+    arguments = signature.partition("(")[2].rstrip(")")
+    slot = Slot(function, len(arguments.split(",")) if arguments else 0)
+    source = proxy._qt
+    if source.metaObject().indexOfSignal(signature) >= 0:
+        QtCore.QObject.connect(source, QtCore.SIGNAL(signature), slot)
+        undo = (QtCore.SIGNAL(signature), slot)
+    else:
+        signal = getattr(source, signature.partition("(")[0], None)
+        if signal is None or not _is_of_host(source, signature):
+            raise NotImplementedError(f"The host does not offer the signal {signature} of Qt 5.")
+        signal.connect(slot)
+        undo = (signal, slot)
+    if CONNECTIONS not in source.__dict__:
+        source.__dict__[CONNECTIONS] = []
+        source.destroyed.connect(_releasing(source.__dict__[CONNECTIONS]))
+    source.__dict__[CONNECTIONS].append((signature, function, undo))
+    return True
+
+
+def _releasing(connections: list[tuple]) -> Callable[[], None]:
+    """Return what lets go of the functions, as PythonQt does when their object is deleted.
+
+    PySide6 would keep the slots of an object that is gone.
+    """
+
+    def release() -> None:
+        for _signature, _function, (_signal, slot) in connections:
+            slot.function = _nothing
+        connections.clear()
+
+    return release
+
+
+def _nothing(*_arguments: Any) -> None:
+    """Stands where a function was."""
+
+
+def disconnect(proxy: Any, signature: str, function: Callable[..., Any] | None = None) -> bool:
+    """Undo `connect`; return whether there was such a connection."""
+    signature = signature.replace(" ", "")
+    source = proxy._qt
+    connections = source.__dict__.get(CONNECTIONS, [])
+    found = [item for item in connections if item[0] == signature and function in (None, item[1])]
+    for item in found:
+        signal, slot = item[2]
+        if isinstance(signal, (str, bytes)):
+            QtCore.QObject.disconnect(source, signal, slot)
+        else:
+            signal.disconnect(slot)
+        connections.remove(item)
+    return bool(found)
+
+
+def _is_of_host(source: QtCore.QObject, signature: str) -> bool:
+    """Tell whether a Python class of ours declares the signal: its types are Python's then."""
+    name = signature.partition("(")[0]
+    return any(
+        name in vars(kind)
+        for kind in type(source).__mro__
+        if not kind.__module__.startswith("PySide6")
+    )
+
+
+def _positional_count(function: Callable[..., Any]) -> int:
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except ValueError:  # A function of C++ does not say.
+        return 9
+    if any(item.kind is item.VAR_POSITIONAL for item in parameters):
+        return 9
+    kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(item.kind in kinds for item in parameters)

@@ -6,8 +6,7 @@ import time
 
 import pytest
 
-from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.end_to_end.viewed_simulator import ViewedSimulator
+from Testing.end_to_end.simulator_process import SimulatorProcess, ViewedSimulator
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.simulator.net.views.served import ViewClient, request
 

@@ -8,6 +8,20 @@ import xml.etree.ElementTree as ElementTree
 from PySide6 import QtCore, QtUiTools, QtWidgets
 
 from Testing.slicer.host.members import members_of, module_of
+from Testing.slicer.host.stand_ins import (
+    ctk_buttons,
+    ctk_inputs,
+    mrml_widgets,
+    node_combo_box,
+    plot_view,
+)
+
+WIDGETS = {
+    name: kind
+    for module in (ctk_buttons, ctk_inputs, mrml_widgets, node_combo_box, plot_view)
+    for name, kind in vars(module).items()
+    if name.startswith(("ctk", "qMRML", "qSlicer"))
+}
 
 
 class QUiLoader(QtUiTools.QUiLoader):
@@ -28,9 +42,7 @@ class QUiLoader(QtUiTools.QUiLoader):
     def createWidget(
         self, class_name: str, parent: QtWidgets.QWidget | None = None, name: str = ""
     ) -> QtWidgets.QWidget:
-        from Testing.slicer.host import stand_ins
-
-        made = getattr(stand_ins, class_name, None)
+        made = WIDGETS.get(class_name)
         if made is None:
             return super().createWidget(class_name, parent, name)
         widget = made(parent)
@@ -76,9 +88,7 @@ def check_widget(element: ElementTree.Element) -> None:
 
 def _take_enumerations(element: ElementTree.Element) -> dict[str, tuple[str, int]]:
     """Take the enumerations of CTK out of a widget: Qt cannot read those of Python's classes."""
-    from Testing.slicer.host import stand_ins
-
-    made = getattr(stand_ins, element.get("class"), None)
+    made = WIDGETS.get(element.get("class"))
     taken = {}
     for item in element.findall("property"):
         text = item.findtext("set") or item.findtext("enum") or ""
