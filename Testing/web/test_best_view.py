@@ -1,0 +1,86 @@
+"""The page's real picture behind the head, and the sticks of a view that is turned by mouse."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from Testing.web.chromium import open_page
+from Testing.web.hands import PageKeys
+from Testing.web.place import WITHOUT_GRAPHICS, Place
+
+SIZE = {"width": 960, "height": 540}
+BEHIND = ("9", "10", "11", "12", "13", "14", "15")
+MIDDLE = 36
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("best-view")
+    with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS) as place:
+        yield place
+
+
+@pytest.fixture(scope="module")
+def page(place, browser):
+    page = open_page(browser, place.simulator.url, place.simulator.code, size=SIZE)
+    yield page
+    assert page.problems == []
+
+
+def count_of_next(page):
+    """Return how many pixels in the middle of the picture have the color of the next fiducial."""
+    pixels = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+    y, x = SIZE["height"] // 2, SIZE["width"] // 2
+    red, green, blue = np.moveaxis(pixels[y - MIDDLE : y + MIDDLE, x - MIDDLE : x + MIDDLE], -1, 0)
+    return int(((red > 225) & (green > 170) & (blue < 216) & (green > blue + 40)).sum())
+
+
+def is_at_best(trainee, label):
+    """Return whether the view looks at a fiducial, and so does the one along the skin."""
+    state = trainee.view.state
+    place = trainee.place_of(label)
+    focus = np.array(state["view"]["focalPoint"])
+    return state["inset"] is not None and np.linalg.norm(focus - place) < 1e-3
+
+
+@pytest.mark.soak
+def test_the_page_shows_each_touch_behind_the_head_at_its_best_view(place, page):
+    trainee = place.carried_trainee(PageKeys(page))
+    trainee.begin("task-5", page)
+    page.wait_for_selector("body[data-scene=task-5]")
+    trainee.have_touched(8)
+    for label in BEHIND:
+        trainee.until(lambda at=label: is_at_best(trainee, at), f"the best view of {label}")
+        trainee.approach(label, 0.004)
+        trainee._lower_onto(label)
+        trainee.until(lambda at=label: is_at_best(trainee, at), f"the best view of {label}")
+        page.evaluate("frames_(3)")
+        assert count_of_next(page) > 20, label
+        assert page.get_attribute("#inset", "data-name") == "Along the skin"
+        trainee.have_touched(int(label))
+
+
+def test_left_is_left_in_the_picture_after_a_drag_with_the_right_button(place, page):
+    trainee = place.carried_trainee(PageKeys(page))
+    trainee.begin("task-1", page)
+    page.wait_for_selector("body[data-scene=task-1]")
+    before = trainee.view.state["view"]
+    trainee.until(lambda: is_at_best(trainee, "1"), "the best view")
+    page.mouse.move(700, 300)
+    page.mouse.down(button="right")
+    page.mouse.move(400, 310, steps=5)
+    page.mouse.up(button="right")
+    trainee.until(lambda: trainee.view.state["view"] != before, "the turn")
+    page.mouse.wheel(0, 300)
+    axes = trainee._stick_axes()
+    start = trainee.tip
+    trainee.hands.push(-1.0, 0.0, 0.0, False)
+    trainee.until(lambda: np.linalg.norm(trainee.tip - start) > 0.03, "a step to the left")
+    trainee.hands.push(0.0, 0.0, 0.0, False)
+    right, ahead, _up = axes @ (trainee.tip - start)
+    assert right < -0.9 * np.linalg.norm(trainee.tip - start)
+    assert abs(ahead) < 0.2 * abs(right)
