@@ -1,4 +1,4 @@
-"""What the simulation says after each tick: values, frozen, in m, rad and s."""
+"""The simulation's state after each tick: frozen values in m, rad and s."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Motion(str, Enum):
 
 @dataclass(frozen=True)
 class Event:
-    """One thing that happened; `data` is ready for JSON, lengths in it are in mm."""
+    """An event; `data` is ready for JSON, with lengths in mm."""
 
     kind: EventKind
     sim_time: float
@@ -71,7 +71,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Answer:
-    """The answer to one command: `message` says what would have been right when it is not `ok`."""
+    """The answer to one command; if it is not `ok`, `message` says what would have been right."""
 
     ticket: int
     ok: bool
@@ -96,8 +96,8 @@ class TouchState:
 class PlanInWorld:
     """A point planned on the MRI, mapped to World (m) by the client's registration.
 
-    `entry` is where the trajectory to it begins, None where only a point was planned. `reachable`
-    tells whether the robot can carry it out.
+    `entry` is where the trajectory to it starts, None if only a point was planned. `reachable` is
+    whether the robot can carry it out.
     """
 
     name: str
@@ -108,7 +108,7 @@ class PlanInWorld:
 
 @dataclass(frozen=True)
 class FinalRegistration:
-    """The registration that was submitted for a trial: after it the truth is told (mm).
+    """The registration that was submitted for a trial; the truth is then revealed (mm).
 
     `matrix` is WorldToHead, 16 floats row by row, mm.
     """
@@ -137,7 +137,7 @@ class FinalRegistration:
 
 @dataclass(frozen=True)
 class TrialResult:
-    """What the trainee is told once the client has registered and scored the trial (mm)."""
+    """The result shown to the trainee when the client has registered and scored the trial (mm)."""
 
     registration: FinalRegistration
     true_tre_mm: float
@@ -147,7 +147,7 @@ class TrialResult:
 
 @dataclass(frozen=True)
 class TrainingState:
-    """Where the trial stands. The same object is handed out until something changes.
+    """The state of the trial; the same object until something changes.
 
     `revision` rises with every change that must not be lost (phase, touch, undo, score).
     `registration` is what a client has submitted, None before.
@@ -178,8 +178,8 @@ class SimulationState:
     `head_to_world` and `stand_to_world` (its origin in the middle of the head's base, upright)
     are (4, 4) float arrays that are never written again. `clearance` is the signed distance of the
     tool to the head, `depth` how far the commanded motion has gone into it beyond where the tool
-    could go (`collision.pressing`), 0 without contact. `elapsed` is the running trial's time,
-    pauses excluded. `operator` is who moved the arm last. `touch` is how the next touch is going.
+    could go (`collision.proximity`), 0 without contact. `elapsed` is the running trial's time,
+    pauses excluded. `operator` is who last moved the arm. `touch` is how the next touch is going.
     """
 
     tick: int
@@ -203,7 +203,7 @@ class SimulationState:
 
 @dataclass(frozen=True)
 class StartingPoint:
-    """Where a simulation takes up: from another one's state, or from a trial's journal.
+    """Where a simulation starts: after another one's state, or within a trial's journal.
 
     `tick` and `sim_time` (s) are those of the last step before, `revision` that of the training
     state; `camera` is the view, None for the one at the start.
@@ -222,7 +222,7 @@ class StartingPoint:
 
 @dataclass(frozen=True)
 class StepResult:
-    """What one step gives: the state, what happened, and the answers to the tick's commands."""
+    """The result of one step: the state, the events and the answers to the tick's commands."""
 
     state: SimulationState
     events: tuple[Event, ...] = ()

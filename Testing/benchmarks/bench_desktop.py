@@ -30,7 +30,7 @@ MIDDLE_M = 0.6
 """Above it the stick is pushed down, below it up."""
 LOOK_S = 0.2
 """Between two looks at where the arm is."""
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 
 
 class Delay(NamedTuple):
@@ -94,7 +94,7 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
     _push(lab, _way(lab))
     while np.linalg.norm(lab.view.pose("tool")[:3, 3] - start) < enough:
         lab.view.next_state()
-        assert time.monotonic() < begin + PATIENCE_S, "the arm has not moved"
+        assert time.monotonic() < begin + TIMEOUT_S, "the arm has not moved"
     told, tick = time.monotonic(), lab.view.state["tick"]
     shown: list[float] = []
 

@@ -14,7 +14,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import DeviceName
 from rastrainer_simulator.loop.loop_statistics import LoopStatistics
 
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def next_health(client: Client) -> LoopStatistics:
         LinkError: none came in half a minute, or the connection is lost.
     """
     known = client.latest.get(DeviceName.SIM_SERVER)
-    beat = client.wait_for(DeviceName.SIM_SERVER, lambda new: new is not known, PATIENCE_S)
+    beat = client.wait_for(DeviceName.SIM_SERVER, lambda new: new is not known, TIMEOUT_S)
     return health_of(json.loads(beat.content.message))
 
 

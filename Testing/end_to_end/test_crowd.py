@@ -7,7 +7,7 @@ import secrets
 
 import pytest
 
-from Testing.benchmarks.crowd import CLIENTS, VIEWS, serve_crowd
+from Testing.benchmarks.bench_crowd import CLIENTS, VIEWS, serve_crowd
 from Testing.end_to_end.simulator_process import ViewedSimulator
 
 SECONDS = 2.0

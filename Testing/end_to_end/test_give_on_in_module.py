@@ -32,7 +32,7 @@ def test_it_is_saved_without_face_and_names_and_that_is_told(host, tmp_path):
     host.press("exportScenarioButton")
     assert host.messages == []
     told = host.text("scenarioText")
-    assert "out.zip is written. Taken off: the face, the skull, its title, its name" in told
+    assert "out.zip is written. Removed: the face, the skull, its title, its name" in told
     given = read_scenario(tmp_path)
     assert given.title in told
     assert given.title.startswith("Head ")
@@ -45,7 +45,7 @@ def test_face_and_names_stay_where_that_is_chosen(host, tmp_path):
     host.check("removeNamesCheckBox", False)
     host.answer("Save the scenario", tmp_path / "out.zip")
     host.press("exportScenarioButton")
-    assert "Nothing was taken off." in host.text("scenarioText")
+    assert "Nothing was removed." in host.text("scenarioText")
     assert read_scenario(tmp_path).title == "A ball"
 
 

@@ -116,7 +116,7 @@ def test_the_log_tells_from_start_to_end_in_lines_of_json(ended):
     messages = [line["message"] for line in lines]
     assert messages[0] == "The simulator has started."
     assert "The trial is running." in messages
-    asked = messages.index("The simulator is asked to end by SIGTERM.")
+    asked = messages.index("The simulator ends by SIGTERM.")
     # The view is closed then; where a tick is left, the trial that nobody sees any more is paused.
     assert messages[asked + 1 :] in (
         ["The simulator has ended."],

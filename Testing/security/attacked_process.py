@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rastrainer.igtl.client import Client
 from Testing.benchmarks.loop_health import next_health
-from Testing.benchmarks.process_cost import resident_mb
+from Testing.benchmarks.machine import resident_mb
 from Testing.benchmarks.watched_loop import WatchedLoop
 
 MOST_GROWTH_MB = 8.0
@@ -20,7 +20,7 @@ MOST_MORE_DESCRIPTORS = 4
 MOST_MORE_MISSED = 0.5
 """Of the ticks, beside a loop that does nothing: coarse, for a slow machine makes a loop that works
 late sooner than one that does not. The share itself is printed."""
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 COUNTED = re.compile(r"(\d+) × 127\.0\.0\.1: ([^;\n]+)")
 
 
@@ -41,7 +41,7 @@ def cost_of(pid: int, client: Client) -> Cost:
 
 def settled(pid: int, client: Client, wanted: Cost) -> Cost:
     """Return the cost once the attack's connections are gone, or as it stays."""
-    end = time.monotonic() + PATIENCE_S
+    end = time.monotonic() + TIMEOUT_S
     while True:
         cost = cost_of(pid, client)
         if cost.descriptors <= wanted.descriptors + MOST_MORE_DESCRIPTORS or time.monotonic() > end:

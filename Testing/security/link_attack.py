@@ -20,7 +20,7 @@ PIECE = 8
 CONNECTIONS_PER_COLLECTION = 20
 SWALLOWED = 3
 """So many messages in a row that complete nothing are taken for the body of one before them."""
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 
 
 class LinkAttack:
@@ -64,9 +64,9 @@ class LinkAttack:
             reader, writer = await asyncio.open_connection(HOST, self._port)
             reading = asyncio.create_task(self._read(reader, is_policed))
             try:
-                await asyncio.wait_for(self._send(messages, reading, writer), PATIENCE_S)
+                await asyncio.wait_for(self._send(messages, reading, writer), TIMEOUT_S)
                 # What is closed on both sides has been read to its end.
-                await asyncio.wait_for(reading, PATIENCE_S)
+                await asyncio.wait_for(reading, TIMEOUT_S)
             finally:
                 reading.cancel()
                 writer.close()

@@ -12,7 +12,7 @@ from Testing.security.hostile_content import HOSTILE_JSON, mutations
 
 HOST = "127.0.0.1"
 SUBPROTOCOL = "rastrainer.views.1"
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 
 HELLO = {"type": "hello", "kind": "page", "device": "", "refreshHz": 60}
@@ -64,7 +64,7 @@ class StreamAttack:
     def run(self, count: int) -> None:
         """Send so many damaged messages, each to a view of its own: many end theirs."""
         for _ in range(count):
-            with socket.create_connection((HOST, self._port), PATIENCE_S) as peer:
+            with socket.create_connection((HOST, self._port), TIMEOUT_S) as peer:
                 self._join(peer)
                 with suppress(OSError):  # It was ended on the other side.
                     while self._random.random() < 0.7:

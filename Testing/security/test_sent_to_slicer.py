@@ -90,7 +90,7 @@ class Disguised(Transform):
 @pytest.mark.parametrize(
     "content", [Invented(), Disguised((0.0,) * 12), None, b"raw", Transform], ids=repr
 )
-def test_a_type_that_is_none_of_ours_cannot_be_sent(content):
+def test_a_foreign_type_cannot_be_sent(content):
     with pytest.raises(InputError, match="must be one of"):
         pack(Message("Device", content))
 

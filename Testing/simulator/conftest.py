@@ -8,6 +8,7 @@ import pytest
 
 from rastrainer.protocol import TouchRule
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.simulation import Simulation
 
 
 @pytest.fixture(scope="session")
@@ -29,3 +30,9 @@ def anywhere(setup):
         setup.settings.training, acceptance_radius=10.0, touch_rule=TouchRule.WITHIN_RADIUS
     )
     return replace(setup, settings=replace(setup.settings, training=training))
+
+
+@pytest.fixture(scope="module")
+def simulation(anywhere):
+    """Return a simulation in which every touch counts."""
+    return Simulation(anywhere, 3)

@@ -7,7 +7,7 @@ width across, place of the widest point, exponents of the inner and outer half.
 
 from __future__ import annotations
 
-from loft import Station
+from solids import Station
 
 ARM_RADIUS = 68.0
 HAND_RADIUS = 52.0

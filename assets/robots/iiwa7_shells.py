@@ -16,8 +16,7 @@ from iiwa7_sections import (
     HAND_SEAM,
     WRIST,
 )
-from loft import Station, loft
-from solids import box, cylinder, difference, enclosing, hull, moved, revolve, trim
+from solids import Station, box, cylinder, difference, enclosing, hull, loft, moved, revolve, trim
 
 from rastrainer.transforms import MM_PER_M
 

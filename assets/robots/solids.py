@@ -1,12 +1,14 @@
-"""Closed solids from simple shapes: revolved outlines, boxes, prisms, and their cuts and unions."""
+"""Closed solids: revolved outlines, boxes, prisms, their cuts and unions, and lofted shells."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import manifold3d
 import numpy as np
 import trimesh
+from scipy.interpolate import PchipInterpolator
 
 Outline = Sequence[tuple[float, float]]
 
@@ -66,3 +68,96 @@ def moved(
     matrix = trimesh.transformations.rotation_matrix(np.radians(turn_z_deg), (0, 0, 1))
     matrix[:3, 3] = offset
     return solid.copy().apply_transform(matrix)
+
+
+CHAMFER = 1.2
+
+
+@dataclass(frozen=True)
+class Station:
+    """One section of a shell that is symmetric about the plane x = 0; lengths in mm.
+
+    The section's plane holds the x direction and the chord from `inner` to `outer`, two points
+    (y, z) of the outline in the symmetry plane: the concave and the convex side of the bend. Its
+    outline is |x / half_width|^n + |s / a|^n = 1 with s counted along the chord from the widest
+    place, which lies at the fraction `widest` of the chord; a and n differ on the two sides of it.
+    """
+
+    inner: tuple[float, float]
+    outer: tuple[float, float]
+    half_width: float
+    widest: float = 0.5
+    inner_exponent: float = 2.0
+    outer_exponent: float = 2.0
+
+    def as_row(self) -> np.ndarray:
+        """Return the (8,) float numbers that the loft interpolates."""
+        shape = (self.half_width, self.widest, self.inner_exponent, self.outer_exponent)
+        return np.array([*self.inner, *self.outer, *shape], dtype=float)
+
+
+def loft(
+    stations: Sequence[Station], rings: int, segments: int, enclosing: bool = False
+) -> trimesh.Trimesh:
+    """Return a closed shell through `stations`, its two flat ends chamfered; in mm.
+
+    The corners of each section lie on its outline; those of an `enclosing` shell lie so far outside
+    that its sides touch the outline.
+
+    Between the stations every number of a section follows a monotone cubic, so that the shell
+    neither overshoots nor kinks. Rings are spread evenly over the mean of both outlines' lengths.
+    """
+    rows = np.array([station.as_row() for station in stations])
+    steps = np.linalg.norm(np.diff(rows[:, 0:2], axis=0), axis=1)
+    steps += np.linalg.norm(np.diff(rows[:, 2:4], axis=0), axis=1)
+    lengths = np.concatenate(([0.0], np.cumsum(steps / 2)))
+    curve = PchipInterpolator(lengths, rows)
+    places = np.linspace(CHAMFER, lengths[-1] - CHAMFER, rings)
+    scale = 1 / np.cos(np.pi / segments) if enclosing else 1.0
+    sections = [_outline(row, segments, scale) for row in curve(places)]
+    first = _chamfered(_outline(rows[0], segments, scale))
+    last = _chamfered(_outline(rows[-1], segments, scale))
+    return stitch(np.array([first, *sections, last]))
+
+
+def stitch(sections: np.ndarray) -> trimesh.Trimesh:
+    """Join sections (rings, segments, 3) float into a closed shell, a fan over either end."""
+    rings, segments, _ = sections.shape
+    centers = [sections[0].mean(axis=0), sections[-1].mean(axis=0)]
+    vertices = np.vstack([sections.reshape(-1, 3), centers])
+    here = np.arange(segments)
+    following = (here + 1) % segments
+    faces = []
+    for ring in range(rings - 1):
+        a, b = ring * segments, (ring + 1) * segments
+        faces.append(np.column_stack([a + here, a + following, b + following]))
+        faces.append(np.column_stack([a + here, b + following, b + here]))
+    bottom, top = len(vertices) - 2, len(vertices) - 1
+    end = (rings - 1) * segments
+    faces.append(np.column_stack([following, here, np.full(segments, bottom)]))
+    faces.append(np.column_stack([end + here, end + following, np.full(segments, top)]))
+    mesh = trimesh.Trimesh(vertices, np.vstack(faces), process=False)
+    if mesh.volume < 0:
+        mesh.invert()
+    return mesh
+
+
+def _outline(row: np.ndarray, segments: int, scale: float) -> np.ndarray:
+    """Return the (segments, 3) float points of one section, scaled about its chord's middle."""
+    inner, outer = row[0:2], row[2:4]
+    half_width, widest, inner_exponent, outer_exponent = row[4:8]
+    angle = 2 * np.pi * np.arange(segments) / segments
+    cosine, sine = np.cos(angle), np.sin(angle)
+    power = 2 / np.where(sine >= 0, outer_exponent, inner_exponent)
+    reach = np.where(sine >= 0, 1 - widest, widest)
+    x = half_width * np.sign(cosine) * np.abs(cosine) ** power
+    along = widest + reach * np.sign(sine) * np.abs(sine) ** power
+    along = 0.5 + scale * (along - 0.5)
+    return np.column_stack([scale * x, inner + along[:, None] * (outer - inner)])
+
+
+def _chamfered(outline: np.ndarray) -> np.ndarray:
+    """Pull an end's outline inwards by the chamfer, within its plane."""
+    spokes = outline - outline.mean(axis=0)
+    length = np.linalg.norm(spokes, axis=1, keepdims=True)
+    return outline - spokes * (CHAMFER / length)

@@ -31,10 +31,10 @@ from rastrainer_simulator.scene.surfaces import surface
 
 @dataclass(frozen=True)
 class Grid:
-    """Where voxels lie.
+    """The grid of an image's voxels.
 
     Attributes:
-        shape: how many there are along each axis.
+        shape: number of voxels along each axis.
         ijk_to_ras: (4, 4) float, mm.
     """
 
@@ -43,7 +43,7 @@ class Grid:
 
     @property
     def spacing(self) -> np.ndarray:
-        """(3,) float: the voxels' size along each axis, mm."""
+        """(3,) float: size of a voxel along each axis, mm."""
         return np.linalg.norm(self.ijk_to_ras[:3, :3], axis=0)
 
     def part(self, slices: tuple[slice, slice, slice]) -> Grid:
@@ -53,7 +53,7 @@ class Grid:
         return Grid(size, self.ijk_to_ras @ transforms.rigid(np.eye(3), first))
 
     def around(self, center: np.ndarray, radius: float) -> tuple[slice, slice, slice]:
-        """Return the part of the image that holds all voxels so near (mm) to a place (3,), RAS."""
+        """Return the part of the image within `radius` (mm) of a point (3,), RAS."""
         to_ijk = transforms.inverse(self.ijk_to_ras)
         middle = transforms.apply(to_ijk, center)
         reach = radius * np.linalg.norm(to_ijk[:3, :3], axis=1)
@@ -63,11 +63,11 @@ class Grid:
         return i, j, k
 
     def places(self) -> np.ndarray:
-        """Return the middle of each voxel, (i, j, k, 3) float, RAS mm."""
+        """Return the center of each voxel, (i, j, k, 3) float, RAS mm."""
         return transforms.apply(self.ijk_to_ras, np.moveaxis(np.indices(self.shape), 0, -1))
 
     def inside(self, mesh: HeadMesh) -> np.ndarray:
-        """Return which voxels (i, j, k) bool lie within a closed surface."""
+        """Return which voxels (i, j, k) bool are inside a closed surface."""
         vertices = transforms.apply(transforms.inverse(self.ijk_to_ras), mesh.vertices)
         stencil = vtkPolyDataToImageStencil()
         stencil.SetInputData(surface(vertices, mesh.triangles))
@@ -79,7 +79,7 @@ class Grid:
         return _array(image.GetOutput()) > 0
 
     def at(self, places: np.ndarray) -> np.ndarray:
-        """Return which voxels (i, j, k) bool hold one of the places (n, 3), RAS mm."""
+        """Return which voxels (i, j, k) bool contain one of the points (n, 3), RAS mm."""
         indices = np.rint(transforms.apply(transforms.inverse(self.ijk_to_ras), places)).astype(int)
         indices = indices[((indices >= 0) & (indices < self.shape)).all(axis=1)]
         marked = np.zeros(self.shape, dtype=bool)
@@ -87,7 +87,7 @@ class Grid:
         return marked
 
     def distances(self, marked: np.ndarray) -> np.ndarray:
-        """Return how far (i, j, k) float, mm, each voxel is from the nearest marked one."""
+        """Return the distance (i, j, k) float, mm, of each voxel to the nearest marked one."""
         image = vtkImageData()
         image.SetDimensions(self.shape)
         image.SetSpacing(*self.spacing.tolist())
@@ -109,23 +109,23 @@ def _array(image: vtkImageData) -> np.ndarray:
 
 
 LEAST_DEPTH_MM = 15.0
-"""So much behind the shield that takes the face's place is taken out, too."""
+"""Least depth behind the shield (which replaces the face) that is removed, too."""
 
 BEHIND_FACE_MM = 4.0
-"""At least so much behind the deepest place of the face, which may lie behind the shield."""
+"""Least depth behind the deepest point of the face, which may be behind the shield."""
 
 BEYOND_MM = 4.0
-"""Around the face's own radius."""
+"""Margin around the radius of the face."""
 
 _SAMPLES = 6
-"""Along each side of a triangle, whose sides are about two millimeters."""
+"""Samples along each side of a triangle, about two millimeters long."""
 
 
 def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
-    """Return the images of a head with nothing in the place of its face, nor around the head.
+    """Return the images of a head without its face and without anything around the head.
 
-    What ends there depends on the shield of `without_face`, not on the face: the images tell no
-    more about it than the surface that is given with them.
+    What is removed depends on the shield of `without_face`, not on the face: the images reveal no
+    more about it than the exported surface.
 
     Args:
         volume: the images.
@@ -146,7 +146,7 @@ def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
 
 
 def _samples(mesh: HeadMesh, is_wanted: np.ndarray) -> np.ndarray:
-    """Return places (n, 3), RAS mm, all over the triangles that have a wanted corner."""
+    """Return points (n, 3), RAS mm, all over the triangles that have a wanted corner."""
     corners = mesh.vertices[mesh.triangles[is_wanted[mesh.triangles].any(axis=1)]]
     steps = np.arange(_SAMPLES + 1) / _SAMPLES
     weights = np.array([(a, b, 1.0 - a - b) for a in steps for b in steps if a + b < 1.0 + 1e-9])
@@ -154,7 +154,7 @@ def _samples(mesh: HeadMesh, is_wanted: np.ndarray) -> np.ndarray:
 
 
 def _depth(face: np.ndarray, shield: HeadMesh) -> float:
-    """Return how much behind the shield (mm) no place (n, 3) of the face is left."""
+    """Return the depth behind the shield (mm) that contains all points (n, 3) of the face."""
     signed = vtkImplicitPolyDataDistance()
     signed.SetInput(surface(shield.vertices, shield.triangles))
     deepest = max((-signed.EvaluateFunction(place) for place in face.astype(float)), default=0.0)
@@ -162,21 +162,21 @@ def _depth(face: np.ndarray, shield: HeadMesh) -> float:
 
 
 FACELESS = " The face was taken off."
-NO_SOURCE = "Taken off before the scenario was given on."
+NO_SOURCE = "Removed before the scenario was shared."
 
 
 def pack_for_others(
     folder: Path, package: Path, keeps_face: bool = False, keeps_names: bool = False
 ) -> str:
-    """Write a scenario as one zip file and return a sentence that says what was taken off.
+    """Write a scenario as one zip file and return a sentence about what was removed.
 
     Args:
-        folder: of the scenario, which stays as it is.
+        folder: of the scenario, which is not changed.
         package: the new file.
-        keeps_face: leave the head, its picture, its images and its skull as they are; else head,
-            picture and images have no face, and no skull is given on.
-        keeps_names: leave title, name and source, which often are the patient's name, as they
-            are; else the scenario is called by a number that is made of its head's surface.
+        keeps_face: keep the head, its picture, its images and its skull; otherwise head, picture
+            and images have no face, and the skull is left out.
+        keeps_names: keep title, name and source, which often are the patient's name; otherwise
+            the scenario is named by a number computed from its head's surface.
 
     Raises:
         InputError: the scenario cannot be used, or has fiducials on the face.
@@ -202,8 +202,8 @@ def pack_for_others(
             shutil.copyfile(preview, clean / PREVIEW_NAME)
         pack(clean, package)
     if not taken:
-        return "Nothing was taken off."
-    return f"Taken off: {', '.join(taken)}. It is called {scenario.title} now."
+        return "Nothing was removed."
+    return f"Removed: {', '.join(taken)}. It is called {scenario.title} now."
 
 
 def _faceless(scenario: Scenario, head: HeadMesh) -> tuple[Scenario, HeadMesh]:

@@ -1,4 +1,4 @@
-"""Have Slicer's side make the draft of a head: in a process of its own, as it knows MRML."""
+"""Run Slicer's side, which knows MRML, in a separate process to make the draft of a head."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rastrainer.scenario.writer import HeadDraft, read_draft
 
 
 class HeadProcess:
-    """The process at work: on the head first, then on its skull while others use the head."""
+    """A process that makes the head, and then its skull while the head is already used."""
 
     def __init__(self, process: subprocess.Popen[str], errors: TextIO, folder: Path) -> None:
         """Keep the process, the file of its standard error and the folder of its draft."""
@@ -28,11 +28,11 @@ class HeadProcess:
         """Wait for the head and return its draft without a skull.
 
         Args:
-            progress: told each step's name and the share of the work done; may raise to cancel.
-            warn: told each warning.
+            progress: called with each step's name and the share done; may raise to cancel.
+            warn: called with each warning.
 
         Raises:
-            InputError: there is no head in the volume; the sentence says why.
+            InputError: there is no head in the volume.
         """
         assert self._process.stdout is not None  # It is a pipe.
         for line in self._process.stdout:
@@ -45,7 +45,7 @@ class HeadProcess:
         """Wait for the skull too, where one is wanted, and return the whole draft.
 
         Raises:
-            InputError: there is no skull in the volume; the sentence says why.
+            InputError: there is no skull in the volume.
         """
         assert self._process.stdout is not None  # It is a pipe.
         self._process.stdout.read()
@@ -56,13 +56,13 @@ class HeadProcess:
     def _failure(self) -> InputError:
         status = self._process.wait()
         self._errors.seek(0)
-        told = self._errors.read().strip().splitlines()
-        return InputError(told[-1] if told else f"The head's process ended with {status}.")
+        lines = self._errors.read().strip().splitlines()
+        return InputError(lines[-1] if lines else f"The head's process ended with {status}.")
 
 
 @contextmanager
 def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
-    """Yield a process that makes the head in a volume; it ends with the context, done or not.
+    """Yield a process that makes the head in a volume; it ends with the context.
 
     Args:
         volume: NRRD, NIfTI, or a folder of DICOM files.

@@ -31,15 +31,16 @@ LEAST_START_CLEARANCE_MM = 30.0
 
 @dataclass(frozen=True)
 class ScenarioOptions:
-    """What is wanted of a scenario besides its head.
+    """The options of a scenario besides its head.
 
     Attributes:
-        title: for people; the name is made of it.
+        title: for people; the name is made from it.
         source, license: for the provenance.
-        setup: how the head stands before the robot.
-        targets: planned; the target error is told at the first.
+        setup: how the head is placed before the robot.
+        targets: planned; the target error is reported at the first.
         trajectory: planned.
-        task_files: markups placed by hand, in the order of the tasks; none proposes them.
+        task_files: manually placed markups, in the order of the tasks; without any, tasks are
+            proposed.
         seed: of the proposal.
     """
 
@@ -55,7 +56,7 @@ class ScenarioOptions:
 
 def make_scenario(
     draft: HeadDraft,
-    wishes: ScenarioOptions,
+    options: ScenarioOptions,
     folder: Path,
     progress: Progress = lambda _step, _share: None,
     wait_for_skull: Callable[[], HeadDraft] | None = None,
@@ -64,23 +65,23 @@ def make_scenario(
     """Write the scenario of a head into a new folder and return it.
 
     Args:
-        draft: of the head; all but its skull is worked with.
-        wishes: what else is wanted.
+        draft: of the head; its skull may be missing.
+        options: of the scenario.
         folder: to be made.
-        progress: told each step's name and the share of the work done; may raise to cancel.
-        wait_for_skull: returns the same draft with the skull, which is made meanwhile; None where
-            `draft` is whole.
-        warn: told what is made otherwise than wished, one sentence each.
+        progress: called with each step's name and the share done; may raise to cancel.
+        wait_for_skull: returns the same draft with the skull, which is made meanwhile; None if
+            `draft` is complete.
+        warn: called with a sentence for each deviation from the options.
 
     Raises:
-        InputError: the wishes cannot be met; the sentence says which. Nothing is written then.
+        InputError: the options cannot be met. Nothing is written then.
     """
     with new_folder(folder) as made:
-        scenario = without_tasks(draft, wishes, warn)
+        scenario = without_tasks(draft, options, warn)
         planning = PlanningSetup(scenario, draft.head)
-        tasks = _placed(planning, wishes, progress, warn)
+        tasks = _placed(planning, options, progress, warn)
         if not tasks:
-            tasks = TaskSetProposer(planning, progress).propose(wishes.seed)
+            tasks = TaskSetProposer(planning, progress).propose(options.seed)
         progress("Drawing the picture", 0.95)
         draw_preview(made / PREVIEW_NAME, replace(scenario, tasks=tasks), draft.head)
         if wait_for_skull is not None:
@@ -98,41 +99,43 @@ def make_scenario(
     return load_scenario(folder)
 
 
-def check_wishes(draft: HeadDraft, wishes: ScenarioOptions, progress: Progress, warn: Warn) -> None:
-    """Raise what `make_scenario` would raise of the set-up, the plan and the placed fiducials.
+def check_options(
+    draft: HeadDraft, options: ScenarioOptions, progress: Progress, warn: Warn
+) -> None:
+    """Check set-up, plan and placed fiducials as `make_scenario` does.
 
     Raises:
-        InputError: the wishes cannot be met; the sentences say which.
+        InputError: the options cannot be met.
     """
-    _placed(PlanningSetup(without_tasks(draft, wishes, warn), draft.head), wishes, progress, warn)
+    _placed(PlanningSetup(without_tasks(draft, options, warn), draft.head), options, progress, warn)
 
 
 def _placed(
-    planning: PlanningSetup, wishes: ScenarioOptions, progress: Progress, warn: Warn
+    planning: PlanningSetup, options: ScenarioOptions, progress: Progress, warn: Warn
 ) -> tuple[Task, ...]:
-    """Return the tasks that are placed by hand, once nothing is wrong with all that is wished."""
+    """Return the manually placed tasks if set-up, plan and tasks are all right."""
     wrong = check_plan(planning)
-    tasks, wrong_tasks = read_placed_tasks(planning, wishes.task_files, progress, warn)
+    tasks, wrong_tasks = read_placed_tasks(planning, options.task_files, progress, warn)
     if wrong or wrong_tasks:
         raise InputError(" ".join([*wrong, *wrong_tasks]))
     return tasks
 
 
 def without_tasks(
-    draft: HeadDraft, wishes: ScenarioOptions, warn: Warn = lambda _sentence: None
+    draft: HeadDraft, options: ScenarioOptions, warn: Warn = lambda _sentence: None
 ) -> Scenario:
-    """Return the scenario of a head without tasks; `warn` is told of a target that lies too deep.
+    """Return the scenario of a head without tasks; warn of a first target that is too deep.
 
     Raises:
         InputError: the head would not be above the table.
     """
-    head, setup = draft.head, wishes.setup
+    head, setup = draft.head, options.setup
     middle = head.centroid.round(4)
     setup.check_height(float(head.vertices[:, 2].min()), middle)
     scenario = Scenario(
         folder=Path(),
-        name=scenario_name(wishes.title),
-        title=wishes.title,
+        name=scenario_name(options.title),
+        title=options.title,
         head_mesh=Path(),
         target_name=CENTER,
         target_position=middle,
@@ -141,18 +144,18 @@ def without_tasks(
         tasks=(),
         cameras=setup.cameras(),
         furniture=setup.furniture(),
-        provenance=Provenance(wishes.source, draft.method, wishes.license),
+        provenance=Provenance(options.source, draft.method, options.license),
         is_skull_approximate=draft.is_skull_approximate,
-        targets=wishes.targets,
-        trajectory=wishes.trajectory,
+        targets=options.targets,
+        trajectory=options.trajectory,
     )
     return with_main_target(scenario, head, warn)
 
 
 def with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenario:
-    """Return the scenario with the first planned target as its own, where trials can start so.
+    """Return the scenario with the first planned target as its main one, if trials can start there.
 
-    A trial starts above the target: with one far below, the tip would start in the head.
+    A trial starts above the main target: with a deep one, the tip would start in the head.
     """
     if not scenario.targets:
         return scenario
@@ -166,8 +169,8 @@ def with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenario
     if start_clearance_mm(aimed, head) >= LEAST_START_CLEARANCE_MM:
         return aimed
     warn(
-        f"{first.name} lies too deep for trials to start above it; the target error is told at "
-        f"{scenario.target_name}, and {first.name} stays a further target."
+        f"{first.name} is too deep for trials to start above it; the target error is reported at "
+        f"{scenario.target_name}, and {first.name} remains a further target."
     )
     return scenario
 
@@ -184,12 +187,12 @@ def copy_with_plan(
 
     Args:
         folder: of the scenario, which stays as it is.
-        title: of the copy; its name is made of it.
+        title: of the copy; its name is made from it.
         copy: a new folder.
-        targets: RAS mm, in the place of all it had; the first is where the error is told. Empty
-            keeps what it had.
-        trajectory: RAS mm, in the place of that it had; None keeps it.
-        warn: told of a first target that lies too deep for trials to start above it.
+        targets: RAS mm, replacing all others; the first is where the error is reported. If empty,
+            the targets are kept.
+        trajectory: RAS mm, replacing the other one; None keeps it.
+        warn: called if the first target is too deep for trials to start above it.
 
     Raises:
         InputError: the scenario cannot be used, or the plan cannot be carried out. Nothing is

@@ -1,4 +1,4 @@
-"""Fiducials that somebody has placed by hand become the tasks of a scenario, where they can."""
+"""Read manually placed fiducials as the tasks of a scenario."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from rastrainer_simulator.authoring.task_check import check_tasks, measured
 from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan
 
 SNAP_MM = 5.0
-"""Who clicks on slices or on a rendered volume is off the skin by a voxel or two."""
+"""Clicks on slices or on a rendered volume are off the skin by a voxel or two."""
 
 MOVED_MM = 0.1
-"""What is nearer to the skin stays where it is."""
+"""Fiducials nearer to the skin than this are not moved."""
 
 _DECIMALS = 4
 
@@ -38,8 +38,8 @@ def read_placed_tasks(
     Args:
         planning: with the head.
         files: the trial run's, Task 1's and so on.
-        progress: told each step's name and the share of the work done; may raise to cancel.
-        warn: told of each task of which fiducials are moved.
+        progress: called with each step's name and the share done; may raise to cancel.
+        warn: called for each task whose fiducials are moved.
     """
     if len(files) > len(PLANS):
         return (), [f"A scenario has at most {len(PLANS)} tasks; {len(files)} are given."]
@@ -68,8 +68,8 @@ def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> Task:
     away = np.array([place.distance for place in nearest])
     far = np.flatnonzero(away > SNAP_MM)
     if len(far):
-        told = ", ".join(f"{LABELS[row]} ({away[row]:.0f} mm)" for row in far)
-        raise InputError(f"off the skin by more than {SNAP_MM:g} mm: {told}; place them on it.")
+        listed = ", ".join(f"{LABELS[row]} ({away[row]:.0f} mm)" for row in far)
+        raise InputError(f"off the skin by more than {SNAP_MM:g} mm: {listed}; place them on it.")
     moved = np.flatnonzero(away > MOVED_MM)
     for row in moved:
         points[row] = nearest[row].position.round(_DECIMALS)

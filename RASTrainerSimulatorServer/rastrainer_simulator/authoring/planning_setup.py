@@ -1,4 +1,4 @@
-"""A head on its stand before the robot, as a scenario sets it up: what of it can be touched?"""
+"""A head on its stand before the robot, and which points of it can be touched."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ def touchable(
 
 
 WIDER = 1.2
-"""Places for fiducials are tried in poses perturbed by so much more than a trial's: a margin."""
+"""Factor by which the perturbation of poses for planning exceeds that of trials: a margin."""
 
 
 class PlanningSetup:
-    """Robot, head and set-up of one scenario, whose own tasks do not matter.
+    """Robot, head and set-up of one scenario; its tasks do not matter.
 
     Attributes:
         scenario: the set-up.
@@ -81,12 +81,12 @@ class PlanningSetup:
 
     @cached_property
     def graph(self) -> SurfaceGraph:
-        """The ways over the head."""
+        """The paths over the head."""
         return SurfaceGraph(self.mesh)
 
     @cached_property
     def eye(self) -> np.ndarray:
-        """(3,) float, RAS mm: where the default view looks from at the head in its nominal pose."""
+        """(3,) float, RAS mm: the default view's position, with the head in its nominal pose."""
         to_head = transforms.inverse(self.scenario.head_to_world)
         return transforms.apply(to_head, self.scenario.cameras["close-up"].position)
 
@@ -111,6 +111,6 @@ class PlanningSetup:
         """Return which places (n,) bool can be touched in every pose of the head.
 
         The links keep 5 mm off head, stand, table and each other, and the tool's shaft, which
-        begins 3 mm behind its tip, is off the head; see `TouchPlanner`. Shapes (n, 3), RAS mm.
+        starts 3 mm behind its tip, is off the head; see `TouchPlanner`. Shapes (n, 3), RAS mm.
         """
         return touchable(self._planner, self.collision, positions, normals, poses)

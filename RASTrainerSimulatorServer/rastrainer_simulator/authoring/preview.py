@@ -1,4 +1,4 @@
-"""The picture of a scenario for lists: its head in the close-up view, with a task's marks."""
+"""A scenario's preview: its head in the close-up view, with a task's marks."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SIZE = (640, 480)
 
 
 def draw_preview(path: Path, scenario: Scenario, head: HeadMesh) -> None:
-    """Draw the head as a trainee first sees it, with the first task where there is one.
+    """Draw the head as a trainee first sees it, with the first task if there is one.
 
     Raises:
         InputError: the picture cannot be written.

@@ -1,4 +1,4 @@
-"""Everything that can be wrong with a scenario: its set-up, its plan and its tasks."""
+"""Check a scenario: its set-up, its plan and its tasks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ROBOT_FOOT_MM = 110.0
 
 
 def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
-    """Return what does not stand on the table, one sentence each."""
+    """Return a sentence for each thing that is not on the table."""
     table, wrong = scenario.furniture, []
     half = table.table_size[:2] / 2.0
     low, high = table.table_center - half, table.table_center + half
@@ -50,13 +50,13 @@ def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
 
 
 def lowest_in_trials_mm(scenario: Scenario, head: HeadMesh) -> float:
-    """Return how high above the table the head's lowest place is in the worst trial, mm."""
+    """Return the height of the head's lowest point above the table in the worst trial, mm."""
     limits = scenario.perturbation
     vertices = transforms.apply(scenario.head_to_world, head.vertices)
     pivot = transforms.apply(scenario.head_to_world, scenario.target_position)
     aside = np.hypot(*(vertices - pivot)[:, :2].T)
     height = vertices[:, 2] - pivot[2]
-    # Tilted toward it a place sinks, until it is right below the pivot.
+    # A tilt lowers a point on its side until it is right below the pivot.
     tilt = np.minimum(np.radians(limits.tilt_deg), np.arctan2(aside, -height))
     sunk = pivot[2] + height * np.cos(tilt) - aside * np.sin(tilt)
     return float(sunk.min() - limits.translation_mm)
@@ -71,7 +71,7 @@ ENTRY_OFF_SKIN_MM = 10.0
 
 
 def check_plan(planning: PlanningSetup) -> list[str]:
-    """Return what is wrong with the set-up, the targets and the trajectory, one sentence each."""
+    """Return a sentence for each error in the set-up, the targets and the trajectory."""
     scenario = planning.scenario
     wrong = check_standing(scenario, planning.mesh)
     height = SimulationSettings().start_height
@@ -137,7 +137,7 @@ def _distance_mm(planning: PlanningSetup, position: np.ndarray) -> float:
 
 
 def check_scenario(folder: Path) -> list[str]:
-    """Return what is wrong with the set-up, the plan and the tasks of a scenario.
+    """Return a sentence for each error in the set-up, the plan and the tasks of a scenario.
 
     Raises:
         InputError: it cannot be read at all.

@@ -1,4 +1,4 @@
-"""Are tasks as they must be, wherever they come from? One sentence for each thing that is not."""
+"""Check the tasks of a scenario: one sentence for each error."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rastrainer_simulator.viewpoint.best_view import WIDEST_DEG
 ON_SKIN_MM = 1.0
 APART_MM = 20.0
 WORST_SPREAD = 1.0
-"""The expected TRE at the target may be at most so many times the FLE."""
+"""Largest ratio of the expected TRE at the target to the FLE."""
 
 POSES_TRIED = 12
 COMPLEXITY_TOLERANCE = 0.02
@@ -37,9 +37,9 @@ def measured(planning: PlanningSetup, task: Task) -> Task:
 
 
 def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
-    """Return what is wrong with tasks, one sentence each; none where all is well.
+    """Return a sentence for each error in tasks.
 
-    Touching is tried in the nominal pose of the head and in those of some seeds from `first_seed`.
+    Reach is checked in the nominal pose of the head and in those of some seeds from `first_seed`.
     """
     tasks, skin = list(tasks), Skin(planning.mesh)
     wrong = []
@@ -94,7 +94,7 @@ def _untouchable(planning: PlanningSetup, task: Task, first_seed: int) -> list[s
     always = nominal & planning.touchable(task.fiducials, normals, poses[1:])
     sentences = []
     for can_be, where in (
-        (nominal, "where the head stands"),
+        (nominal, "where the head is"),
         (always | ~nominal, "in every trial"),
     ):
         missed = [label for label, can in zip(task.labels, can_be, strict=True) if not can]
@@ -131,12 +131,12 @@ def _wrong_measures(task: Task, right: Task) -> list[str]:
         wrong.append(
             f"{task.title}: its complexity is {right.complexity:.2f}, not {task.complexity:.2f}."
         )
-    told, shortest = task.shortest_path_mm, right.shortest_path_mm
+    stated, shortest = task.shortest_path_mm, right.shortest_path_mm
     assert shortest is not None  # It was measured.
-    if told is None or abs(shortest - told) > SHORTEST_PATH_TOLERANCE * shortest:
-        instead = "none" if told is None else f"{told:.1f} mm"
+    if stated is None or abs(shortest - stated) > SHORTEST_PATH_TOLERANCE * shortest:
+        instead = "none" if stated is None else f"{stated:.1f} mm"
         wrong.append(
-            f"{task.title}: its shortest path is {shortest:.1f} mm; shortestPathMm tells {instead}."
+            f"{task.title}: its shortest path is {shortest:.1f} mm; shortestPathMm says {instead}."
         )
     return wrong
 

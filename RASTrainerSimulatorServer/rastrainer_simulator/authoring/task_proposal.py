@@ -1,4 +1,4 @@
-"""Propose the fiducials of a task, and their order, among the places that the robot can touch."""
+"""Propose the fiducials of a task and their order, among points that the robot can touch."""
 
 from __future__ import annotations
 
@@ -13,37 +13,37 @@ from rastrainer.head.surface_path import SurfaceGraph
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.scenario.complexity import Complexity, complexity, is_hidden
 from rastrainer_simulator.authoring.touch_order import (
-    Ways,
+    Transitions,
     arc_lengths,
     crossing_order,
     easiest_order,
-    ways_between,
+    transitions_between,
 )
 
 SPACING_MM = 20.0
 """Between any two fiducials of a task: numbers must not cover each other."""
 
 DRAWS = 30
-"""Random choices of fiducials, of which the one that locates the target best is taken."""
+"""Number of random choices of fiducials, the best of which (by target TRE) is used."""
 
 RISE = 1.1
-"""Each task's complexity index is at least so many times that of the task before."""
+"""Least ratio of a task's complexity index to that of the task before."""
 
 ATTEMPTS = 20
 ROUGHLY = 0.8
-"""A draw whose index is by a quick estimate below so much of what it must be is not measured."""
+"""A draw whose estimated index is below this share of the required one is not measured."""
 
 
 @dataclass(frozen=True)
 class TaskPlan:
-    """What a task shall demand.
+    """The demands of a task.
 
     Attributes:
         name, title: of the task.
-        hidden: how many fiducials the default view shall not show.
-        off_axis_deg: how far the normals of those that it shows may be from the view's direction.
-        crossings: how often the way changes between the right and the left half; 0 takes the
-            easiest way over all.
+        hidden: number of fiducials that the default view does not show.
+        off_axis_deg: largest angle between the normal of a shown fiducial and the view's direction.
+        crossings: how often the order changes between the right and the left half; 0 for the
+            easiest order.
     """
 
     name: str
@@ -65,12 +65,12 @@ PLANS = (
 
 @dataclass(frozen=True)
 class CandidatePlaces:
-    """Where fiducials may be; RAS mm.
+    """Candidate points for fiducials; RAS mm.
 
     Attributes:
         positions, normals: (n, 3) float.
         off_axis_deg: (n,) float, between each normal and the direction to the default view's eye.
-        hidden: (n,) bool, the places that this view does not show.
+        hidden: (n,) bool, whether this view does not show the point.
     """
 
     positions: np.ndarray
@@ -81,7 +81,7 @@ class CandidatePlaces:
 
 @dataclass(frozen=True)
 class Proposal:
-    """Fiducials (15, 3) float, RAS mm, in the order to touch, and how demanding that is."""
+    """Fiducials (15, 3) float, RAS mm, in the order to touch, and their complexity."""
 
     plan: TaskPlan
     fiducials: np.ndarray
@@ -90,7 +90,7 @@ class Proposal:
 
 @dataclass(frozen=True)
 class _Draw:
-    """Fiducials (15, 3) float in the order to touch, and about what their index will be."""
+    """Fiducials (15, 3) float in the order to touch, and an estimate of their index."""
 
     plan: TaskPlan
     fiducials: np.ndarray
@@ -104,7 +104,7 @@ def _all_usable(positions: np.ndarray) -> np.ndarray:
 def places_seen_from(
     mesh: HeadMesh, positions: np.ndarray, normals: np.ndarray, eye: np.ndarray
 ) -> CandidatePlaces:
-    """Return the places with what the default view, from `eye` (3,) RAS mm, shows of them."""
+    """Return candidates with their visibility in the default view, from `eye` (3,) RAS mm."""
     toward = eye - positions
     toward /= np.linalg.norm(toward, axis=1, keepdims=True)
     cosines = np.einsum("ij,ij->i", normals, toward)
@@ -126,16 +126,16 @@ class TaskProposer:
         accepts: Callable[[Proposal], bool] = lambda _proposal: True,
         usable: Callable[[np.ndarray], np.ndarray] = _all_usable,
     ) -> None:
-        """Keep the places.
+        """Prepare proposals on a head.
 
         Args:
             mesh: the head, RAS mm.
-            places: where fiducials may be.
-            eye: (3,) float, where the default view looks from, RAS mm.
-            target: (3,) float, that shall be located well, RAS mm.
-            accepts: what is proposed in a row is what it agrees to.
-            usable: tells which of some places (n, 3) really can be used, (n,) bool; only those that
-                are chosen are asked about, and the others are not chosen again.
+            places: candidates for fiducials.
+            eye: (3,) float, position of the default view, RAS mm.
+            target: (3,) float, to be located well, RAS mm.
+            accepts: whether a proposal of `propose_rising` is accepted.
+            usable: returns which of some points (n, 3) can be used, (n,) bool; it is expensive, so
+                it is called for chosen points only, and unusable ones are not chosen again.
         """
         self._mesh = mesh
         self._graph = SurfaceGraph(mesh)
@@ -151,13 +151,13 @@ class TaskProposer:
         """Return a task for each plan, each more demanding than the one before.
 
         Args:
-            plans: what the tasks shall demand.
+            plans: the demands of the tasks.
             seed: of the draws.
-            begins_easy: take the easiest of many draws as the first task: where little of the
-                head can be touched, the others are not much harder.
+            begins_easy: use the easiest of many draws as the first task, for a head of which
+                little can be touched: there the others are not much harder.
 
         Raises:
-            InputError: there is no room for the fiducials, or none of many draws is so.
+            InputError: there is no room for the fiducials, or no draw is demanding enough.
         """
         seeds = np.random.default_rng(seed).integers(0, 2**31, (len(plans), ATTEMPTS))
         proposals: list[Proposal] = []
@@ -179,7 +179,7 @@ class TaskProposer:
         """Return a task as planned.
 
         Raises:
-            InputError: there is no room for so many fiducials.
+            InputError: there is no room for the fiducials.
         """
         return self._measured(self._usable_draw(plan, seed))
 
@@ -191,7 +191,7 @@ class TaskProposer:
         return sorted(seeds, key=lambda seed: self._draw(plan, seed).rough_index)
 
     def _usable_draw(self, plan: TaskPlan, seed: int) -> _Draw:
-        """Draw, and again without what has turned out to be of no use."""
+        """Draw again without the unusable points until all are usable."""
         while True:
             draw = self._draw(plan, seed)
             is_usable = self._usable(draw.fiducials)
@@ -206,12 +206,12 @@ class TaskProposer:
     def _draw(self, plan: TaskPlan, seed: int) -> _Draw:
         chosen = self._chosen(plan, np.random.default_rng(seed))
         positions, normals = self._places.positions[chosen], self._places.normals[chosen]
-        ways = ways_between(positions, normals, arc_lengths(positions, normals))
-        order = _order(plan, positions, ways)
-        return _Draw(plan, positions[order], float(ways.costs([order])[0]) + plan.hidden)
+        transitions = transitions_between(positions, normals, arc_lengths(positions, normals))
+        order = _order(plan, positions, transitions)
+        return _Draw(plan, positions[order], float(transitions.costs([order])[0]) + plan.hidden)
 
     def _chosen(self, plan: TaskPlan, random: np.random.Generator) -> list[int]:
-        """Return the places of the draw, of several, that locates the target best."""
+        """Return the rows of the draw, of several, that locates the target best."""
         places = self._places
         shown = np.flatnonzero(~places.hidden & (places.off_axis_deg <= plan.off_axis_deg))
         hidden = np.flatnonzero(places.hidden)
@@ -231,7 +231,7 @@ class TaskProposer:
     def _spread(
         self, chosen: list[int], among: np.ndarray, count: int, random: np.random.Generator
     ) -> list[int]:
-        """Add `count` places at random, none nearer than the spacing to another."""
+        """Add `count` random candidates, none nearer to another than the spacing."""
         chosen = list(chosen)
         for place in random.permutation(among) if count else ():
             away = self._places.positions[chosen] - self._places.positions[place]
@@ -243,13 +243,13 @@ class TaskProposer:
         return chosen
 
 
-def _order(plan: TaskPlan, positions: np.ndarray, ways: Ways) -> list[int]:
-    """Return in which order the places (15, 3) of a task are touched."""
+def _order(plan: TaskPlan, positions: np.ndarray, transitions: Transitions) -> list[int]:
+    """Return the order in which the points (15, 3) of a task are touched."""
     if plan.crossings == 0:
-        return easiest_order(ways, list(range(len(positions))))
+        return easiest_order(transitions, list(range(len(positions))))
     by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
     half = (len(positions) + 1) // 2
-    return crossing_order(ways, [by_side[:half], by_side[half:]], plan.crossings)
+    return crossing_order(transitions, [by_side[:half], by_side[half:]], plan.crossings)
 
 
 def target_spread(fiducials: np.ndarray, target: np.ndarray) -> float:

@@ -1,4 +1,4 @@
-"""A trial run and five tasks for a head that nobody has seen before."""
+"""Propose a trial run and five tasks for any head."""
 
 from __future__ import annotations
 
@@ -29,17 +29,14 @@ from rastrainer_simulator.scene.skin_marks import place_marks
 ABOVE_BASE_MM = 25.0
 SMOOTH_WITHIN_MM = 12.0
 MOST_BENDING_DEG = 30.0
-"""Within that distance no normal may differ more: no ears, nostrils, eyelids, brows."""
+"""Most that a normal within that distance may differ: excludes ears, nostrils, eyelids, brows."""
 
 DOWNWARD = -0.4
-"""A place whose normal points farther down than this (its S) cannot be seen or touched well."""
+"""A point whose normal points farther down than this (its S) cannot be seen or touched well."""
 
 
 def smooth_places(mesh: HeadMesh, spacing_mm: float) -> np.ndarray:
-    """Return the indices (n,) of vertices where the skin is smooth, `spacing_mm` from each other.
-
-    The same mesh gives the same places.
-    """
+    """Return the indices (n,) of vertices where the skin is smooth, `spacing_mm` apart."""
     height = mesh.vertices[:, 2] - mesh.vertices[:, 2].min()
     allowed = (height > ABOVE_BASE_MM) & (mesh.vertex_normals[:, 2] > DOWNWARD)
     allowed = np.flatnonzero(allowed)
@@ -48,7 +45,7 @@ def smooth_places(mesh: HeadMesh, spacing_mm: float) -> np.ndarray:
 
 
 def is_smooth(mesh: HeadMesh, vertex: int) -> bool:
-    """Tell whether the skin around a vertex bends little."""
+    """Return whether the skin around a vertex bends little."""
     away = np.linalg.norm(mesh.vertices - mesh.vertices[vertex], axis=1)
     around = mesh.vertex_normals[away < SMOOTH_WITHIN_MM]
     least = np.cos(np.radians(MOST_BENDING_DEG))
@@ -56,7 +53,7 @@ def is_smooth(mesh: HeadMesh, vertex: int) -> bool:
 
 
 def spread_out(points: np.ndarray, spacing_mm: float) -> list[int]:
-    """Return indices of points (n, 3), each the farthest from those before, at least so far."""
+    """Return indices of points (n, 3) at least so far apart (farthest point sampling)."""
     chosen = [int(points[:, 2].argmax())]
     nearest = np.linalg.norm(points - points[chosen[0]], axis=1)
     while nearest.max() >= spacing_mm:
@@ -67,18 +64,17 @@ def spread_out(points: np.ndarray, spacing_mm: float) -> list[int]:
 
 PLACE_SPACING_MM = 11.0
 FACE_MARGIN_MM = 10.0
-"""No fiducial comes nearer to the face, so that it can be taken off without moving any."""
+"""Least distance of fiducials from the face, so that it can be removed without moving any."""
 
 WIDE_SEEDS, TRIAL_SEEDS = range(1000, 1006), range(2000, 2012)
-"""Of the poses in which a fiducial must be touchable: worse than a trial's, and like a trial's."""
+"""Of the poses in which a fiducial must be touchable: beyond those of trials, and like them."""
 
 ATTEMPTS = 6
 WIDEN_DEG, WIDEST_DEG = 10.0, 75.0
-"""Where there is no room for the easy tasks, they may lie so much farther from the middle of the
-view, each time."""
+"""If there is no room for the easy tasks, their angle to the view grows by this at each attempt."""
 
 MOST_SHARE = 0.94
-"""Of the progress, before the tasks are found."""
+"""Largest share of the progress before the tasks are found."""
 
 _DECIMALS = 4
 
@@ -89,7 +85,7 @@ class TaskSetProposer:
     def __init__(
         self, planning: PlanningSetup, progress: Progress = lambda _step, _share: None
     ) -> None:
-        """Keep the head; `progress` is told what is done and may raise to cancel."""
+        """Prepare proposals; `progress` may raise to cancel."""
         self._planning = planning
         self._progress = progress
         self._skin = Skin(planning.mesh)
@@ -115,7 +111,7 @@ class TaskSetProposer:
                 self._is_readable,
                 self._are_touchable,
             )
-            self._tell("Placing fiducials", 0.3 + 0.1 * attempt)
+            self._report("Placing fiducials", 0.3 + 0.1 * attempt)
             try:
                 proposals = proposer.propose_rising(
                     _plans(attempt), seed + attempt, begins_easy=attempt > 0
@@ -128,9 +124,9 @@ class TaskSetProposer:
 
     @cached_property
     def _places(self) -> CandidatePlaces:
-        """Where fiducials may be."""
+        """The candidates for fiducials."""
         planning = self._planning
-        self._tell("Finding smooth skin", 0.0)
+        self._report("Finding smooth skin", 0.0)
         vertices = smooth_places(planning.mesh, PLACE_SPACING_MM)
         positions = planning.mesh.vertices[vertices].astype(float).round(_DECIMALS)
         normals = planning.mesh.vertex_normals[vertices]
@@ -138,7 +134,7 @@ class TaskSetProposer:
         if len(face):
             away = np.array([np.linalg.norm(face - place, axis=1).min() for place in positions])
             positions, normals = positions[away > FACE_MARGIN_MM], normals[away > FACE_MARGIN_MM]
-        self._tell("Finding what the robot can touch", 0.05)
+        self._report("Finding what the robot can touch", 0.05)
         can_be = planning.touchable(positions, normals, planning.poses(range(0)))
         positions, normals = positions[can_be], normals[can_be]
         if len(positions) < len(LABELS):
@@ -146,28 +142,28 @@ class TaskSetProposer:
                 f"The robot can touch only {len(positions)} of {len(vertices)} places of this head "
                 "where a fiducial could be; bring the head nearer to the robot."
             )
-        self._tell("Finding what the view shows", 0.2)
+        self._report("Finding what the view shows", 0.2)
         return places_seen_from(planning.mesh, positions, normals, planning.eye)
 
     @cached_property
     def _poses(self) -> list[np.ndarray]:
-        """In which every fiducial must be touchable, besides the nominal one."""
+        """The poses in which every fiducial must be touchable, besides the nominal one."""
         planning = self._planning
         return [*planning.poses(WIDE_SEEDS, WIDER)[1:], *planning.poses(TRIAL_SEEDS)[1:]]
 
     def _are_touchable(self, positions: np.ndarray) -> np.ndarray:
-        """Return which places (n,) bool can be touched wherever the head of a trial may stand."""
+        """Return which points (n,) bool can be touched in every pose of a trial."""
         places = [tuple(position) for position in positions.tolist()]
         new = [place for place in places if place not in self._found]
         if new:
-            self._tell("Checking reach", 0.3 + 0.005 * len(self._found))
+            self._report("Checking reach", 0.3 + 0.005 * len(self._found))
             normals = outward_normals(self._planning.mesh, np.array(new))
             can_be = self._planning.touchable(np.array(new), normals, self._poses)
             self._found |= dict(zip(new, can_be.tolist(), strict=True))
         return np.array([self._found[place] for place in places])
 
-    def _tell(self, step: str, share: float) -> None:
-        """Tell the progress, which never goes back."""
+    def _report(self, step: str, share: float) -> None:
+        """Report the progress, which never decreases."""
         self._share = max(self._share, min(share, MOST_SHARE))
         self._progress(step, self._share)
 
@@ -176,7 +172,7 @@ class TaskSetProposer:
 
 
 def _plans(attempt: int) -> list[TaskPlan]:
-    """Return the plans, the easy ones with more room after failures."""
+    """Return the plans; after failed attempts the easy ones have more room."""
     wider = WIDEN_DEG * attempt
     return [
         replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider)) for plan in PLANS

@@ -1,4 +1,4 @@
-"""In which order fiducials are touched: one smooth way over the skin, or back and forth."""
+"""Find the order in which fiducials are touched: one smooth path, or back and forth."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rastrainer.scenario.complexity import ANGLE_UNIT_DEG, LENGTH_UNIT_MM, angle
 
 
 @dataclass(frozen=True)
-class Ways:
-    """What it costs to go from fiducial to fiducial, in the units of the complexity index.
+class Transitions:
+    """The costs of moving from fiducial to fiducial, in the units of the complexity index.
 
     Attributes:
-        steps: (n, n) float: length over the skin and re-orientation of the tool.
+        steps: (n, n) float: length over the skin and reorientation of the tool.
         turns: (n, n, n) float: turning at the second of three.
     """
 
@@ -28,53 +28,58 @@ class Ways:
         return steps + self.turns[rows[:, :-2], rows[:, 1:-1], rows[:, 2:]].sum(axis=1)
 
     def easiest(self, orders: list[list[int]]) -> tuple[float, list[int]]:
-        """Return the least cost and the first of the orders that has it."""
+        """Return the least cost and the first order that has it."""
         costs = self.costs(orders)
         best = int(np.argmin(costs))
         return float(costs[best]), orders[best]
 
 
-def ways_between(points: np.ndarray, normals: np.ndarray, lengths_mm: np.ndarray) -> Ways:
-    """Return the ways between points; shapes (n, 3), (n, 3) and (n, n)."""
+def transitions_between(
+    points: np.ndarray, normals: np.ndarray, lengths_mm: np.ndarray
+) -> Transitions:
+    """Return the transitions between points; shapes (n, 3), (n, 3) and (n, n)."""
     count = len(points)
     first, second = np.indices((count, count)).reshape(2, -1)
     turned = angles_deg(normals[first], normals[second]).reshape(count, count)
     before, at, after = np.indices((count,) * 3).reshape(3, -1)
     turns = turns_deg(points[before], points[at], points[after], normals[at])
-    return Ways(
+    return Transitions(
         lengths_mm / LENGTH_UNIT_MM + turned / ANGLE_UNIT_DEG,
         turns.reshape((count,) * 3) / ANGLE_UNIT_DEG,
     )
 
 
 def arc_lengths(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Return about how long the ways over the skin are between points (n, 3), (n, n) mm.
+    """Estimate the lengths of the paths over the skin between points (n, 3); (n, n) mm.
 
-    The skin between two points is taken to bend evenly, by the angle between their normals: good
-    enough to order fiducials by, and thousands of times faster than paths over the surface.
+    The skin between two points is assumed to bend evenly, by the angle between their normals: good
+    enough for ordering fiducials, and thousands of times faster than paths over the surface.
     """
     chords = np.linalg.norm(points[:, None] - points[None], axis=2)
     half = np.arccos(np.clip(normals @ normals.T, -1.0, 1.0)) / 2.0
     return chords / np.sinc(half / np.pi)
 
 
-def easiest_order(ways: Ways, members: list[int]) -> list[int]:
-    """Return an order of the members that is cheap: the best of all greedy ways, improved."""
-    return ways.easiest([_improved(ways, _greedy(ways, members, start)) for start in members])[1]
+def easiest_order(transitions: Transitions, members: list[int]) -> list[int]:
+    """Return a cheap order of the members: the best of all greedy orders, improved."""
+    orders = [_improved(transitions, _greedy(transitions, members, start)) for start in members]
+    return transitions.easiest(orders)[1]
 
 
-def crossing_order(ways: Ways, sides: list[list[int]], crossings: int) -> list[int]:
-    """Return an order that changes between two sides so many times.
+def crossing_order(transitions: Transitions, sides: list[list[int]], crossings: int) -> list[int]:
+    """Return an order that crosses so often between two sides.
 
-    Each side is gone over in its own easiest order, in runs of equal length.
+    Each side is touched in its own easiest order, in runs of equal length.
     """
     runs: list[list[list[int]]] = []
     for side, members in enumerate(sides):
         count = (crossings + 2 - side) // 2
-        order = easiest_order(ways, members)
+        order = easiest_order(transitions, members)
         runs.append([part.tolist() for part in np.array_split(order, count)])
     second_turned = [part[::-1] for part in runs[1][::-1]]
-    return ways.easiest([_interleaved(runs[0], second) for second in (runs[1], second_turned)])[1]
+    return transitions.easiest(
+        [_interleaved(runs[0], second) for second in (runs[1], second_turned)]
+    )[1]
 
 
 def _interleaved(first: list[list[int]], second: list[list[int]]) -> list[int]:
@@ -84,19 +89,19 @@ def _interleaved(first: list[list[int]], second: list[list[int]]) -> list[int]:
     return order
 
 
-def _greedy(ways: Ways, members: list[int], start: int) -> list[int]:
+def _greedy(transitions: Transitions, members: list[int], start: int) -> list[int]:
     order, left = [start], set(members) - {start}
     while left:
-        order.append(min(left, key=lambda other: (ways.steps[order[-1], other], other)))
+        order.append(min(left, key=lambda other: (transitions.steps[order[-1], other], other)))
         left.remove(order[-1])
     return order
 
 
-def _improved(ways: Ways, order: list[int]) -> list[int]:
-    """Reverse and move stretches of the order as long as that makes it cheaper."""
+def _improved(transitions: Transitions, order: list[int]) -> list[int]:
+    """Reverse and move stretches of the order while that makes it cheaper."""
     best = np.inf
     while True:
-        cost, cheapest = ways.easiest(_changed(order))
+        cost, cheapest = transitions.easiest(_changed(order))
         if cost >= best - 1e-9:
             return order
         order, best = cheapest, cost

@@ -1,4 +1,4 @@
-"""`rastrainer simulate-cohort`: a study of virtual trainees whose skills are known."""
+"""`rastrainer simulate-cohort`: a study of virtual trainees with known skills."""
 
 from __future__ import annotations
 
@@ -35,10 +35,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="simulate a study of virtual trainees whose parameters you set",
         description=(
             "Play a study's trials with seeded virtual trainees, faster than real time, on all "
-            "cores, and store them like a real study (study.db, for rastrainer report). What was "
-            "interrupted is resumed by the same command. With "
-            "--power, draw many studies from a model of times and errors instead, without the "
-            "simulator, and print how often the tests find the effect."
+            "cores, and store them like a real study (study.db, for rastrainer report). After an "
+            "interruption the same command resumes. With --power, draw many studies from a model "
+            "of times and errors instead, and print how often the tests find the effect."
         ),
     )
     parser.add_argument("--trainees", type=int, default=20, metavar="N")
@@ -48,14 +47,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "-o", "--output", type=Path, metavar="DIR", help="an empty folder, or one to resume"
     )
     parser.add_argument("--records", action="store_true", help="write the journals too")
-    parser.add_argument("--power", type=int, metavar="STUDIES", help="draw so many studies")
+    parser.add_argument("--power", type=int, metavar="STUDIES", help="number of studies to draw")
     _add_skills(parser)
     _add_engine(parser)
     parser.set_defaults(run=run)
 
 
 def _add_skills(parser: argparse.ArgumentParser) -> None:
-    skills = parser.add_argument_group("what is true of the trainees")
+    skills = parser.add_argument_group("the trainees")
     skills.add_argument("--speed", type=float, default=120.0, metavar="MM/S")
     skills.add_argument("--aim", type=float, default=0.8, metavar="MM", help="SD along each axis")
     skills.add_argument("--hmd-speed", type=float, default=1.0, metavar="FACTOR")
@@ -66,7 +65,7 @@ def _add_skills(parser: argparse.ArgumentParser) -> None:
         nargs=3,
         default=(0.0, 0.0, 0.0),
         metavar=("X", "Y", "Z"),
-        help="what the headset misleads the aim by, mm",
+        help="systematic error of the aim in the headset, mm",
     )
     skills.add_argument("--spread", type=float, default=0.15, help="between trainees")
     skills.add_argument(
@@ -88,14 +87,14 @@ def _add_skills(parser: argparse.ArgumentParser) -> None:
         "--lapses",
         type=float,
         metavar="SHARE",
-        help="of trials in which a touch slips and is taken back; default: all that are played",
+        help="of trials in which a touch slips and is undone; default: all played trials",
     )
 
 
 def _add_engine(parser: argparse.ArgumentParser) -> None:
-    engine = parser.add_argument_group("where it runs")
+    engine = parser.add_argument_group("the engine")
     engine.add_argument("--engine", choices=("processes", "dask"), default="processes")
-    engine.add_argument("--workers", type=int, metavar="N", help="default: one a core")
+    engine.add_argument("--workers", type=int, metavar="N", help="default: one per core")
     engine.add_argument("--address", metavar="URL", help="of a Dask scheduler")
     engine.add_argument("--step", type=float, default=0.05, metavar="S", help="of the simulation")
     engine.add_argument("--scenario", type=Path, metavar="DIR")
@@ -114,7 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(_power(protocol, arguments))
         return 0
     if arguments.output is None:
-        raise InputError("Say where the study shall be stored, with -o.")
+        raise InputError("Name the folder of the study with -o.")
     _check_playing(arguments)
     _play(protocol, arguments)
     return 0
@@ -136,7 +135,7 @@ def _play(protocol: StudyProtocol, arguments: argparse.Namespace) -> None:
 
     trials = arguments.trainees * len(protocol.modes) * len(protocol.tasks) * protocol.repetitions
 
-    def tell(count: int) -> None:
+    def show_progress(count: int) -> None:
         if sys.stderr.isatty():
             print(f"  {count} of {trials} trials", end="\r", file=sys.stderr, flush=True)
 
@@ -152,17 +151,17 @@ def _play(protocol: StudyProtocol, arguments: argparse.Namespace) -> None:
             arguments.engine,
             arguments.workers,
             arguments.address,
-            tell,
+            show_progress,
         )
     except KeyboardInterrupt:
         print(
-            f"rastrainer: Interrupted. What was played is stored in {arguments.output}; the same "
-            "command resumes.",
+            f"rastrainer: Interrupted. The trials played so far are stored in {arguments.output}; "
+            "the same command resumes.",
             file=sys.stderr,
         )
         raise
     faster = result.simulated_s / result.seconds
-    found = f"{result.found} trials were there; " if result.found else ""
+    found = f"{result.found} trials were stored before; " if result.found else ""
     print(
         f"{arguments.output}: {found}{result.played} trials in {result.seconds:.0f} s, "
         f"{faster:.0f} times faster than real time; {result.stuck} got stuck and are left out"

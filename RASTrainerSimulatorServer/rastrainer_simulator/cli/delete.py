@@ -48,8 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
             )
         if arguments.records is None:
             raise InputError(
-                f"The journals of {arguments.pseudonym} would be left; give the folder of the "
-                "simulator's journals with --records (it may be empty where there are none)."
+                f"The journals of {arguments.pseudonym} would be left; name the folder of the "
+                "simulator's journals with --records (an empty one if there are none)."
             )
         erased = erase_trainee(study, arguments.pseudonym, arguments.records)
     print(f"{arguments.pseudonym}: {erased.trials} trials and {erased.journals} journals deleted")

@@ -1,6 +1,6 @@
 """`rastrainer demo`: simulator, Slicer's side and a virtual trainee play two trials.
 
-Each is a process of its own; they talk OpenIGTLink.
+Each is a separate process; they communicate by OpenIGTLink.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ SLICER_TIMEOUT_S = 60.0
 def play_demo(output: Path, seed: int, speed: float) -> None:
     """Play the trial run and Task 1, write the results into `output`, and print a summary.
 
-    An `output` that holds something already is moved aside, never overwritten.
+    An `output` that is not empty is moved aside, never overwritten.
 
     Raises:
         InputError: the package that plays Slicer's part is not installed; nothing was done then.
@@ -82,7 +82,7 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
 
 
 def check_slicers_side() -> None:
-    """Look whether the package is there that plays Slicer's part.
+    """Check that the package that replaces Slicer is installed.
 
     Raises:
         InputError: it is not.
@@ -117,7 +117,7 @@ def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
         assert process.stdout is not None  # It is a pipe.
         line = process.stdout.readline()
         if "ready" not in line:
-            raise RASTrainerError(f"The simulator did not start; {log.name} says why.")
+            raise RASTrainerError(f"The simulator did not start; see {log.name}.")
         yield int(line.rsplit(":", 1)[1])
 
 
@@ -136,7 +136,7 @@ def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
 
 @contextlib.contextmanager
 def _process(words: list[str], log: TextIO, stdout: Any) -> Iterator[subprocess.Popen]:
-    """Run a module with its arguments, `words`; ask it to stop at the end, whatever happened."""
+    """Run a module with its arguments, `words`, and terminate it at the end."""
     process = subprocess.Popen(python_words(*words), stdout=stdout, stderr=log, text=True)
     try:
         yield process
@@ -167,7 +167,7 @@ def _play(port: int, scenario: Scenario, seed: int, speed: float) -> list[dict[s
 
 
 class _Bar:
-    """One line that grows with the touches; drawn anew only where something changed."""
+    """A progress bar of the touches, printed again when it changes."""
 
     def __init__(self, title: str) -> None:
         self._title = title
@@ -190,13 +190,13 @@ def _wait_for(process: subprocess.Popen, log: Path) -> None:
     except subprocess.TimeoutExpired:
         status = None
     if status != 0:
-        raise RASTrainerError(f"Slicer's side did not finish its work; {log} says why.")
+        raise RASTrainerError(f"Slicer's side did not finish its work; see {log}.")
 
 
 def _draw_robot(
     path: Path, scenario: Scenario, state: dict[str, Any], trial: dict[str, Any]
 ) -> None:
-    """Picture the last touch: the arm as it then stood, at the head that is no longer secret."""
+    """Draw the arm and the head at the last touch."""
     from rastrainer_simulator.rendering.picture import SceneMoment, render_picture
     from rastrainer_simulator.robot.kinematics import make_kinematics
     from rastrainer_simulator.robot.model import load_robot

@@ -1,4 +1,4 @@
-"""The demo's results in words, from the file that Slicer's side has written."""
+"""Summarize the demo's results from the file that Slicer's side has written."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rastrainer.trial.ctps import CTPS_WARNING
 
 
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
-    """Return what a person wants to know of one trial; `trial` is a line of results.jsonl."""
+    """Return a summary of one trial for people; `trial` is a line of results.jsonl."""
     truth, target = trial["truth"], trial["target"]["name"]
     rigid = trial["fits"]["rigid"]
     low, high = rigid["tre_interval_mm"]

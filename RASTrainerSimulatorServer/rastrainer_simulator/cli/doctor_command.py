@@ -1,4 +1,4 @@
-"""`rastrainer doctor`: look at everything that training needs, and say what to do."""
+"""`rastrainer doctor`: check everything that training needs, and suggest remedies."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Add the subcommand to the parser of `rastrainer`."""
     parser = subparsers.add_parser(
         "doctor",
-        help="check this computer, and say what to do where something is missing",
+        help="check this computer, and suggest remedies for problems",
         description="Exit status: 0 without problems (warnings leave something out), 1 with one.",
     )
     parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="of OpenIGTLink")

@@ -100,7 +100,7 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
 
 
 def _stored(data: StudyData, path: Path) -> Iterator[tuple[TrialRow, StoredTrial]]:
-    """Yield the trials that a database holds, each with what is stored of it; a CSV has none."""
+    """Yield the stored trials of a database; a CSV file has none."""
     known = [trial for trial in data.trials if trial.trial_id]
     if not known:
         return

@@ -13,7 +13,7 @@ def add_incomplete(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--incomplete",
         action="store_true",
-        help="take a virtual cohort, too, that was not played to its end",
+        help="accept a virtual cohort that was not played to its end",
     )
 
 

@@ -52,8 +52,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {rastrainer.__version__}")
     subparsers = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    asked = [word for word in words if word in SUBCOMMANDS][:1]
-    for name in asked or SUBCOMMANDS:
+    named = [word for word in words if word in SUBCOMMANDS][:1]
+    for name in named or SUBCOMMANDS:
         importlib.import_module(SUBCOMMANDS[name]).add_parser(subparsers)
     return parser
 

@@ -21,7 +21,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         description="The numbers are those of the trial's record, to the last bit.",
     )
     parser.add_argument("journal", type=Path, metavar="JOURNAL")
-    parser.add_argument("--explain", action="store_true", help="tell what each metric means")
+    parser.add_argument("--explain", action="store_true", help="explain each metric")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=run)
 

@@ -1,4 +1,4 @@
-"""`rastrainer pass-mark STUDY`: the pass mark that parts a study's novices from its experts."""
+"""`rastrainer pass-mark STUDY`: the pass mark that separates a study's novices from its experts."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "pass-mark",
         help="compute a pass mark from the novices and the experts of a study",
         description=(
-            "Contrasting groups (Livingston and Zieky 1982): the mark is where the scores of both "
-            f"groups part. A person's score is the mean of their last {LAST_TRIALS} trials; trial "
-            "runs are left out. Scores of different versions make no mark."
+            "Contrasting groups (Livingston and Zieky 1982): the mark best separates the scores of "
+            f"both groups. A person's score is the mean of their last {LAST_TRIALS} trials; trial "
+            "runs are left out. Scores of different versions cannot be combined."
         ),
     )
     parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
@@ -41,13 +41,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--write",
         type=Path,
         metavar="PROTOCOL",
-        help="write the mark into this protocol's file, for a study that is not begun yet",
+        help="write the mark into this protocol's file, for a study that has not started yet",
     )
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the mark, write it where asked for, and return the exit status.
+    """Print the mark, write it to the protocol if requested, and return the exit status.
 
     Raises:
         InputError: there is no such study, trainee or protocol, somebody has too few scored trials
@@ -76,11 +76,11 @@ def run(arguments: argparse.Namespace) -> int:
     print(_sentence(mark, novices, experts, version))
     if aborted:
         print(
-            f"They aborted {aborted} trials after a touch; these have no score, so that who aborts "
-            "bad trials seems better here."
+            f"They aborted {aborted} trials after a touch; these have no score, so that people who "
+            "abort bad trials seem better here."
         )
     if arguments.write is not None:
-        # A mark that people are told in whole points is one in whole points.
+        # People are shown whole points, so the mark is in whole points.
         protocol = read_study_protocol(arguments.write)
         if version != SCORE_VERSION:
             raise InputError(

@@ -34,7 +34,7 @@ MISFIT_LEVEL = 1e-3
 
 @dataclass(frozen=True)
 class StatedErrors:
-    """What the user says of the points' localization errors.
+    """The localization errors of the points, as stated by the user.
 
     Attributes:
         fle_mm: (n,) float, RMS length of each point's error.
@@ -50,7 +50,7 @@ class StatedErrors:
 
     @classmethod
     def of(cls, registration: Registration, fle_mm: np.ndarray) -> StatedErrors:
-        """Return what stated errors mean for a registration that is weighted by 1/FLE²."""
+        """Return the stated errors of a registration that is weighted by 1/FLE²."""
         error = stated_error(fle_mm)
         misfit = misfit_probability(registration, fle_mm)
         return cls(fle_mm, error, expected_fre(registration, error), misfit)
@@ -67,14 +67,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         ),
     )
     parser.add_argument("moving", metavar="MOVING", help="the points to be mapped")
-    parser.add_argument("fixed", metavar="FIXED", help="where they belong")
+    parser.add_argument("fixed", metavar="FIXED", help="the points to map them to")
     parser.add_argument("--type", choices=KINDS, default=RIGID, help="default: %(default)s")
     parser.add_argument(
         "--target",
         nargs=3,
         type=float,
         metavar=("X", "Y", "Z"),
-        help="point in the fixed space (mm) to tell the expected error of; default: the centroid",
+        help="point in the fixed space (mm) whose error is estimated; default: the centroid",
     )
     weighting = parser.add_mutually_exclusive_group()
     weighting.add_argument(
@@ -90,7 +90,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FILE.csv",
         help=(
             "weight the points (rigid only): a CSV file with the header label,weight; only the "
-            "ratios matter, and the size of the errors is told from the residuals"
+            "ratios matter, and the size of the errors is estimated from the residuals"
         ),
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
@@ -119,7 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
 def registration_json(
     registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
 ) -> dict[str, Any]:
-    """Return a registration as a JSON object; `expected_tre` is None where nothing is known."""
+    """Return a registration as a JSON object; `expected_tre` is None if it is unknown."""
     weights = registration.weights
     return {
         "type": registration.kind,
@@ -181,8 +181,8 @@ def registration_text(
     warnings = [warning.message for warning in registration.warnings]
     if stated is not None and stated.misfit < MISFIT_LEVEL:
         warnings.append(
-            "The residuals are larger than the stated FLE allow; the expected TRE, which is made "
-            "of these, is too small."
+            "The residuals are larger than the stated FLE allow; the expected TRE, which is "
+            "computed from these, is too small."
         )
     if warnings:
         lines += ["", *(f"Warning: {warning}" for warning in warnings)]
@@ -214,7 +214,7 @@ def _residual_table(registration: Registration, stated: StatedErrors | None) -> 
 def _weighting(
     arguments: argparse.Namespace, labels: tuple[str, ...]
 ) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Return the stated FLE in mm and the weights; None for what was not given."""
+    """Return the stated FLE in mm and the weights; each is None if not given."""
     if arguments.fle is not None:
         fle_mm = read_point_numbers(arguments.fle, "fle", labels, *FLE_RANGE_MM)
         return fle_mm, 1.0 / fle_mm**2

@@ -25,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--verify",
         action="store_true",
-        help="simulate the trial again and compare it with the journal, in place of showing it",
+        help="simulate the trial again and compare it with the journal instead of showing it",
     )
     parser.add_argument("--json", action="store_true", help="print the report of --verify as JSON")
     parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
@@ -39,7 +39,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show the trial, or print what comparing has found, and return the exit status.
+    """Show the trial, or print the result of the comparison, and return the exit status.
 
     Raises:
         InputError: the journal cannot be replayed, or an argument is not usable.
@@ -67,10 +67,10 @@ def _show(arguments: argparse.Namespace) -> int:
         raise InputError("--view-port must be a number from 0 to 65535.")
     from rastrainer_simulator.server.replay_server import show
 
-    def tell(where: str) -> None:
+    def announce(where: str) -> None:
         print(f"RASTrainer replay {where}", flush=True)
 
-    show(arguments.journal, arguments.scenario, port, arguments.window, tell)
+    show(arguments.journal, arguments.scenario, port, arguments.window, announce)
     return 0
 
 

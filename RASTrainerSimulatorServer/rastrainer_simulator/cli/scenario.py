@@ -1,4 +1,4 @@
-"""`rastrainer scenario`: from a patient's MRI or CT to something to train on."""
+"""`rastrainer scenario`: make, check and share scenarios."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     _add_head_options(build)
     build.add_argument("--no-skull", action="store_true", help="leave the skull out")
     build.add_argument("--no-volume", action="store_true", help="leave the images out")
-    _add_wishes(build)
+    _add_options(build)
     build.set_defaults(run=_build)
     tasks = parts.add_parser("tasks", help="propose tasks on a head that was made elsewhere")
     tasks.add_argument("draft", type=Path, metavar="DRAFT", help="folder with the head's draft")
-    _add_wishes(tasks)
+    _add_options(tasks)
     tasks.set_defaults(run=_tasks)
-    preview = parts.add_parser("preview", help="picture the head in a volume, to adjust it")
+    preview = parts.add_parser("preview", help="draw the head in a volume, to adjust it")
     preview.add_argument("volume", type=Path, metavar="VOLUME")
     preview.add_argument("picture", type=Path, metavar="PNG")
     _add_head_options(preview)
     preview.set_defaults(run=_preview)
-    check = parts.add_parser("check", help="say what is wrong with a scenario; status 1 if any")
+    check = parts.add_parser("check", help="list the errors of a scenario; status 1 if any")
     check.add_argument("folder", type=Path, metavar="DIR")
     check.set_defaults(run=_check)
     plan = parts.add_parser("plan", help="copy a scenario with other targets or trajectory")
@@ -60,14 +60,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     unpacking.add_argument("package", type=Path, metavar="ZIP")
     _add_library(unpacking)
     unpacking.set_defaults(run=_unpack)
-    listing = parts.add_parser("list", help="list the scenarios at hand")
+    listing = parts.add_parser("list", help="list the available scenarios")
     _add_library(listing)
     listing.set_defaults(run=_list)
 
 
 def _add_head_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--threshold", type=float, help="value that parts air from skin (default: found)"
+        "--threshold", type=float, help="value that separates air from skin (default: estimated)"
     )
     parser.add_argument(
         "--cut", type=float, metavar="S", help="height of the flat base, mm superior"
@@ -85,7 +85,7 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--title", help="default: the name of the new folder")
 
 
-def _add_wishes(parser: argparse.ArgumentParser) -> None:
+def _add_options(parser: argparse.ArgumentParser) -> None:
     _add_output(parser)
     _add_plan(parser)
     parser.add_argument("--source", help="where the images come from (default: the volume's name)")
@@ -98,12 +98,12 @@ def _add_wishes(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=[],
         metavar="MRK_JSON",
-        help="fiducials placed by hand: the trial run, Task 1, Task 2 …",
+        help="manually placed fiducials: the trial run, Task 1, Task 2 …",
     )
     parser.add_argument(
         "--check",
         action="store_true",
-        help="only say whether set-up, plan and placed fiducials can be used; make nothing",
+        help="only check whether set-up, plan and placed fiducials can be used",
     )
 
 
@@ -114,7 +114,7 @@ def _add_plan(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar=("NAME", "R", "A", "S"),
-        help="a planned target, RAS mm; may be given several times: the error is told at the first",
+        help="a planned target, RAS mm; may be repeated: the error is reported at the first",
     )
     parser.add_argument(
         "--trajectory",
@@ -126,25 +126,25 @@ def _add_plan(parser: argparse.ArgumentParser) -> None:
 
 def _build(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.head_process import head_process
-    from rastrainer_simulator.authoring.make import check_wishes, make_scenario
+    from rastrainer_simulator.authoring.make import check_options, make_scenario
     from rastrainer_simulator.authoring.scenario_options import options_of
 
     _clear_away_when_terminated()
-    wishes = options_of(arguments, arguments.volume.name)
+    options = options_of(arguments, arguments.volume.name)
     if arguments.output.exists() and any(arguments.output.iterdir()):
-        raise InputError(f"{arguments.output} is there already; name a folder that is new.")
-    options = _head_options(arguments)
-    options += ["--no-skull"] if arguments.no_skull or arguments.check else []
-    options += ["--no-volume"] if arguments.no_volume or arguments.check else []
-    with head_process(arguments.volume, options) as process:
+        raise InputError(f"{arguments.output} exists already; name a new folder.")
+    head_options = _head_options(arguments)
+    head_options += ["--no-skull"] if arguments.no_skull or arguments.check else []
+    head_options += ["--no-volume"] if arguments.no_volume or arguments.check else []
+    with head_process(arguments.volume, head_options) as process:
         head = process.head(lambda step, share: print_progress(step, 0.5 * share), print_warning)
         if arguments.check:
-            check_wishes(head, wishes, print_progress, print_warning)
+            check_options(head, options, print_progress, print_warning)
             print(ALL_RIGHT)
             return 0
         scenario = make_scenario(
             head,
-            wishes,
+            options,
             arguments.output,
             lambda step, share: print_progress(step, 0.5 + 0.5 * share),
             None if arguments.no_skull else process.whole,
@@ -159,16 +159,16 @@ def _build(arguments: argparse.Namespace) -> int:
 
 def _tasks(arguments: argparse.Namespace) -> int:
     from rastrainer.scenario.writer import read_draft
-    from rastrainer_simulator.authoring.make import check_wishes, make_scenario
+    from rastrainer_simulator.authoring.make import check_options, make_scenario
     from rastrainer_simulator.authoring.scenario_options import options_of
 
     _clear_away_when_terminated()
-    wishes, draft = options_of(arguments, "unknown"), read_draft(arguments.draft)
+    options, draft = options_of(arguments, "unknown"), read_draft(arguments.draft)
     if arguments.check:
-        check_wishes(draft, wishes, print_progress, print_warning)
+        check_options(draft, options, print_progress, print_warning)
         print(ALL_RIGHT)
     else:
-        make_scenario(draft, wishes, arguments.output, print_progress, warn=print_warning)
+        make_scenario(draft, options, arguments.output, print_progress, warn=print_warning)
     return 0
 
 
@@ -234,7 +234,7 @@ def _list(arguments: argparse.Namespace) -> int:
 
 
 def _clear_away_when_terminated() -> None:
-    """End as an error does, for Slicer cancels so: what is half made and what runs goes too."""
+    """Exit like an error on SIGTERM, by which Slicer cancels, so that everything is cleaned up."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
 
 

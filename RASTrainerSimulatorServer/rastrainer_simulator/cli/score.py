@@ -88,7 +88,7 @@ def mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
 
 
 def scores_json(scores: CohortScores) -> dict[str, Any]:
-    """Return the scores of one mode as a JSON object; what is not defined is None."""
+    """Return the scores of one mode as a JSON object; undefined values are None."""
     return {
         "overall": scores.overall,
         "equation_3_overall": scores.equation_3_overall,

@@ -1,4 +1,4 @@
-"""`rastrainer simulator`: the robot, the head and the trial, for Slicer and the views to join."""
+"""`rastrainer simulator`: the robot, the head and the trial, for Slicer and the views."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--speed", type=float, default=1.0, help="simulated seconds a second (default: 1)"
     )
     parser.add_argument(
-        "--seed", type=int, help="of the heads' poses (default: one that nobody can guess)"
+        "--seed", type=int, help="of the heads' poses (default: an unpredictable one)"
     )
     parser.add_argument(
         "--records",
@@ -85,7 +85,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--go-on",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="go on with the newest trial where it was interrupted; it waits, paused, to be "
+        help="resume the newest trial where it was interrupted; it is paused until it is "
         "resumed or aborted",
     )
     parser.add_argument(
@@ -105,7 +105,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the simulator until it is asked to stop and return the exit status.
+    """Run the simulator until it is stopped, and return the exit status.
 
     Raises:
         InputError: an argument, a file or the address cannot be used.

@@ -14,7 +14,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Add the subcommand to the parser of `rastrainer`."""
     parser = subparsers.add_parser(
         "verify",
-        help="tell whether journals of trials are intact, cut short or altered",
+        help="check whether journals of trials are intact, cut short or altered",
         description="Exit status: 0 all intact, 1 one cut short or altered, 2 one not a journal.",
     )
     parser.add_argument("journals", nargs="+", type=Path, metavar="JOURNAL")

@@ -20,7 +20,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "window",
         help="open the desktop window of a running simulator",
         description="Shows the robot, the head and the menus of a simulator that is running, and "
-        "sends it what is pressed. F11: full screen; F12: keep a picture. Not for clinical use.",
+        "sends it the user's input. F11: full screen; F12: save a picture. Not for clinical use.",
     )
     parser.add_argument(
         "--connect",

@@ -97,7 +97,7 @@ def covering_capsules(points: np.ndarray, spacing: float) -> tuple[Capsule, ...]
     if length <= _LONG * width:
         return (_fit(points, axes.T),)
     cut = along[:, 2].min() + length / 2.0
-    # Both halves reach over the cut, so that a triangle across it lies in them as a whole.
+    # Both halves reach over the cut, so that a triangle across it is completely inside them.
     halves = (along[:, 2] <= cut + spacing, along[:, 2] >= cut - spacing)
     return tuple(_fit(points[half], axes.T) for half in halves)
 

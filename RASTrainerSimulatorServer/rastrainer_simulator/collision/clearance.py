@@ -1,4 +1,4 @@
-"""How near the arm is to what it must not run into: the values of one check."""
+"""The clearances of the arm, and lower bounds of them as the arm moves."""
 
 from __future__ import annotations
 
@@ -11,20 +11,19 @@ import numpy as np
 from rastrainer_simulator.vectors import Vector
 
 FAR = 0.1
-"""Clearances of links, self and table are exact up to here, m; what is farther counts as FAR."""
+"""Clearances of links, self and table are exact up to this value, m, which is their maximum."""
 
 SHAFT_NEAR = 0.0015
-"""The shaft's clearance is exact up to here, m, and wherever it is less than the tip's: only then
-does it say more than the tip's does."""
+"""The shaft's clearance is exact up to this value, m, and where it is less than the tip's."""
 
 
 class Nearest(NamedTuple):
-    """The place of the head's surface that is nearest to the tip or to the shaft.
+    """The point of the head's surface that is nearest to the tip or to the shaft.
 
     Attributes:
         distance_m: signed clearance, m; below zero inside the head.
         point: on the surface, m.
-        normal: unit vector away from the head: the way in which the clearance grows.
+        normal: unit vector away from the head, along which the clearance grows.
         triangle: of the head's surface, by its number.
     """
 
@@ -65,7 +64,7 @@ class Clearance(NamedTuple):
 
     @property
     def shaft_m(self) -> float:
-        """Signed clearance of the tool without its tip to the head, m; at least so much if far."""
+        """Signed clearance of the tool without its tip to the head, m; a lower bound if far."""
         return max(self.tip_m, SHAFT_NEAR) if self.shaft is None else self.shaft.distance_m
 
     @property
@@ -75,7 +74,7 @@ class Clearance(NamedTuple):
 
     @property
     def without_tip_m(self) -> float:
-        """The least clearance of everything but the tip: a touch is possible where it is > 0."""
+        """The least clearance of everything but the tip: above 0, a touch is possible."""
         return min(self.shaft_m, self.links_m, self.self_m, self.table_m)
 
     @property
@@ -86,36 +85,36 @@ class Clearance(NamedTuple):
 
 
 _ROUGHLY_FAR = 0.2
-"""What is farther than this, m, by a rough bound is not looked at exactly."""
+"""Distances whose rough bound is above this, m, are not measured exactly."""
 
 _FEW = 4
-"""When more than this are due, the arm has jumped: a rough look at all at once is quicker."""
+"""If more than this are due, the arm has jumped: rough bounds of all are quicker."""
 
 _ROUNDING = 1e-6
 
 
 class DistanceBounds:
-    """Tells which of n distances may be below FAR.
+    """Keeps track of which of n distances may be below FAR.
 
-    A distance that is known to be d cannot be below FAR before the arm has moved by d − FAR: until
-    then nobody asks for it again. So most ticks look at nothing, and hardly any at many.
+    A distance d cannot fall below FAR before the arm has moved by d − FAR: until then it is not
+    measured again. So most ticks measure nothing, and hardly any tick many.
     """
 
     def __init__(self, count: int, closing: float = 1.0) -> None:
-        """Watch over `count` distances, each of which shrinks at most by `closing` m a metre."""
+        """Track `count` distances, each of which shrinks at most by `closing` m per metre."""
         self._count = count
         self._closing = closing
         self.forget()
 
     def forget(self) -> None:
-        """Let all be due: something else than the arm has moved."""
+        """Make all due, as after something else than the arm has moved."""
         self._due = [(-1.0, row) for row in range(self._count)]
 
     def due(self, travelled: float, rough: Callable[[], np.ndarray] | None = None) -> list[int]:
         """Return the rows that may be below FAR, rising; each must then be `put_off`.
 
         Args:
-            travelled: how far the arm has moved in all, m.
+            travelled: total motion of the arm, m.
             rough: gives a lower bound of each distance, (count,) float, m.
         """
         due, rows = self._due, []
@@ -146,12 +145,12 @@ class DistanceBounds:
         return best, nearest
 
     def put_off(self, row: int, distance: float, travelled: float) -> None:
-        """Let a row be due again once it may be below FAR; it is now at least `distance`, m."""
+        """Make a row due again when it may be below FAR; it is now at least `distance`, m."""
         until = travelled + (distance - FAR - _ROUNDING) / self._closing
         heappush(self._due, (until, row))
 
     def _roughly_near(self, rows: list[int], bounds: np.ndarray, travelled: float) -> list[int]:
-        """Put off what is roughly far of `rows` and of what else is due; return the others."""
+        """Put off those of `rows` and of the other due ones that are far; return the rest."""
         rows = rows + [row for moment, row in self._due if moment <= travelled]
         until = (travelled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
         far = (bounds >= _ROUGHLY_FAR).tolist()

@@ -1,4 +1,4 @@
-"""A closed triangle surface with the normals that tell inside from outside."""
+"""A closed triangle surface with normals that separate inside from outside."""
 
 from __future__ import annotations
 

@@ -20,10 +20,10 @@ from rastrainer_simulator.vectors import Vector
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What stands around: lengths in m, World.
+    """The table and the stand: lengths in m, World.
 
     Attributes:
-        table_height: of the table top; the robot's base stands on it and is not checked.
+        table_height: of the table top; the robot's base is fixed to it and is not checked.
         stand_radius: of the upright column under the middle of the head's base; 0: no stand.
     """
 
@@ -126,7 +126,7 @@ class SelfClearance:
 
 
 class Collision:
-    """Tells how near a robot is to the head, to itself, to the table and to the head's stand.
+    """Computes how near a robot is to the head, to itself, to the table and to the head's stand.
 
     It works in its own memory: each thread makes its own.
     """
@@ -160,7 +160,7 @@ class Collision:
         self.set_head_pose(np.eye(4))
 
     def set_head_pose(self, head_to_world: np.ndarray) -> None:
-        """Put the head, and the stand under it, where HeadToWorld (4, 4) float, m, says.
+        """Set the pose of the head, HeadToWorld (4, 4) float, m, and move the stand under it.
 
         Raises:
             InputError: the matrix is not a rigid transform.
@@ -186,11 +186,11 @@ class Collision:
         )
 
     def is_clear(self, link_to_world: Mapping[str, np.ndarray], clearance: float) -> bool:
-        """Tell whether the tip can be anywhere, as far as all else is concerned.
+        """Return whether everything but the tip keeps its clearance.
 
         The tool's shaft is off the head, and the links are at least `clearance`, m, from the head,
-        and the arm from itself, the table and the stand. It is what `check` would say, but at the
-        first that is too near no other is asked.
+        and the arm from itself, the table and the stand. Like `check`, but it stops at the first
+        one that is too near.
         """
         posed = self._arm.pose(link_to_world)
         travelled = self._travel(posed)

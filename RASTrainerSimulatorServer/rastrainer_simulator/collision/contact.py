@@ -50,7 +50,7 @@ class Moved:
         link_to_world: (4, 4) float, m, by the names of the links.
         clearance: of this posture.
         stopped_by: "links", "self" or "table" (rarely "tip" or "shaft", at the edge of the arm's
-            reach) where the motion was cut short because of it, else "". Sliding is no stop.
+            reach) that cut the motion short, else "". Sliding does not stop a motion.
     """
 
     q: Joints
@@ -62,7 +62,7 @@ class Moved:
 class Contact:
     """Keeps the arm out of the head, of itself, of the table and of the head's stand.
 
-    The same question has the same answer: what is kept from the last tick only saves time.
+    Equal calls give equal results: what is cached from the last tick only saves time.
     """
 
     def __init__(self, collision: Collision, kinematics: Kinematics) -> None:
@@ -83,10 +83,10 @@ class Contact:
         return self._last
 
     def move(self, q: Sequence[float], displacement: Vector, to_joints: ToJoints) -> Moved:
-        """Return where a motion from `q` ends that shall move the tip by `displacement`.
+        """Return where a motion from `q` ends that is to move the tip by `displacement`.
 
         The tip stops 0.01 mm above the head and slides along it, and so does the shaft. Where a
-        link, the table or the arm itself is in the way, the motion is cut short. What overlaps
+        link, the table or the arm itself is in the path, the motion is cut short. What overlaps
         already may move, but not deeper.
         """
         start = self.at(q)
@@ -97,16 +97,16 @@ class Contact:
 
     def _move(self, start: Moved, displacement: Vector, to_joints: ToJoints) -> Moved:
         tip = self._tip(start)
-        way = self._slide(start, tip, displacement)
+        path = self._slide(start, tip, displacement)
         for _ in range(_CORRECTIONS):
-            end = self.at(to_joints(subtract(way.position, tip)))
+            end = self.at(to_joints(subtract(path.position, tip)))
             broken = _broken(start.clearance, end.clearance)
             if broken not in ("tip", "shaft"):
                 break
-            corrected = _pushed_back(way, start, end, broken)
+            corrected = _pushed_back(path, start, end, broken)
             if corrected is None:
                 break
-            way = corrected
+            path = corrected
         return end if not broken else self._shortened(start, end, broken)
 
     def _slide(self, start: Moved, tip: Vector, displacement: Vector) -> Slide:
@@ -156,16 +156,16 @@ def _value(clearance: Clearance, part: str) -> float:
     return getattr(clearance, f"{part}_m")
 
 
-def _pushed_back(way: Slide, start: Moved, end: Moved, broken: str) -> Slide | None:
-    """Return the way with the overlap at its end taken back, None where that cannot be."""
+def _pushed_back(path: Slide, start: Moved, end: Moved, broken: str) -> Slide | None:
+    """Return the path with the overlap at its end undone, None if that is impossible."""
     nearest = end.clearance.tip if broken == "tip" else end.clearance.shaft
     assert nearest is not None, "what is broken was measured"
     gap = min(REST, _value(start.clearance, broken) + RECOVERY) - nearest.distance_m
-    planes = (*way.half_spaces, _shifted(nearest.normal, gap, way.position))
-    position = nearest_inside(way.position, planes)
+    planes = (*path.half_spaces, _shifted(nearest.normal, gap, path.position))
+    position = nearest_inside(path.position, planes)
     return None if position is None else Slide(position, planes)
 
 
 def _shifted(normal: Vector, gap: float, position: Vector) -> HalfSpace:
-    """Return the half-space that begins `gap` beyond a position along a normal."""
+    """Return the half-space that starts `gap` beyond a position along a normal."""
     return HalfSpace(normal, dot(normal, position) + gap)

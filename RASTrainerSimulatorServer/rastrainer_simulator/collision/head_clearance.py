@@ -1,4 +1,4 @@
-"""The arm's capsules against the head, without asking again about those that are far."""
+"""The clearance of the arm's capsules to the head, without querying those that are far."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ROUNDING = 1e-9
 
 
 class HeadClearance:
-    """Distances of the tip, the tool and the links to a head that stands somewhere in World.
+    """Distances of the tip, the tool and the links to a head with a pose in World.
 
     No point of a segment moves farther than the farther of its two ends, so a distance found
     earlier, less that motion, is a lower bound now. Only capsules whose bound is below the best
@@ -36,7 +36,7 @@ class HeadClearance:
         self.set_pose(np.eye(4))
 
     def set_pose(self, head_to_world: np.ndarray) -> None:
-        """Put the head where HeadToWorld (4, 4) float, m, says.
+        """Set the head's pose, HeadToWorld (4, 4) float, m.
 
         Raises:
             InputError: the matrix is not a rigid transform.
@@ -52,7 +52,7 @@ class HeadClearance:
         self._world_to_head[:3, :3] = rotation.T
         self._world_to_head[:3, 3] = -rotation.T @ pose[:3, 3]
         self.base = rotation @ self._head.base + pose[:3, 3]
-        """(3,) float: the middle of the head's base, World, m."""
+        """(3,) float: the center of the head's base, World, m."""
         self._middle = rotation @ self._head.middle + pose[:3, 3]
         self._head_to_world_rows = pose[:3].tolist()
         self._world_to_head_rows = self._world_to_head[:3].tolist()
@@ -61,7 +61,7 @@ class HeadClearance:
         self._distance_bounds.forget()
 
     def nearest_to_point(self, point: Vector) -> Nearest:
-        """Return the place of the head nearest to a point, World, m."""
+        """Return the point of the head nearest to a point, World, m."""
         return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
 
     def is_crossed(self, start: Vector, end: Vector) -> bool:
@@ -70,10 +70,7 @@ class HeadClearance:
         return self._head.is_crossed(_moved(rows, start), _moved(rows, end))
 
     def nearest_to_shaft(self, posed: PosedArm, limit: float) -> Nearest | None:
-        """Return the place of the head nearest to the tool behind its tip, World, m.
-
-        It is None where no place is nearer than `limit`.
-        """
+        """Return the point of the head nearest to the shaft, World, m; None beyond `limit`."""
         rows = range(self._arm.link_count, len(self._known))
         found, _ = self._nearest(posed, rows, self._bounds(posed, rows), limit)
         return None if found is None else self._in_world(found)
@@ -93,7 +90,7 @@ class HeadClearance:
         return (FAR, "") if found is None else (found.distance_m, self._arm.names[nearest])
 
     def are_links_off(self, posed: PosedArm, clearance: float) -> bool:
-        """Tell whether every link is at least so far, m, from the head."""
+        """Return whether every link keeps a clearance, m, to the head."""
         rows = range(self._arm.link_count)
         off_sphere = self._off_sphere(posed)
         bounds = list(map(max, off_sphere, self._bounds(posed, rows, off_sphere)))
@@ -102,12 +99,12 @@ class HeadClearance:
     def _bounds(
         self, posed: PosedArm, rows: Sequence[int], off_sphere: Sequence[float] = ()
     ) -> list[float]:
-        """Return below what the clearance of each of these capsules cannot be, m."""
+        """Return a lower bound of the clearance of each of these capsules, m."""
         bounds: list[float] = []
         for row in rows:
             known, start_then, end_then = self._known[row]
             if known == -math.inf:
-                # Not asked about since the head was put here: its sphere tells what is far.
+                # Not queried since the head was moved: use the bounding sphere.
                 off_sphere = off_sphere or self._off_sphere(posed)
                 bounds.append(off_sphere[row])
                 continue
@@ -116,21 +113,21 @@ class HeadClearance:
         return bounds
 
     def _off_sphere(self, posed: PosedArm) -> list[float]:
-        """Return how far each capsule is at least from the sphere about the head, m."""
+        """Return a lower bound of each capsule's distance to the head's bounding sphere, m."""
         away = np.linalg.norm(posed.middles - self._middle, axis=1)
         return (away - self._arm.reach - self._head.radius).tolist()
 
     def _nearest(
         self, posed: PosedArm, rows: Sequence[int], bounds: list[float], limit: float
     ) -> tuple[Nearest | None, int]:
-        """Return what is nearest to some of the capsules, and to which, if nearer than `limit`."""
+        """Return the point nearest to some capsules, if nearer than `limit`, and that capsule."""
         best, best_row = None, -1
         for bound, row in sorted(zip(bounds, rows, strict=True)):
             if bound >= limit:
                 break
             found = self._query(posed, row)
             distance = found.distance_m
-            # Of two equally near the first counts, in whatever order they were looked at.
+            # Of two equally near capsules the first counts, whatever the order of the queries.
             if distance < limit or (distance == limit and row < best_row):
                 best, best_row, limit = found, row, distance
         return best, best_row

@@ -30,7 +30,7 @@ class HeadSurface:
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         """Take (n, 3) float vertices and (m, 3) int triangles.
 
-        The same surface once more is there at once.
+        The last surface is cached.
 
         Raises:
             InputError: the surface is not closed, or holds unusable numbers.
@@ -39,7 +39,7 @@ class HeadSurface:
         vertices = self._surface.vertices
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]
         self.base = (base.min(axis=0) + base.max(axis=0)) / 2.0
-        """(3,) float: the middle of the lowest millimetre, on which the head stands."""
+        """(3,) float: the middle of the lowest millimetre, on which the head is."""
         self.middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
         """(3,) float: the middle of the sphere around the whole head."""
         self.radius = float(np.linalg.norm(vertices - self.middle, axis=1).max())

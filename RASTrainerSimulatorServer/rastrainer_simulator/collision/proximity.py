@@ -23,12 +23,12 @@ from rastrainer_simulator.vectors import Vector, dot, subtract
 
 @dataclass(frozen=True)
 class ProximitySettings:
-    """Where the states begin and end, in m; each ends later than it begins, so that none flickers.
+    """Where the states start and end, in m; with hysteresis, so that none flickers.
 
     Attributes:
         near: radius of the sphere about the tip within which the head is in proximity.
         far: clearance of the tip at which proximity ends.
-        touching: clearance of tip or shaft at which contact begins.
+        touching: clearance of tip or shaft at which contact starts.
         released: clearance of the whole tool at which contact ends.
     """
 
@@ -52,7 +52,7 @@ def next_proximity(
 
 
 DEEPEST = 0.010
-"""m: pressing farther in counts no more."""
+"""Largest depth, m."""
 
 
 class Pressing:
@@ -69,7 +69,7 @@ class Pressing:
         self._is_in_contact = False
 
     def end(self) -> None:
-        """Take note that the tool is not in contact."""
+        """Note that the tool is not in contact."""
         self.depth = 0.0
         self._is_in_contact = False
 
@@ -80,13 +80,13 @@ class Pressing:
         clearance: Clearance,
         to_goal: Vector | None = None,
     ) -> None:
-        """Take note of a tick at whose end the tool is in contact.
+        """Note a tick at whose end the tool is in contact.
 
         Args:
-            commanded: displacement of the tip that the operator wanted, World.
-            carried_out: displacement of the tip that came of it, World.
+            commanded: displacement of the tip, World.
+            carried_out: actual displacement of the tip, World.
             clearance: at the tick's end; the part of the tool that is nearer to the head counts.
-            to_goal: from the tip to where a commanded move shall end, None without an end.
+            to_goal: from the tip to the end of a commanded move, None without an end.
         """
         if not self._is_in_contact:
             self._is_in_contact, self.deepest = True, 0.0
@@ -97,7 +97,7 @@ class Pressing:
         if outward >= 0.0:
             self.depth = max(self.depth - outward, 0.0)
             return
-        # What was free and yet not gone, as at the limit of a joint's speed, is not the skin's.
+        # A free displacement that was not carried out, as at a joint's speed limit, is no pressing.
         free = max(nearest.distance_m - REST, 0.0)
         held_back = dot(subtract(carried_out, commanded), nearest.normal) - free
         depth = self.depth + max(min(-outward, held_back), 0.0)

@@ -29,7 +29,7 @@ _DECIMALS = 9
 
 @dataclass(frozen=True)
 class LinkShape:
-    """One link: its capsules in its own frame; `joint` tells how many joints are before it."""
+    """One link: its capsules in its own frame; `joint` is the number of joints before it."""
 
     name: str
     joint: int
@@ -140,8 +140,8 @@ _SLICE = 0.0005
 def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Capsule, ...]:
     """Return a row of capsules about the z axis that hold all `points` (k, 3) float with z ≥ start.
 
-    The tool's tip is at the origin: of all ways to cut the tool into `count` pieces, the one is
-    taken whose pieces look slenderest from there, so that a taper stays a taper. `points` are
+    The tool's tip is at the origin. The tool is cut into `count` pieces such that they look
+    slenderest from there, so that a taper stays a taper. `points` are
     `surface_points` spaced by at most half a millimetre.
 
     Raises:

@@ -104,10 +104,11 @@ def slide(
     displacement: Vector,
     others: Sequence[HalfSpace],
 ) -> Slide:
-    """Return the way of a tip at `tip` (World, m) that shall move by `displacement`.
+    """Return the path of a tip at `tip` (World, m) that is to move by `displacement`.
 
     `here` is the head's surface nearest to the tip, `others` what limits the tip besides. At each
-    step the tip goes toward the point nearest to its goal that is on the free side of the surface's
+    step the tip moves toward the point nearest to its goal that is on the free side of the
+    surface's
     tangent planes: at the tip, and wherever a trial ended inside. In a groove two planes hold it,
     in a pit three, so that it comes to rest there instead of jumping from wall to wall (the god
     object of Zilles and Salisbury 1995, 10.1109/IROS.1995.525876).
@@ -139,13 +140,13 @@ def _step(
     longest: float,
     rest: float,
 ) -> tuple[Vector, Nearest, tuple[HalfSpace, ...]] | None:
-    """Return where one step toward the goal may end, what is nearest there, and what limits it."""
+    """Return the end of one step toward the goal, what is nearest there, and what limits it."""
     for _ in range(_TRIALS):
         target = nearest_inside(goal, planes)
         if target is None:
             break
         short = add(position, shortened(subtract(target, position), longest))
-        # From a place nearer than `rest`, part of the way is only part of the way out.
+        # From a point nearer than `rest`, part of the displacement only leads part of the way out.
         trial = nearest_inside(short, planes) or short
         there = nearest_to_point(trial)
         if there.distance_m >= rest - _EXACT:

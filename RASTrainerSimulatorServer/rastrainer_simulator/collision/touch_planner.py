@@ -27,14 +27,14 @@ NOT_ALONG = "The robot cannot hold its tool along the whole trajectory; choose a
 
 
 class PlanAnswer(NamedTuple):
-    """Whether a plan can be carried out, and a sentence that says why not, empty where it can."""
+    """Whether a plan can be carried out, and if not, a sentence about the reason."""
 
     reachable: bool
     reason: str
 
 
 class PlanReach:
-    """Tells whether the robot reaches a target, and holds its tool along a trajectory to it."""
+    """Judges whether the robot reaches a target with its tool along a trajectory to it."""
 
     def __init__(self, model: RobotModel, kinematics: Kinematics, collision: Collision) -> None:
         self._home = model.home
@@ -43,11 +43,11 @@ class PlanReach:
         self._collision = collision
 
     def judge(self, target: Sequence[float], entry: Sequence[float] | None) -> PlanAnswer:
-        """Return whether a plan can be carried out with the head where it stands.
+        """Return whether a plan can be carried out in the present pose of the head.
 
         Args:
             target: (3,) float, World, m.
-            entry: (3,) float, World, m: where the trajectory begins; None leaves the tool's
+            entry: (3,) float, World, m: where the trajectory starts; None leaves the tool's
                 direction free.
         """
         if not self._fabrik.solve(target, q_start=self._home).converged:
@@ -86,7 +86,7 @@ SWIVELS_DEG = (0.0, 60.0, -60.0)
 
 @dataclass(frozen=True)
 class PlannedTouch:
-    """A way to touch a place.
+    """A planned touch of a point.
 
     Attributes:
         q: seven joint angles, rad.
@@ -106,7 +106,7 @@ class TouchPlanner:
 
     Args:
         model: the robot.
-        collision: knows the head, and where it stands.
+        collision: has the head and its pose.
         clearance: of the links to the head, to each other and to the table, m. The tool's shaft
             need only be clear of the head: next to the tip it cannot be farther away.
     """
@@ -115,12 +115,12 @@ class TouchPlanner:
         self._collision = collision
         self._clearance = clearance
         self._kinematics = make_kinematics(model)
-        # What one pass cannot hold no other can: the rest would only look for what comes nearest.
+        # What the first pass cannot hold no other can: the rest would only approach it.
         self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
         self._starts = [_swiveled(model.home, degrees) for degrees in SWIVELS_DEG]
 
     def touch(self, position: np.ndarray, normal: np.ndarray) -> PlannedTouch | None:
-        """Return a touch of a place of the skin, None where there is none.
+        """Return a touch of a point of the skin, None if there is none.
 
         The least leaning of `LEANING_DEG` that works is taken.
 

@@ -1,4 +1,4 @@
-"""The trial that was open when a simulator ended: what its journal says about where to resume it.
+"""The trial that was open when a simulator ended, and where to resume it by its journal.
 
 The state machine of the trial is led through the recorded commands again; the arm takes the last
 recorded posture. Nothing is simulated, so that it takes no time and no version of the arm's
@@ -43,7 +43,7 @@ class InterruptedTrial:
     """Where a trial is to be resumed.
 
     Attributes:
-        entries: of the journal so far.
+        entries: of the journal.
         revision_before: of the training state before the trial.
         steps: the commands that were carried out, each with its moment; the last one pauses.
         point: the tick and the time of the last line, and the view as last chosen.
@@ -69,7 +69,7 @@ class InterruptedTrial:
 
     @classmethod
     def of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
-        """Return what the entries of a journal say; None where no trial is left open.
+        """Read the entries of a journal; None if no trial is open.
 
         Raises:
             InputError: the entries are not those of a trial.
@@ -106,7 +106,7 @@ class InterruptedTrial:
 
 
 def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | None:
-    """Return the journal of the trial begun last in a folder, and where to resume it.
+    """Return the journal of the newest trial in a folder, and where to resume it.
 
     None where that trial was registered or aborted: who has begun another trial since has left an
     older one behind.
@@ -125,7 +125,7 @@ def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | 
 
 
 def recorded_command(entry: Mapping[str, Any]) -> OperatorCommand:
-    """Return a recorded command; its arguments are checked anew, as the file may be forged.
+    """Return a recorded command; its arguments are checked, as the file may be forged.
 
     Raises:
         InputError: they are not those of the protocol.

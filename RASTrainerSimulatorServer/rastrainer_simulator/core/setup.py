@@ -37,7 +37,7 @@ MOST_BYTES = 2**20
 
 
 def read_prepared(urdf: Path) -> Mapping[str, Any] | None:
-    """Return what is written beside a URDF, None where nothing is or where it is out of date."""
+    """Return the prepared robot beside a URDF, None if there is none or it is out of date."""
     try:
         prepared = read_json(urdf.parent / PREPARED_NAME, MOST_BYTES)
         return prepared if prepared["sha256"] == _fingerprint(urdf) else None
@@ -144,7 +144,7 @@ class SimulationSetup:
         robot: the arm and its tool.
         shape: the arm and its tool as collisions see them.
         settings: how it behaves.
-        scenario_sha256: of what a trial depends on, so that a journal tells which it was.
+        scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
     """
 
     scenario: Scenario
@@ -154,7 +154,7 @@ class SimulationSetup:
     scenario_sha256: str = ""
 
     def description(self) -> dict[str, Any]:
-        """Return what a journal's header tells of it, ready for JSON."""
+        """Return the fields of a journal's header, ready for JSON."""
         return {
             "scenario": {"name": self.scenario.name, "sha256": self.scenario_sha256},
             "robot": self.robot.name,
@@ -199,8 +199,8 @@ def _robot_and_shape(
 def scenario_sha256(scenario: Scenario) -> str:
     """Return one hash of what a trial depends on: `scenario.json`, the head and the fiducials.
 
-    The volume, which the simulator never reads, is none of it: journals that were recorded before
-    a scenario had one stay its own.
+    It excludes the volume, which the simulator never reads: journals that were recorded before a
+    scenario had one remain valid.
     """
     whole = hashlib.sha256()
     for content in (_without_volume(scenario.folder / FILE_NAME), scenario.head_mesh.read_bytes()):

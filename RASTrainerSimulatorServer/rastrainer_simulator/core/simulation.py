@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
 
 BEHIND_THE_TOOL = ("links", "self", "table")
-"""Parts of the arm that the trainee does not steer and that may still be in the way."""
+"""Parts of the arm that the trainee does not steer but that may collide."""
 
 
 class Simulation:
@@ -87,9 +87,9 @@ class Simulation:
         """The seed of the head's pose in the present trial: as secret as the pose."""
         return self._training.trial_seed
 
-    def continue_from(self, point: StartingPoint) -> None:
+    def restart_from(self, point: StartingPoint) -> None:
         """Count ticks, time and revisions on from another simulation, before the first step."""
-        self._training.continue_from(point.revision)
+        self._training.restart_from(point.revision)
         self._view.camera = point.camera or self._view.camera
         self.state = self._state(point.tick, point.sim_time, Motion.NONE)
 
@@ -98,7 +98,7 @@ class Simulation:
     ) -> None:
         """Resume a trial of a journal, in place of any other, before the next step.
 
-        The arm stands as in the last sample: where the trainee has left it. `point` is where ticks,
+        The arm is placed as in the last sample. `point` is where ticks,
         time and view continue if not from the journal's last line.
         """
         point = point or interrupted.point
@@ -174,7 +174,7 @@ class Simulation:
         ]
 
     def _motion_request(self, dt: float, operator_input: OperatorInput) -> MotionRequest:
-        """Return what the operator wants; while the trial is paused the arm stands still."""
+        """Return the requested motion; while the trial is paused the arm does not move."""
         if self._training.state.phase is Phase.PAUSED:
             stopped = self._teleoperation.stop()
             return MotionRequest(Motion.NONE, ended=MotionOutcome.STOPPED if stopped else None)

@@ -42,7 +42,7 @@ from rastrainer_simulator.training.true_error import Truth
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
 COMMANDS_PER_TICK = 16
-TOO_MANY_STARTS = "Trials are begun too often: wait some seconds, then begin it again."
+TOO_MANY_STARTS = "Trials are started too often: wait some seconds, then start again."
 TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
@@ -68,11 +68,10 @@ _log = logging.getLogger(__name__)
 
 
 class ControlLoop:
-    """Runs a simulation in a thread of its own.
+    """Runs a simulation in its own thread.
 
-    Every tick has its time, counted from the first, so that delays do not add up; a tick that is
-    late is counted in `statistics`. What a trial has gained is published only once it is on the
-    disk; only then is its answer given.
+    Tick times are counted from the first tick, so that delays do not add up; late ticks are counted
+    in `statistics`. Changes of a trial are published and answered only when they are on the disk.
     """
 
     def __init__(
@@ -84,7 +83,7 @@ class ControlLoop:
         interrupted: JournalReading | None = None,
         trial_limits: TrialLimits | None = None,
     ) -> None:
-        """Prepare the loop; `start` sets it going.
+        """Prepare the loop; `start` starts it.
 
         Args:
             simulation: belongs to the loop from now on.
@@ -92,7 +91,7 @@ class ControlLoop:
             rate_hz: ticks in a simulated second.
             speed: simulated seconds in a second; None runs as fast as the machine can.
             interrupted: journal of a trial that the simulation has loaded, which waits for Resume.
-            trial_limits: how often a trial may be begun, whoever asks; None for the default.
+            trial_limits: how often a trial may be started; None for the default.
         """
         self._simulation = simulation
         self._dt = 1.0 / rate_hz
@@ -124,7 +123,7 @@ class ControlLoop:
         self._is_stopping = threading.Event()
         self._is_over = False
         self.latest: SimulationState = self._state
-        """What may be told of the last tick; the same as the subscribers got."""
+        """The last published state."""
 
     def __enter__(self) -> ControlLoop:
         self.start()
@@ -134,7 +133,7 @@ class ControlLoop:
         self.stop()
 
     def start(self) -> None:
-        """Begin to tick."""
+        """Start ticking."""
         self._thread.start()
 
     def stop(self) -> None:
@@ -145,7 +144,7 @@ class ControlLoop:
 
     @property
     def is_running(self) -> bool:
-        """Whether it ticks."""
+        """Whether it is ticking."""
         return self._thread.is_alive()
 
     @property
@@ -173,18 +172,18 @@ class ControlLoop:
         return self._archive.unacknowledged()
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Have `callback` called in the loop's thread after each tick; it must return at once.
+        """Call `callback` in the loop's thread after each tick; it must return immediately.
 
-        Returns what ends the subscription.
+        Returns a function that unsubscribes.
         """
         return self._subscribers.add(callback)
 
     def hold_sticks(self, sticks: OperatorInput) -> None:
-        """Take the sticks as they are from now on; the commands in it are ignored."""
+        """Hold the sticks like this until the next call; the commands in it are ignored."""
         self._sticks = replace(sticks, commands=())
 
     def note_display(self, report: DisplayReport | ViewReport) -> None:
-        """Have the trial's journal tell what is seen of it; the simulation takes no note."""
+        """Record in the trial's journal what is seen of it."""
         self._displayed.append(report)
 
     def submit(
@@ -192,8 +191,8 @@ class ControlLoop:
     ) -> Future[Answer]:
         """Carry out a command in one of the next ticks.
 
-        `arguments` have passed `rastrainer.protocol.check_arguments`. The answer comes once what it
-        says is on the disk.
+        `arguments` have passed `rastrainer.protocol.check_arguments`. The answer comes when the
+        change is on the disk.
         """
         ticket, future = self._answers.expect()
         arguments = dict(arguments or {})
@@ -206,7 +205,7 @@ class ControlLoop:
         return future
 
     def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
-        """Go on with another simulation, such as one of another scenario, between two trials."""
+        """Continue with another simulation, such as one of another scenario, between two trials."""
         ticket, future = self._answers.expect()
         self._successor = (simulation, ticket)
         return future
@@ -223,7 +222,7 @@ class ControlLoop:
     def _tick_on_time(self) -> None:
         due = time.monotonic()
         while not self._is_stopping.is_set():
-            self._punctuality.began(time.monotonic() - due if self._period else 0.0)
+            self._punctuality.count(time.monotonic() - due if self._period else 0.0)
             self._tick()
             due += self._period
             behind = time.monotonic() - due
@@ -235,7 +234,7 @@ class ControlLoop:
 
     def _tick(self) -> None:
         if self._successor is not None:
-            self._succeed(*self._successor)
+            self._switch_simulation(*self._successor)
         commands = self._commands()
         operator_input = replace(self._sticks, commands=commands) if commands else self._sticks
         while self._displayed:
@@ -243,11 +242,11 @@ class ControlLoop:
         result = self._simulation.step(self._dt, operator_input)
         written = self._recorder.record(self._simulation, self._state, operator_input, result)
         self._state = result.state
-        told, self._refused = self._held.pass_on(result, written)
-        self._tell(told)
+        published, self._refused = self._held.publishable(result, written)
+        self._publish(published)
 
     def _commands(self) -> tuple[OperatorCommand, ...]:
-        """Take what has arrived; a change of the trial waits until the last is on the disk."""
+        """Return the next commands; a change of the trial waits until the last is on the disk."""
         commands: list[OperatorCommand] = []
         if self._refused is not None:
             arguments = {"revision": self._held.revision, "reason": self._refused}
@@ -259,7 +258,7 @@ class ControlLoop:
                 break
             self._arrived.popleft()
             if self._is_for_the_archive(command):
-                self._ask_archive(command)
+                self._query_archive(command)
                 continue
             if self._is_start_too_many(command):
                 self._answers.give(Answer(command.ticket, False, TOO_MANY_STARTS))
@@ -270,7 +269,7 @@ class ControlLoop:
         return tuple(commands)
 
     def _is_start_too_many(self, command: OperatorCommand) -> bool:
-        """Return whether a command would begin a trial too soon after others."""
+        """Return whether a command would start a trial too soon after others."""
         if command.name != CommandName.START_TASK or self._is_trial_open:
             return False
         return not self._starts.allows(self._state.sim_time)
@@ -291,10 +290,10 @@ class ControlLoop:
             return not is_present
         return not is_present or training.phase in FINISHED_PHASES
 
-    def _ask_archive(self, command: OperatorCommand) -> None:
+    def _query_archive(self, command: OperatorCommand) -> None:
         times = stamp(self._state.tick, self._state.sim_time)
 
-        def ask() -> None:
+        def query() -> None:
             try:
                 data = self._archive.answer(command.name, command.arguments, times)
             except RASTrainerError as error:
@@ -305,28 +304,28 @@ class ControlLoop:
             else:
                 self._answers.give(Answer(command.ticket, True, data=data))
 
-        self._writer.submit(ask)
+        self._writer.submit(query)
 
-    def _succeed(self, simulation: Simulation, ticket: int) -> None:
+    def _switch_simulation(self, simulation: Simulation, ticket: int) -> None:
         self._successor = None
         if self._held.is_waiting or self._is_trial_open:
             self._answers.give(Answer(ticket, False, TRIAL_IS_OPEN))
             return
-        simulation.continue_from(StartingPoint.after(self._state))
+        simulation.restart_from(StartingPoint.after(self._state))
         self._simulation = simulation
         self._answers.give(Answer(ticket, True))
 
-    def _tell(self, result: StepResult) -> None:
+    def _publish(self, result: StepResult) -> None:
         self.latest = result.state
         for answer in result.answers:
             self._answers.give(answer)
         self._subscribers.publish(result)
 
     def _finish(self) -> None:
-        """Write all, answer what was on its way to the disk, and refuse what came too late."""
+        """Write everything, answer the commands that it completes, and refuse all others."""
         self._recorder.stop(self._state)
         self._writer.shutdown(wait=True)
-        for answer in self._held.pass_on(StepResult(self._state), None)[0].answers:
+        for answer in self._held.publishable(StepResult(self._state), None)[0].answers:
             self._answers.give(answer)
         self._is_over = True
         self._answers.refuse_all(SHUTTING_DOWN)

@@ -1,11 +1,11 @@
-"""How punctual the control loop is; nothing that was missed is hidden."""
+"""How punctual the control loop is, including ticks that it missed."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 LATE_S = 0.001
-"""A tick that begins so much after its time counts as late."""
+"""A tick that starts this much after its time counts as late."""
 
 
 @dataclass(frozen=True)
@@ -14,7 +14,7 @@ class LoopStatistics:
 
     Attributes:
         ticks: carried out.
-        late: of these, begun more than 1 ms after their time.
+        late: of these, started more than 1 ms after their time.
         skipped: never carried out, because the loop had fallen too far behind: the simulated
             clock has lost them.
         worst_delay_s: the longest time by which a tick was late.
@@ -50,8 +50,8 @@ class Punctuality:
         self._skipped = 0
         self._worst = 0.0
 
-    def began(self, delay: float) -> None:
-        """Count a tick that begins `delay` seconds after its time."""
+    def count(self, delay: float) -> None:
+        """Count a tick that starts `delay` seconds after its time."""
         self._ticks += 1
         if delay > LATE_S:
             self._late += 1

@@ -23,7 +23,7 @@ _WINDOWS_PRIORITY = {FIRST: 15, SECOND: 2}  # TIME_CRITICAL, HIGHEST
 
 
 def sleep_until(moment: float) -> None:
-    """Return at `moment` (s, `time.monotonic`), or at once if it has passed."""
+    """Return at `moment` (s, `time.monotonic`), or immediately if it has passed."""
     remaining = moment - time.monotonic()
     if remaining > 0.0:
         time.sleep(remaining)
@@ -60,15 +60,15 @@ def raise_thread_priority() -> None:
 
 
 def is_real_time_permitted() -> bool:
-    """Tell whether a system with `SCHED_FIFO` lets the control loop run before ordinary threads."""
-    # Tried in a thread that ends with it: nothing has to be taken back.
+    """Return whether a system with `SCHED_FIFO` lets the loop run before ordinary threads."""
+    # Tried in a thread that ends with it, so that nothing has to be undone.
     with ThreadPoolExecutor(max_workers=1) as pool:
         return pool.submit(set_real_time, FIRST).result()
 
 
 @contextlib.contextmanager
 def _in_line(priority: int) -> Iterator[None]:
-    """Ask for real-time priority; Linux grants it to root and up to what `ulimit -r` tells."""
+    """Request real-time priority; Linux grants it to root and up to the limit of `ulimit -r`."""
     if sys.platform == "win32":
         before = _set_windows_priority(_WINDOWS_PRIORITY[priority])
         try:
@@ -91,7 +91,7 @@ def _in_line(priority: int) -> Iterator[None]:
 
 
 def set_real_time(priority: int) -> bool:
-    """Set the priority of this thread, and tell whether the system permits it."""
+    """Set the priority of this thread; return whether the system permits it."""
     # What the thread starts, such as the window, stays ordinary.
     policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
     try:

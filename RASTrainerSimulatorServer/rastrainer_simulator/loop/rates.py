@@ -28,13 +28,13 @@ class RateLimit:
 
 @dataclass(frozen=True)
 class TrialLimits:
-    """Limits of the trials, whoever begins them; further ones are refused.
+    """Limits of all trials; further ones are refused.
 
-    Each makes a journal, and to begin it is as much work as several ticks.
+    Each makes a journal, and its start takes as long as several ticks.
 
     Attributes:
-        starts_per_s: trials that may be begun in a simulated second, on average, and
-        starts_at_once: so many at once after a pause.
+        starts_per_s: trials that may be started in a simulated second, on average.
+        starts_at_once: trials that may be started at once after a pause.
     """
 
     starts_per_s: float = 0.2
@@ -48,7 +48,7 @@ _SAVED_AT_MOST_S = 0.02
 class AsyncRateLimiter:
     """Lets `per_s` pass in a second on average, and as many at once after a quiet second.
 
-    It belongs to one event loop. Who waits keeps nobody else from being served, and costs nothing.
+    It belongs to one event loop. A waiting task does not block the others.
     """
 
     def __init__(self, per_s: float) -> None:
@@ -64,7 +64,7 @@ class AsyncRateLimiter:
 
 
 class Pacer:
-    """Says when the next of `hz` moments a second has come; never with 0 Hz."""
+    """Times events at `hz` per second; none at 0 Hz."""
 
     def __init__(self, hz: float):
         self._period = 1.0 / hz if hz > 0 else math.inf
@@ -86,11 +86,10 @@ class Pacer:
 
 
 class ReadingBudget:
-    """Time to spend on a client's bytes: it grows steadily, and debts are waited for.
+    """Time to spend on a client's bytes: it grows steadily, and a debt makes the client wait.
 
-    A client that sends what is costly to read or much of it is thus read later, and never keeps
-    the control loop from its ticks. A new client begins with nothing saved, so that connecting
-    anew gains nothing.
+    A client that sends much, or what is costly to read, is read later and never delays the control
+    loop. A new client has nothing saved, so that connecting again gains nothing.
     """
 
     def __init__(self, now: float):

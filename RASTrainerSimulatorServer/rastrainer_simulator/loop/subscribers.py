@@ -13,16 +13,16 @@ T = TypeVar("T")
 
 
 class Subscribers(Generic[T]):
-    """Callbacks that are given everything that is published, in the publishing thread.
+    """Callbacks that are called with every published item, in the publishing thread.
 
-    They may be added and removed meanwhile, also from other threads.
+    They may be added and removed at any time, also from other threads.
     """
 
     def __init__(self) -> None:
         self._callbacks: tuple[Callable[[T], None], ...] = ()
 
     def add(self, callback: Callable[[T], None]) -> Callable[[], None]:
-        """Call `callback` with what is published from now on; returns what ends that."""
+        """Call `callback` with every further item; return a function that unsubscribes."""
         self._callbacks = (*self._callbacks, callback)
 
         def remove() -> None:
@@ -57,6 +57,6 @@ class PendingAnswers:
             future.set_result(answer)
 
     def refuse_all(self, sentence: str) -> None:
-        """Answer everything that still waits with a refusal."""
+        """Refuse everything that still waits for an answer."""
         for ticket in tuple(self._futures):
             self.give(Answer(ticket, False, sentence))

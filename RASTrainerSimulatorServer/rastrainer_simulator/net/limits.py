@@ -22,8 +22,8 @@ class LinkLimits:
     """Limits of the OpenIGTLink server; the largest message is `rastrainer.igtl`'s own limit.
 
     Attributes:
-        clients: connections at once; one more takes the place of the oldest that has never sent a
-            message, and is closed at once where all have.
+        clients: connections at a time; a further one replaces the oldest that has never sent a
+            message, and is closed immediately if all have.
         new_clients_per_s: connections that are taken in a second; further ones wait.
         message_bytes: body of a message that is waited for; a longer one is passed over.
         reading_share: of one core for reading; the connections share it evenly.
@@ -34,7 +34,7 @@ class LinkLimits:
             brings the rest of it at less than
         slowest_bytes_per_s: bytes a second.
         silent_peer_s: time after which a peer is dropped whose machine does not answer any more.
-        buffer_bytes: what is handed to the operating system ahead of a client that reads slowly.
+        buffer_bytes: passed to the operating system ahead of a client that reads slowly.
         waiting_messages: messages, and
         waiting_bytes: bytes that may wait for a client; one more drops it.
         commands_at_once: commands of one client that the control loop is given at once.
@@ -67,8 +67,8 @@ class ViewLimits:
 
     Attributes:
         views: streams at once; further ones are refused.
-        connections: of any kind at once; one more takes the place of the oldest that has shown no
-            key, and is closed at once where all have.
+        connections: of any kind at a time; a further one replaces the oldest that has shown no
+            key, and is closed immediately if all have.
         new_connections_per_s: that are taken in a second; further ones wait.
         requests_per_s: of all connections together; further ones wait for their turn.
         sessions: keys that are remembered; the oldest is forgotten.
@@ -80,7 +80,7 @@ class ViewLimits:
         lost_s: after which a view that reported its frames every second counts as not seen.
         state_hz: how often views are sent what moves.
         waiting_events: events that may wait for a view; one more drops it.
-        buffer_bytes: what is handed to the operating system ahead of a view that reads slowly.
+        buffer_bytes: passed to the operating system ahead of a view that reads slowly.
         gone_s: time without any sign of life after which a view counts as gone.
     """
 
@@ -110,7 +110,7 @@ class ServerLimits:
     Attributes:
         clients: those over OpenIGTLink.
         views: the window, browsers and headsets.
-        trials: those that any of these begin.
+        trials: started by any of these.
     """
 
     clients: LinkLimits = dataclasses.field(default_factory=LinkLimits)
@@ -122,7 +122,7 @@ def read_limits(folder: Path) -> ServerLimits:
     """Return the limits that the file in a folder sets; what it leaves out is as by default.
 
     Raises:
-        InputError: the file cannot be read, or sets what is no limit.
+        InputError: the file cannot be read, or sets an unknown or invalid limit.
     """
     path = folder / LIMITS_FILE
     if not path.exists():

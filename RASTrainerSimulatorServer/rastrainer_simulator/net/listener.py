@@ -12,7 +12,7 @@ from typing import Any
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
 
 MOST_HANDSHAKES = 32
-"""Peers that may be agreeing on a key at once."""
+"""Most TLS handshakes at a time."""
 
 _BACKLOG = 128
 _NO_DESCRIPTORS_LEFT_S = 1.0
@@ -34,7 +34,7 @@ class Listener:
         """Make a listener, in the event loop's thread; nothing listens yet.
 
         Args:
-            make_protocol: makes who talks to a new connection.
+            make_protocol: makes the protocol of a new connection.
             per_s: connections that are taken in a second.
             tls: the certificate, where the connections are encrypted, and
             handshake_s: how long a peer may take to agree on a key.
@@ -65,7 +65,7 @@ class Listener:
         return sockets[0].getsockname()[1]
 
     def close(self) -> None:
-        """Take no more connections; those that are there stay."""
+        """Accept no more connections; existing ones remain."""
         for task in self._tasks:
             task.cancel()
 
@@ -118,7 +118,7 @@ def listening_socket(family: int, address: tuple) -> socket.socket:
     try:
         listening.setblocking(False)
         # On Windows another program could else take over the port of one that listens. Elsewhere
-        # it could not, and a port that was left a moment ago shall be free.
+        # it could not, and a port that was left a moment ago should be free.
         option = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
         listening.setsockopt(socket.SOL_SOCKET, option, 1)
         if family == socket.AF_INET6:

@@ -1,4 +1,4 @@
-"""The control loop's states, handed over to the event loop's thread without waiting."""
+"""Pass the control loop's states to the event loop's thread without waiting."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class StateSource(Protocol):
         """How punctual the control loop has been."""
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Have `callback` called with each state, in any thread; returns what ends that."""
+        """Call `callback` with each state, in any thread; return a function that unsubscribes."""
 
 
 class StateFeed:
-    """Subscriber of the control loop that hands over the newest state whenever one is due."""
+    """Subscriber of the control loop that delivers the newest state whenever one is due."""
 
     def __init__(
         self,
@@ -42,22 +42,22 @@ class StateFeed:
         deliver: Callable[[SimulationState], None],
         loop: asyncio.AbstractEventLoop,
     ):
-        """`is_due` is asked at every tick, in its thread; `deliver` is called in that of `loop`."""
+        """`is_due` is called at every tick, in its thread; `deliver` in that of `loop`."""
         self._is_due = is_due
         self._deliver = deliver
         self._loop = loop
         self._newest: SimulationState | None = None
-        self._is_handed_over = False
+        self._is_scheduled = False
 
     def __call__(self, result: StepResult) -> None:
         """Note a tick's state; called in the control loop's thread."""
         self._newest = result.state
-        if not self._is_handed_over and self._is_due(result.state):
-            self._is_handed_over = True
-            self._loop.call_soon_threadsafe(self._hand_over)
+        if not self._is_scheduled and self._is_due(result.state):
+            self._is_scheduled = True
+            self._loop.call_soon_threadsafe(self._deliver_newest)
 
-    def _hand_over(self) -> None:
-        self._is_handed_over = False
+    def _deliver_newest(self) -> None:
+        self._is_scheduled = False
         if self._newest is not None:
             self._deliver(self._newest)
 

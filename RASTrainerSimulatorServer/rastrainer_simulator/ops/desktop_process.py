@@ -12,13 +12,13 @@ from pathlib import Path
 from rastrainer.python_environment import python_words
 
 VIEW_KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
-"""Holds a key that views are served for, agreed on by who starts a simulator and a window."""
+"""Environment variable with a key of the views, shared by a simulator and its window."""
 BELOW_NORMAL = getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0)
-"""Windows' flag of a process that gives way; elsewhere such a process raises its niceness."""
+"""Windows' flag of a process of low priority; elsewhere such a process raises its niceness."""
 
 
 def environment_without_secrets() -> dict[str, str]:
-    """Return the environment without the key that only this process may know."""
+    """Return the environment without the views' key, which other processes must not know."""
     return {name: value for name, value in os.environ.items() if name != VIEW_KEY_VARIABLE}
 
 
@@ -33,17 +33,17 @@ class DesktopProcess:
     """Runs the desktop window of one simulator."""
 
     def __init__(self, url: str, key: str, logs: Path):
-        """`url` is where views are served, `key` one they are served for; it logs to `logs`."""
+        """`url` is that of the views, `key` is valid for them; the window logs to `logs`."""
         self._url = url
         self._key = key
         self._logs = logs
         self._process: asyncio.subprocess.Process | None = None
 
-    async def run(self, on_closed: Callable[[], None], tell: Callable[[str], None]) -> None:
+    async def run(self, on_closed: Callable[[], None], announce: Callable[[str], None]) -> None:
         """Open the window and wait for its end.
 
         `on_closed` is called if its user has closed it. If it ended in any other way the
-        simulator stays, with the trial that is running; `tell` says how to come back.
+        simulator stays, with the trial that is running; `announce` says how to come back.
         """
         options = ("--connect", self._url, "--log-folder", str(self._logs))
         command = python_words("rastrainer_simulator.cli.main", "window", *options)
@@ -53,7 +53,7 @@ class DesktopProcess:
         if status == 0:
             on_closed()
         else:
-            tell(GONE.format(status=status, url=self._url))
+            announce(GONE.format(status=status, url=self._url))
 
     async def close(self) -> None:
         """Close the window if it is still open."""

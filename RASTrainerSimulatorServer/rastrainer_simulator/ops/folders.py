@@ -1,4 +1,4 @@
-"""Where the user's settings and logs are kept."""
+"""The folders of the user's settings and logs."""
 
 from __future__ import annotations
 

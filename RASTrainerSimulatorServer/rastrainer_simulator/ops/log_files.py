@@ -26,7 +26,7 @@ from rastrainer_simulator.ops.stamps import iso
 LARGEST_FILE = 1_000_000
 OLDER_FILES = 5
 MOST_LOGS = 9
-"""Of one name that are written to at the same time."""
+"""Most logs of one name that are written at a time."""
 TERMINAL_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
 _OURS = ("rastrainer", "rastrainer_simulator")
@@ -34,16 +34,16 @@ _OURS = ("rastrainer", "rastrainer_simulator")
 _log = logging.getLogger(__name__)
 _crashes = logging.getLogger("rastrainer.crash")
 LONGEST_MESSAGE = 8000
-"""Characters of a message or a traceback; what is longer is cut."""
+"""Most characters of a message or a traceback; longer ones are cut."""
 MOST_WAITING = 1000
 CLOSE_TIMEOUT_S = 1.0
 
 
 class _LogFile(logging.handlers.RotatingFileHandler):
-    """A file that gives up silently: a full disk is reported where the trial is recorded."""
+    """A file that ignores errors: a full disk is reported where the trial is recorded."""
 
     def _open(self) -> TextIOWrapper:
-        """Open the file for its user alone; an older one is this one, renamed."""
+        """Open the file for its user alone; older files are renamed."""
         descriptor = open_private(self.baseFilename, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
         return os.fdopen(descriptor, "a", encoding=self.encoding, errors=self.errors)
 
@@ -55,9 +55,8 @@ class _LogFile(logging.handlers.RotatingFileHandler):
 def keep_logs(folder: Path, name: str) -> Iterator[None]:
     """Log to `NAME.log` in a folder, and warnings to the terminal.
 
-    Where another program logs to that file it is `NAME-2.log`, and so on: two that rotate one file
-    would lose each other's lines. A folder that cannot be written to is reported in one warning:
-    nothing depends on a log.
+    If another program logs to that file it is `NAME-2.log`, and so on: two programs that rotate one
+    file would lose each other's lines. A folder that cannot be written to only causes a warning.
     """
     terminal = logging.StreamHandler()
     terminal.setLevel(logging.WARNING)
@@ -93,7 +92,7 @@ def _opened(ends: contextlib.ExitStack, folder: Path, name: str) -> _LogFile | N
 
 
 def _free_name(ends: contextlib.ExitStack, folder: Path, name: str) -> str:
-    """Return the first name that no other program logs by, and hold it."""
+    """Lock and return the first name that no other program logs to."""
     for own in (name, *(f"{name}-{number}" for number in range(2, MOST_LOGS + 1))):
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
         descriptor = open_private(folder / f".{own}.lock", flags)
@@ -101,7 +100,7 @@ def _free_name(ends: contextlib.ExitStack, folder: Path, name: str) -> str:
         with contextlib.suppress(OSError):
             lock(descriptor)
             return own
-    # Locks are not to be had here, as on some disks of other computers.
+    # Locks are not available here, as on some network disks.
     return name
 
 
@@ -113,7 +112,7 @@ def _add(ends: contextlib.ExitStack, logger: logging.Logger, handler: logging.Ha
 
 @contextlib.contextmanager
 def _crashes_logged() -> Iterator[None]:
-    """Log why the program ends; the terminal is told by whoever catches it."""
+    """Log the error that ends the program; the caller prints it."""
     try:
         yield
     except RASTrainerError as error:
@@ -127,7 +126,7 @@ def _crashes_logged() -> Iterator[None]:
 class JsonLines(logging.Formatter):
     """Formats a record as `{"utc": …, "level": …, "logger": …, "message": …}`.
 
-    What was passed as `extra={"data": {…}}` stands under `data`, a traceback under `traceback`.
+    `extra={"data": {…}}` is put under `data`, a traceback under `traceback`.
     """
 
     def format(self, record: logging.LogRecord) -> str:
@@ -148,7 +147,7 @@ class JsonLines(logging.Formatter):
 
 
 class BackgroundHandler(logging.Handler):
-    """Hands records to another handler in a thread of its own, in order.
+    """Passes records to another handler in a separate thread, in order.
 
     A pipe whose reader has stopped, a terminal in which text is being selected and a disk that is
     asleep all make a write wait, and a server that waits answers nobody. Records that the other
@@ -193,5 +192,5 @@ class BackgroundHandler(logging.Handler):
 
 
 def _gap(lost: int) -> logging.LogRecord:
-    words = "%d lines are missing here: nobody took them in time."
+    words = "%d lines are missing here: they could not be written in time."
     return logging.LogRecord(__name__, logging.WARNING, __file__, 0, words, (lost,), None)

@@ -1,1 +1,1 @@
-"""The record of trials: journals, what is still to be delivered, and replay."""
+"""The record of trials: writing journals, and delivering trials."""

@@ -1,7 +1,7 @@
 """The aborted trials in a folder of journals that are still to be delivered.
 
-One that a server's end cut short and that nobody resumed counts as aborted: otherwise whoever ends
-the simulator in the middle of a bad trial would be rid of it.
+A trial that was interrupted by the end of the simulator and never resumed counts as aborted:
+otherwise ending the simulator would be a way to discard a bad trial.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ ATTEMPT = "attempt"
 
 @dataclass(frozen=True)
 class ArchivedAttempt:
-    """An aborted trial; `acknowledged` where a client has said that it has stored the record."""
+    """An aborted trial, and whether a client has acknowledged its record."""
 
     record: AbortedTrial
     acknowledged: bool = False
 
     def summary(self) -> dict[str, Any]:
-        """Return what GetTrial answers; where the head was is told of no aborted trial."""
+        """Return the data of GetTrial; the head's pose in an aborted trial is never revealed."""
         return {
             "trialId": self.record.trial_id,
             "phase": "aborted",
@@ -43,7 +43,7 @@ class ArchivedAttempt:
 
 
 class AbortedArchive:
-    """Holds the aborted trials that wait, and answers what is asked about any of them."""
+    """Holds the undelivered aborted trials, and answers commands about any aborted one."""
 
     def __init__(self) -> None:
         self._waiting: dict[str, tuple[ArchivedAttempt, Journal]] = {}
@@ -53,11 +53,11 @@ class AbortedArchive:
         return tuple(attempt.record for attempt, _journal in list(self._waiting.values()))
 
     def add(self, record: AbortedTrial, journal: Journal) -> None:
-        """Take in a trial that has just been aborted."""
+        """Add a trial that has just been aborted."""
         self._waiting[record.trial_id] = ArchivedAttempt(record), journal
 
-    def add_left(self, path: Path) -> None:
-        """Close the journal of a trial that was left open, and take it in if there is to.
+    def add_interrupted(self, path: Path) -> None:
+        """Close the journal of an interrupted trial, and add the trial if it is kept.
 
         Raises:
             InputError: the journal cannot be used.
@@ -66,24 +66,24 @@ class AbortedArchive:
         reading = read_journal(path)
         if reading.integrity is Integrity.ALTERED:
             raise InputError(f"{path} is {reading.sentence}; its trial is not delivered.")
-        record = left_trial(reading)
+        record = interrupted_attempt(reading)
         if record is None or not record.is_kept:
             return
-        journal, last = Journal.continuing(reading), reading.entries[-1]
+        journal, last = Journal.reopened(reading), reading.entries[-1]
         _append(journal, attempt_entry(record, stamp(last["tick"], last["simTime"])))
         self.add(record, journal)
 
     def load(self, reading: JournalReading) -> bool:
-        """Take in what a journal tells; return whether it is that of an aborted trial.
+        """Load a journal; return whether it is that of an aborted trial.
 
         Raises:
-            InputError: its record is none.
+            InputError: its record is invalid.
         """
         attempt = archived_attempt(reading)
         if attempt is None:
             return False
         if not attempt.acknowledged:
-            self._waiting[attempt.record.trial_id] = attempt, Journal.continuing(reading)
+            self._waiting[attempt.record.trial_id] = attempt, Journal.reopened(reading)
         return True
 
     def answer(
@@ -93,13 +93,13 @@ class AbortedArchive:
         times: Mapping[str, Any],
         find: Callable[[], JournalReading | None],
     ) -> dict[str, Any] | None:
-        """Carry out GetTrial or AcknowledgeTrial; None where the trial is no aborted one.
+        """Carry out GetTrial or AcknowledgeTrial; None if the trial is not an aborted one.
 
         Args:
             trial_id: Of the trial.
             command: Its name.
             times: Stamps of the entry that is appended to the journal.
-            find: Reads the trial's journal; None where there is none.
+            find: Reads the trial's journal; None if there is none.
 
         Raises:
             InputError: nothing else can be done with an aborted trial.
@@ -124,12 +124,12 @@ class AbortedArchive:
 
 
 def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entry by which a journal keeps the record of an aborted trial."""
+    """Return the journal entry with the record of an aborted trial."""
     return {"kind": ATTEMPT, **times, "record": record.to_json()}
 
 
 def archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
-    """Return the aborted trial that a journal keeps the record of; None where it does not."""
+    """Return the aborted trial of a journal; None if it has none."""
     found = reading.of_kind(ATTEMPT)
     if not found or reading.of_kind("registered"):
         return None
@@ -144,8 +144,8 @@ def _append(journal: Journal, entry: Mapping[str, Any]) -> None:
         journal.close()
 
 
-def left_trial(reading: JournalReading) -> AbortedTrial | None:
-    """Return the record of the trial that a journal leaves open; None where it is over.
+def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
+    """Return the record of the trial of an open journal; None if the trial is over.
 
     Raises:
         InputError: the entries are not those of a trial.
@@ -153,20 +153,20 @@ def left_trial(reading: JournalReading) -> AbortedTrial | None:
     if not reading.entries or InterruptedTrial.of(reading.entries) is None:
         return None
     try:
-        return _left_trial(reading.entries)
+        return _interrupted_attempt(reading.entries)
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         raise InputError(f"An entry of the journal is not as it should be ({error!r}).") from None
 
 
-def _left_trial(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial:
+def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial:
     header, trajectory = entries[0], Recording.of(entries).trajectory()
-    told = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
+    touches = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
     points = tuple(
         TouchedPoint(
             label=touch.label,
-            position_mm=tuple(told[touch.label]["positionMm"]),
-            sim_time_s=told[touch.label]["simTime"] - header["tickS"],
-            utc=told[touch.label]["utc"],
+            position_mm=tuple(touches[touch.label]["positionMm"]),
+            sim_time_s=touches[touch.label]["simTime"] - header["tickS"],
+            utc=touches[touch.label]["utc"],
         )
         for touch in trajectory.touches
     )

@@ -1,4 +1,4 @@
-"""What the trainee looked at during a trial, and how smoothly it was drawn."""
+"""The display that the trainee used during a trial, and how smooth it was."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any
 
 @dataclass(frozen=True)
 class DisplayReport:
-    """What a view tells of the last second.
+    """A view's report on the last second.
 
     Attributes:
         view: "desktop", "page" or "headset".
         device: model of the headset or name of the browser; "" where unknown.
         refresh_hz: of the display; 0 where unknown.
-        shown: pictures.
-        dropped: pictures that the display had to do without.
+        shown: frames shown.
+        dropped: frames dropped.
     """
 
     view: str
@@ -27,12 +27,12 @@ class DisplayReport:
 
     @classmethod
     def of(cls, entry: Mapping[str, Any]) -> DisplayReport:
-        """Return what `entry` made an entry of."""
+        """Return the report of an entry, as made by `entry`."""
         named = (entry[name] for name in ("view", "device", "refreshHz", "shown", "dropped"))
         return cls(*named)
 
     def entry(self) -> dict[str, Any]:
-        """Return what goes into the journal, without its times."""
+        """Return the journal's entry, without its times."""
         values = asdict(self)
         values["refreshHz"] = values.pop("refresh_hz")
         return {"kind": "display", **values}
@@ -47,7 +47,7 @@ class DisplayUse:
         self._dropped = 0
 
     def add(self, report: DisplayReport) -> None:
-        """Take a report."""
+        """Add a report."""
         self._last = report
         self._shown += report.shown
         self._dropped += report.dropped

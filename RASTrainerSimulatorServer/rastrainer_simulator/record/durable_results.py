@@ -1,4 +1,4 @@
-"""Tell clients of a trial's progress only once it is on the disk."""
+"""Publish a trial's progress only when it is on the disk."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from rastrainer_simulator.state import Answer, Event, StepResult, TrainingState
 
 
 class DurableResults:
-    """Holds back what a tick changed in the trial until it has been written.
+    """Holds back changes of the trial until they have been written.
 
-    Meanwhile the arm goes on: poses are told at once, with the trial as it last was on the disk.
+    Poses are published immediately, with the trial as it last was on the disk.
     """
 
     def __init__(self, training: TrainingState) -> None:
@@ -22,7 +22,7 @@ class DurableResults:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether a change of the trial is still on its way to the disk."""
+        """Whether a change of the trial is still being written."""
         return bool(self._awaited)
 
     @property
@@ -30,8 +30,10 @@ class DurableResults:
         """The trial's last revision that is on the disk."""
         return self._safe.revision
 
-    def pass_on(self, result: StepResult, written: Written | None) -> tuple[StepResult, str | None]:
-        """Return what may be told now, and why the disk has refused (None if it has not)."""
+    def publishable(
+        self, result: StepResult, written: Written | None
+    ) -> tuple[StepResult, str | None]:
+        """Return what may be published now, and why writing has failed (None if it has not)."""
         if written is None and not self._awaited and not self._unwatched:
             self._safe = result.state.training
             return result, None
@@ -49,7 +51,7 @@ class DurableResults:
         return StepResult(state, tuple(events), tuple(answers)), reason
 
     def _collect(self, events: list[Event], answers: list[Answer]) -> str | None:
-        """Add what has been written since the last tick, in its order; return why if it failed."""
+        """Add what was written since the last tick, in order; return the reason if it failed."""
         while self._unwatched and self._unwatched[0][0].future.done():
             error = self._unwatched.popleft()[0].future.exception()
             if error is not None:
@@ -66,7 +68,7 @@ class DurableResults:
         return None
 
     def _refuse(self, error: BaseException, answers: list[Answer]) -> str:
-        """Answer all that waits with the reason: the control loop takes it back."""
+        """Answer all waiting commands with the reason: the control loop undoes them."""
         sentence = f"This could not be recorded and does not count: {error}."
         for _written, result in self._awaited:
             for answer in result.answers:

@@ -1,4 +1,4 @@
-"""Write a trial's journal: append-only, chained by hashes, on the disk before anyone is told.
+"""Write a trial's journal: append-only, chained by hashes, synced before it is published.
 
 The format is described in `docs/trial-journal.md`.
 """
@@ -24,14 +24,14 @@ from rastrainer.journal.journal_file import (
 
 
 class RecordError(RASTrainerError):
-    """The journal could not be written; the message says why and is fit for the trainee."""
+    """The journal could not be written; the message is shown to the trainee."""
 
 
 class Journal:
     """One trial's journal file.
 
-    What could not be written is kept and tried again with the next entries, in its order: nothing
-    is lost while the program lives, and the chain has no gap. Not safe for several threads.
+    Entries that could not be written are kept and written with the next ones, in order: nothing is
+    lost while the program runs, and the chain has no gap. Not safe for several threads.
     """
 
     def __init__(self, path: Path) -> None:
@@ -45,11 +45,10 @@ class Journal:
         self._unwritten: list[Mapping[str, Any]] = []
 
     @classmethod
-    def continuing(cls, reading: JournalReading) -> Journal:
+    def reopened(cls, reading: JournalReading) -> Journal:
         """Return the journal of an existing file that was not altered, to append to it.
 
-        What stands behind its last whole line was never acknowledged: the first `write` cuts it
-        off.
+        What follows its last complete line was never acknowledged: the first `write` removes it.
         """
         journal = cls(reading.path)
         journal._is_new = False
@@ -85,7 +84,7 @@ class Journal:
             self._size = None
 
     def _opened(self) -> tuple[int, int]:
-        """Open the file where it is not open; return its descriptor and size."""
+        """Open the file unless it is open; return its descriptor and size."""
         if self._descriptor is not None and self._size is not None:
             return self._descriptor, self._size
         flags = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)

@@ -38,7 +38,7 @@ def _of_packages() -> Mapping[str, str]:
     return MappingProxyType(found)
 
 
-# Looked up at once: that goes through folders, and a trial begins within a tick.
+# Looked up when imported: it reads folders, and a trial starts within a tick.
 _OF_PACKAGES = _of_packages()
 
 
@@ -50,7 +50,7 @@ def setup_of(
     """Return the setup that a journal's header describes.
 
     Raises:
-        InputError: scenario or robot are others here, or the header is not usable.
+        InputError: scenario or robot differ here, or the header is not usable.
     """
     try:
         settings = settings_from_json(SimulationSettings, _with_touch_rule(header["settings"]))
@@ -69,6 +69,6 @@ def setup_of(
 
 
 def _with_touch_rule(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return recorded settings with the touch rule that was in force before there was a choice."""
+    """Return recorded settings, with the former touch rule for those that have none."""
     rule = {"touch_rule": TouchRule.WITHIN_RADIUS.value}
     return {**settings, "training": {**rule, **settings.get("training", {})}}

@@ -21,16 +21,16 @@ from rastrainer.journal.folder_lock import (
     write_holder,
 )
 
-LOOK_S = 0.5
-"""How long somebody who only looks who holds the folder may hold it."""
+PEEK_S = 0.5
+"""How long another program may hold the lock to see which simulator has the folder."""
 _PERIOD_S = 0.02
 
 
 class RecordsFolder:
-    """Holds the folder until it is closed, or the process ends in whatever way."""
+    """Locks the folder until it is closed or the process ends."""
 
     def __init__(self, folder: Path) -> None:
-        """Make the folder where it is missing, and take it.
+        """Create the folder if it is missing, and lock it.
 
         Raises:
             InputError: it cannot be made or written to, or another simulator has it.
@@ -57,9 +57,9 @@ class RecordsFolder:
             raise
 
     def announce(self, host: str, port: int, page: str) -> None:
-        """Say in the folder where the simulator that holds it is found; see `FolderHolder`."""
+        """Write to the folder where its simulator can be reached; see `FolderHolder`."""
         self._holder = replace(self._holder, host=host, port=port, page=page)
-        # Who it is helps others only: a full disk is told with the first trial.
+        # This only helps others: a full disk is reported with the first trial.
         with contextlib.suppress(OSError):
             write_holder(self._descriptor, self._holder)
 
@@ -69,7 +69,7 @@ class RecordsFolder:
 
     @property
     def _or_elsewhere(self) -> str:
-        """What people who have started it themselves may do instead."""
+        """What users who have started the simulator themselves can do instead."""
         if self._holder.started_by:
             return ""
         return ", or choose another folder with --records"
@@ -85,16 +85,16 @@ class RecordsFolder:
             ) from None
         except OSError as error:
             raise InputError(
-                f"{self._folder} cannot be kept from being written by two simulators at once: "
-                f"{error.strerror}. Let it be on a disk of this computer{self._or_elsewhere}."
+                f"{self._folder} cannot be locked against a second simulator: {error.strerror}. "
+                f"Use a folder on a disk of this computer{self._or_elsewhere}."
             ) from None
         self.announce("", 0, "")
         for journal in self._folder.glob(f"*{SUFFIX}"):
             keep_others_out(journal)
 
     def _lock(self) -> None:
-        """Lock the folder, though somebody may just look whether it is."""
-        end = time.monotonic() + LOOK_S
+        """Lock the folder, waiting for programs that only check its lock."""
+        end = time.monotonic() + PEEK_S
         while True:
             try:
                 return lock(self._descriptor)

@@ -1,4 +1,4 @@
-"""The trials in a folder of journals: which are still to be delivered, and what each one says."""
+"""The trials in a folder of journals, with those that are still to be delivered."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rastrainer_simulator.state import FinalRegistration
 from rastrainer_simulator.training.true_error import Truth
 
 FIRST_REACH = 1 << 16
-"""Bytes at the end of a journal that are looked at first."""
+"""Bytes at the end of a journal that are read first."""
 
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
 _OVER = frozenset({b"registered", b"aborted", b"attempt"})
@@ -42,10 +42,10 @@ class ArchivedTrial:
     Attributes:
         record: as it is delivered.
         truth: where the head really was.
-        seed: of the trial, told with the truth.
+        seed: of the trial, revealed with the truth.
         registration: the arguments of SubmitRegistration; None before.
         scored: the arguments of TrialScored; None before.
-        acknowledged: whether a client has said that it has stored the record.
+        acknowledged: whether a client has acknowledged the record.
     """
 
     record: TrialRecord
@@ -56,7 +56,7 @@ class ArchivedTrial:
     acknowledged: bool = False
 
     def summary(self) -> dict[str, Any]:
-        """Return what GetTrial answers: the truth only once a registration was submitted."""
+        """Return the data of GetTrial: with the truth if a registration was submitted."""
         data: dict[str, Any] = {
             "trialId": self.record.trial_id,
             "phase": "registered" if self.scored is None else "scored",
@@ -68,7 +68,7 @@ class ArchivedTrial:
         return {**data, "seed": self.seed, **self.revealed()}
 
     def revealed(self) -> dict[str, Any]:
-        """Return what SubmitRegistration answers, once it was submitted."""
+        """Return the data that SubmitRegistration reveals."""
         if self.registration is None:
             raise InputError("No registration of the trial was submitted.")
         matrix = np.array(self.registration["matrix"], dtype=np.float64).reshape(4, 4)
@@ -79,8 +79,8 @@ class ArchivedTrial:
 class TrialArchive:
     """The registered trials of a folder, and the aborted ones that are kept.
 
-    One thread changes it; any may ask what is to deliver. `problems` are sentences about journals
-    that cannot be used.
+    One thread changes it; any thread may call `unacknowledged`. `problems` are sentences about
+    unusable journals.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -102,20 +102,20 @@ class TrialArchive:
         return (*self._aborted.unacknowledged(), *finished)
 
     def add(self, trial: ArchivedTrial, journal: Journal) -> None:
-        """Take in a trial that has just been registered."""
+        """Add a trial that has just been registered."""
         self._trials[trial.record.trial_id] = trial
         self._journals[trial.record.trial_id] = journal
 
     def add_aborted(self, record: AbortedTrial, journal: Journal) -> None:
-        """Take in a trial that has just been aborted."""
+        """Add a trial that has just been aborted."""
         self._aborted.add(record, journal)
 
-    def add_left(self, path: Path) -> None:
-        """Take in the trial of a journal that is left open since another one is begun."""
+    def add_interrupted(self, path: Path) -> None:
+        """Add the trial of a journal that was still open when another trial was started."""
         if not _OVER.isdisjoint(_last_kinds(path)):
             return
         try:
-            self._aborted.add_left(path)
+            self._aborted.add_interrupted(path)
         except RASTrainerError as error:
             self.problems.append(str(error))
 
@@ -132,12 +132,12 @@ class TrialArchive:
         """
         if arguments["trialId"] not in self._trials:
             find = functools.partial(self._reading_of, arguments["trialId"])
-            told = self._aborted.answer(arguments["trialId"], command, times, find)
-            if told is not None:
-                return told
+            data = self._aborted.answer(arguments["trialId"], command, times, find)
+            if data is not None:
+                return data
         trial = self._found(arguments["trialId"])
         trial_id = trial.record.trial_id
-        # As a journal gives them back: told again, they are the same.
+        # As they are read from a journal, so that repeated arguments compare equal.
         arguments = json.loads(json.dumps(arguments))
         if command == CommandName.ACKNOWLEDGE_TRIAL and not trial.acknowledged:
             self._append(trial_id, {"kind": "acknowledged", **times})
@@ -158,7 +158,7 @@ class TrialArchive:
     def _with_registration(
         self, trial: ArchivedTrial, arguments: Mapping[str, Any], times: Mapping[str, Any]
     ) -> ArchivedTrial:
-        """Take a registration; told the truth, nobody may register again."""
+        """Accept a registration, which is final because it reveals the truth."""
         if trial.registration is None:
             entry = {"kind": "registration", **times, "arguments": arguments}
             self._append(trial.record.trial_id, entry)
@@ -169,7 +169,7 @@ class TrialArchive:
         return trial
 
     def _keep(self, trial: ArchivedTrial) -> None:
-        """Keep a trial at hand until all is done with it; then its journal suffices."""
+        """Keep a trial in memory until it is acknowledged and scored."""
         trial_id = trial.record.trial_id
         if trial.acknowledged and trial.scored is not None:
             del self._trials[trial_id], self._journals[trial_id]
@@ -187,7 +187,7 @@ class TrialArchive:
         return self._trials[trial_id]
 
     def _reading_of(self, trial_id: str) -> JournalReading | None:
-        """Read the journal of a trial that was aborted; None where it is another's, or altered."""
+        """Read the journal of an aborted trial; None if there is none or it was altered."""
         for path in journals_of(self._folder, trial_id):
             if b"attempt" in _last_kinds(path):
                 reading = read_journal(path)
@@ -204,7 +204,7 @@ class TrialArchive:
             self.problems.append(str(error))
             return
         if trial is not None:
-            self.add(trial, Journal.continuing(reading))
+            self.add(trial, Journal.reopened(reading))
 
     def _append(self, trial_id: str, entry: Mapping[str, Any]) -> None:
         journal = self._journals[trial_id]
@@ -215,17 +215,17 @@ class TrialArchive:
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
-    """Return the trial that a journal tells of, None if it was never registered.
+    """Return the trial of a journal, None if it was never registered.
 
     Raises:
-        InputError: the journal was altered, or what it tells of the trial is not as it should be.
+        InputError: the journal was altered, or its registered trial is invalid.
     """
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
     try:
         return _archived_trial(reading)
     except (InputError, KeyError, TypeError, ValueError, AttributeError) as error:
-        # Its hashes may be right and its content not: it was forged, or a later version wrote it.
+        # The content may be invalid despite its hashes: forged, or written by a later version.
         raise InputError(
             f"{reading.path} does not hold a registered trial as it should ({error!r}); it is not "
             "delivered."
@@ -247,7 +247,7 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
         scored=scores[-1]["arguments"] if scores else None,
         acknowledged=bool(reading.of_kind("acknowledged")),
     )
-    # What GetTrial and SubmitRegistration tell can be computed from it.
+    # Check that the data of GetTrial and SubmitRegistration can be computed.
     replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).summary()
     return trial
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 SAMPLE_HZ = 50.0
 MUST_LAST = frozenset({EventKind.PHASE, EventKind.TOUCH, EventKind.UNDO})
-"""Events that nobody may be told of before they are on the disk."""
+"""Events that are not published before they are on the disk."""
 
 _KIND_OF_PHASE = {Phase.REGISTERED: "registered", Phase.IDLE: "aborted"}
 _SAMPLED = (Phase.RUNNING, Phase.COMPLETE)
@@ -44,10 +44,10 @@ _Q = struct.Struct("<7d")
 
 
 class TrialEntries:
-    """What one trial adds to its journal; `pending` is what has not been handed to the writer."""
+    """The entries of one trial; `pending` are those that are not submitted to the writer yet."""
 
     def __init__(self, simulation: Simulation, trial_id: str, started_utc: str, dt: float) -> None:
-        """Prepare the entries of the simulation's present trial; `begun` and `continued` do."""
+        """Prepare the entries of the simulation's trial; use `started` or `resumed` instead."""
         self.trial_id = trial_id
         self.started_utc = started_utc
         self._seed = simulation.trial_seed
@@ -63,7 +63,7 @@ class TrialEntries:
         self.pending: list[dict[str, Any]] = []
 
     @classmethod
-    def begun(
+    def started(
         cls,
         simulation: Simulation,
         before: SimulationState,
@@ -71,7 +71,7 @@ class TrialEntries:
         dt: float,
         number: int = 0,
     ) -> TrialEntries:
-        """Begin with the header; `before` is the state in which StartTask was carried out.
+        """Start with the header; `before` is the state in which StartTask was carried out.
 
         `number` counts the trials of a folder; where none is recorded it is 0.
         """
@@ -102,7 +102,7 @@ class TrialEntries:
         return entries
 
     @classmethod
-    def continued(
+    def resumed(
         cls,
         simulation: Simulation,
         state: SimulationState,
@@ -113,7 +113,7 @@ class TrialEntries:
         """Go on from a state of a trial that was interrupted.
 
         `earlier` are its entries before; since their last one, at the simulated time `since` in s,
-        the trial's time stands still.
+        the trial's time is stopped.
         """
         training = state.training
         entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
@@ -188,7 +188,7 @@ class TrialEntries:
         return trial_motion(self._recording.trajectory())
 
     def taken(self) -> list[dict[str, Any]]:
-        """Return what is pending, which then counts as handed over."""
+        """Return the pending entries and clear them."""
         taken, self.pending = self.pending, []
         return taken
 

@@ -1,4 +1,4 @@
-"""Write the journal of the trial that is running, in a thread of its own."""
+"""Write the journal of the running trial in a separate thread."""
 
 from __future__ import annotations
 
@@ -26,15 +26,14 @@ if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
 
 FLUSH_TICKS = 50
-"""Entries that nobody waits for go to the disk after so many ticks."""
+"""Number of ticks after which entries that nobody waits for are written."""
 
 
 @dataclass(frozen=True)
 class Written:
-    """A write that is under way.
+    """A write in progress.
 
-    `future` fails where the disk refuses; with `is_awaited` the tick may not be published
-    before it is done.
+    `future` fails if the disk does; with `is_awaited` the tick is not published before it is done.
     """
 
     future: Future[Any]
@@ -67,7 +66,7 @@ class TrialRecorder:
         self._is_stuck = False
         self._waiting: tuple[JournalReading, float] | None = None
         newest = newest_journal(folder)
-        self._left = newest
+        self._interrupted = newest
         self._number = 0 if newest is None else number_of(newest)
 
     def resume_trial(self, simulation: Simulation, reading: JournalReading) -> None:
@@ -76,7 +75,7 @@ class TrialRecorder:
         While the trial is paused the file stays as it is.
         """
         state = simulation.state
-        self._left = None
+        self._interrupted = None
         self._waiting = reading, state.sim_time
         if state.training.phase is not Phase.PAUSED:
             self._resume(simulation, state, self._waiting)
@@ -88,17 +87,17 @@ class TrialRecorder:
         operator_input: OperatorInput,
         result: StepResult,
     ) -> Written | None:
-        """Take note of a tick that led from `before` to `result`; return what was handed over."""
+        """Record a tick that led from `before` to `result`; return its write, if any."""
         training = result.state.training
         if training.trial_id and training.trial_id != before.training.trial_id:
-            self._begin(simulation, before, result)
+            self._start(simulation, before, result)
         if self._waiting is not None and any(e.kind in MUST_LAST for e in result.events):
             self._resume(simulation, before, self._waiting)
         trial = self._open
         if trial is None:
             return None
         if any(command.name == RECORDING_FAILED for command in operator_input.commands):
-            self._take_back(trial, simulation, operator_input, result)
+            self._keep_refused(trial, simulation, operator_input, result)
             return None
         if self._is_registered():
             return self._after_registration(operator_input, result)
@@ -109,30 +108,30 @@ class TrialRecorder:
             return self._abort(trial, before, operator_input, result)
         if any(event.kind in MUST_LAST for event in result.events):
             self._is_stuck = False
-            return self._hand_over(trial, is_awaited=True)
+            return self._submit(trial, is_awaited=True)
         is_due = trial.entries.pending and result.state.tick % FLUSH_TICKS == 0
-        return self._hand_over(trial, is_awaited=False) if is_due and not self._is_stuck else None
+        return self._submit(trial, is_awaited=False) if is_due and not self._is_stuck else None
 
     def note_display(self, report: DisplayReport | ViewReport, state: SimulationState) -> None:
-        """Take note of what is seen of the trial, if one is open, and how it is drawn."""
+        """Record what is seen of the trial, if one is open, and how it is drawn."""
         if self._open is not None and self._registering is None:
             self._open.entries.add_display(report, state)
 
     def stop(self, state: SimulationState) -> None:
-        """Write what is left; a trial that is still open is marked as stopped."""
+        """Write the remaining entries; a trial that is still open is marked as stopped."""
         trial = self._open
         if trial is None or self._registering is not None:
             return
         trial.entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
-        self._hand_over_and_leave(trial)
+        self._submit_and_close(trial)
 
-    def _begin(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
-        if self._left is not None:
-            # Before the new one is there: whenever two are, the older is over.
-            self._writer.submit(self._archive.add_left, self._left)
-            self._left = None
+    def _start(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
+        if self._interrupted is not None:
+            # Before the new journal exists: if there are two, the older trial is over.
+            self._writer.submit(self._archive.add_interrupted, self._interrupted)
+            self._interrupted = None
         self._number += 1
-        entries = TrialEntries.begun(simulation, before, result, self._dt, self._number)
+        entries = TrialEntries.started(simulation, before, result, self._dt, self._number)
         name = f"{file_stamp(entries.started_utc)}_{entries.trial_id}{SUFFIX}"
         self._open = _OpenTrial(entries, Journal(self._folder / name))
         self._registering = None
@@ -144,30 +143,30 @@ class TrialRecorder:
         """Append to the journal of an interrupted trial from now on."""
         reading, since = waiting
         self._waiting = None
-        entries = TrialEntries.continued(simulation, state, reading.entries, since, self._dt)
-        self._open = _OpenTrial(entries, Journal.continuing(reading))
+        entries = TrialEntries.resumed(simulation, state, reading.entries, since, self._dt)
+        self._open = _OpenTrial(entries, Journal.reopened(reading))
 
     def _is_registered(self) -> bool:
         future = self._registering
         return future is not None and future.done() and future.exception() is None
 
-    def _take_back(
+    def _keep_refused(
         self,
         trial: _OpenTrial,
         simulation: Simulation,
         operator_input: OperatorInput,
         result: StepResult,
     ) -> None:
-        """Keep what the disk has refused until the trainee resumes: then it is tried again."""
+        """Keep the entries that could not be written until the trainee resumes."""
         phase = result.state.training.phase
         if phase is Phase.IDLE:
-            self._leave(trial)
+            self._close(trial)
         elif not self._is_registered():
             self._registering = None
             self._is_stuck = True
             trial.entries.add(simulation, operator_input, result)
 
-    def _hand_over(self, trial: _OpenTrial, is_awaited: bool) -> Written:
+    def _submit(self, trial: _OpenTrial, is_awaited: bool) -> Written:
         future = self._writer.submit(trial.journal.write, trial.entries.taken(), sync=is_awaited)
         return Written(future, is_awaited)
 
@@ -199,7 +198,7 @@ class TrialRecorder:
         reason = given[-1].arguments.get("reason") if given else None
         record = trial.entries.aborted(before, reason or AbortReason.CLIENT.value, times["utc"])
         if not record.is_kept:
-            return self._hand_over_and_leave(trial)
+            return self._submit_and_close(trial)
         trial.entries.pending.append(attempt_entry(record, times))
         journal, entries = trial.journal, trial.entries.taken()
 
@@ -208,7 +207,7 @@ class TrialRecorder:
             self._archive.add_aborted(record, journal)
 
         written = Written(self._writer.submit(write), is_awaited=False)
-        self._leave(trial)
+        self._close(trial)
         return written
 
     def _after_registration(
@@ -224,11 +223,11 @@ class TrialRecorder:
         )
         return Written(future, is_awaited=True)
 
-    def _hand_over_and_leave(self, trial: _OpenTrial) -> Written:
-        written = self._hand_over(trial, is_awaited=False)
-        self._leave(trial)
+    def _submit_and_close(self, trial: _OpenTrial) -> Written:
+        written = self._submit(trial, is_awaited=False)
+        self._close(trial)
         return written
 
-    def _leave(self, trial: _OpenTrial) -> None:
+    def _close(self, trial: _OpenTrial) -> None:
         self._writer.submit(trial.journal.close)
         self._open = self._registering = None

@@ -21,8 +21,8 @@ AMBIENT = 0.55
 # Windows and ceiling lights that glossy parts mirror: azimuth, elevation, half widths (rad), glow.
 PANELS = ((-1.6, 0.75, 0.45, 0.22, 4.0), (0.4, 1.0, 0.3, 0.2, 3.0), (2.8, 0.7, 0.4, 0.25, 2.5))
 
-# The lamp shines past the arm onto the face. Its cone holds what is seen from the cameras and no
-# more, for the pixels of the shadows are spread over it.
+# The lamp shines past the arm onto the face. Its cone covers only what the cameras see, because the
+# pixels of the shadows are spread over it.
 LAMP_AT = (0.35, 0.0, 0.2)
 LAMP_PLACE = (1.70, -1.65, 2.45)
 LAMP_CONE_DEG = 33.0

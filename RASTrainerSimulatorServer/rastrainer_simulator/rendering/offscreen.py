@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (registers the way to render)
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (registers the renderer)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger
 from vtkmodules.vtkCommonDataModel import vtkImageData

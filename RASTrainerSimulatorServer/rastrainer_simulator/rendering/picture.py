@@ -31,12 +31,12 @@ from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 @dataclass(frozen=True)
 class SceneMoment:
-    """What a picture needs beside the scene.
+    """The moment of a simulation that a picture shows.
 
     Attributes:
         link_to_world: a (4, 4) float pose in m for every link, as `Kinematics.links` gives them.
         head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        head_base: (3,) float, RAS mm, the middle of the head's base, where the stand ends.
+        head_base: (3,) float, RAS mm, the center of the head's base, on the stand.
         touched: labels of the fiducials that are done.
         next_point: label of the one to touch now.
         proximity: the tip is blue while free, and red near and on the head.
@@ -62,7 +62,7 @@ class SceneMoment:
         return {**first, TOOL: tool, "head": head, "stand": stand}
 
     def looks(self) -> dict[str, Material]:
-        """Return the materials of the nodes whose color tells something."""
+        """Return the materials of the nodes whose color depends on the state."""
         colors = {f"fiducial_{label}": TOUCHED for label in self.touched}
         if self.next_point is not None:
             colors[f"fiducial_{self.next_point}"] = NEXT
@@ -87,7 +87,7 @@ def apply_material(material: Material, target: vtkProperty) -> None:
 def node_actors(
     nodes: Sequence[Node], poses: Mapping[str, np.ndarray], looks: Mapping[str, Material]
 ) -> list[vtkActor]:
-    """Return the actors of nodes that stand in World.
+    """Return the actors of nodes in World.
 
     `poses` has a (4, 4) float pose in World, m, by the name of each node that is moved; `looks` a
     material by the name of each node that has another color than in the scene.
@@ -132,9 +132,9 @@ def render_picture(
     """Write a PNG of a scene at one moment, in place of an older one.
 
     `nodes` are the scene's, as `scene_nodes` gives them, and `robot` is the one among them; the
-    cameras are a scenario's; `inset` is a second view, laid into the upper right corner; `size` is
-    the picture's width and height in pixels. Takes some seconds where VTK renders in software, half
-    of them with small shadows.
+    cameras are a scenario's; `inset` is a second view in the upper right corner; `size` is the
+    picture's width and height in pixels. Software rendering takes some seconds, half as many with
+    small shadows.
 
     Raises:
         InputError: the picture cannot be written.

@@ -22,13 +22,13 @@ class Playback:
     """Plays a recorded trial, in the event loop's thread.
 
     Attributes:
-        trial: what is played.
+        trial: the recorded trial.
         setup: head and robot.
-        time_s: where in the trial it is.
-        is_playing: False while it stands still.
-        until_s: where it stops.
-        speed: seconds of the trial in a second.
-        latest: the state that is shown.
+        time_s: time in the trial.
+        is_playing: False while it is paused.
+        until_s: time at which it stops.
+        speed: seconds of the trial per second.
+        latest: the shown state.
         changed: called whenever any of this has changed.
     """
 
@@ -67,13 +67,13 @@ class Playback:
         self.is_playing = not is_paused
         self.changed()
 
-    def look(self, camera: str) -> None:
+    def use_camera(self, camera: str) -> None:
         """Use another camera than the trainee did, from now on."""
         self._camera = camera
         self._show(is_jump=True)
 
     def advance(self, seconds: float) -> None:
-        """Let so much of the wall's time pass."""
+        """Advance by so much wall time, s."""
         if not self.is_playing:
             # For views that have just joined.
             self._publish(())
@@ -134,9 +134,9 @@ class PlaybackSwitch:
         return self._control_loop.statistics
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Have `callback` called with what is shown; returns what ends that.
+        """Call `callback` with every shown state; return a function that unsubscribes.
 
-        It is called in the control loop's or the playback's thread, and must return at once.
+        It is called in the control loop's or the playback's thread, and must return immediately.
         """
         return self._subscribers.add(callback)
 

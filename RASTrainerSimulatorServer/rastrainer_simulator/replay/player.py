@@ -1,4 +1,4 @@
-"""What can be done while a recorded trial is played, and what is read meanwhile."""
+"""The actions and texts of a recorded trial that is played."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ ACTIONS: Mapping[ControlName, PlayerAction] = {
 
 
 class Player:
-    """Carries out what the viewer asks for.
+    """Carries out the viewer's actions.
 
     Attributes:
-        playback: what is played.
+        playback: the trial.
     """
 
     def __init__(self, playback: Playback, end: Callable[[], None]) -> None:
@@ -63,7 +63,7 @@ class Player:
         self._handlers[action]()
 
     def screen(self, texts: Texts, hints: tuple[Hint, ...], language: str) -> Screen:
-        """Return what is read now; `language` is the BCP 47 tag of the texts."""
+        """Return the present screen; `language` is the BCP 47 tag of the texts."""
         playback, say = self.playback, texts.say
         trial = playback.trial
         task = playback.setup.scenario.task(trial.task)
@@ -96,7 +96,7 @@ class Player:
         if names:
             shown = self.playback.latest.camera
             place = names.index(shown) if shown in names else -1
-            self.playback.look(names[(place + 1) % len(names)])
+            self.playback.use_camera(names[(place + 1) % len(names)])
 
 
 def _clock(seconds: float) -> str:

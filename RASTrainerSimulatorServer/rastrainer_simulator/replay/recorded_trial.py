@@ -1,4 +1,4 @@
-"""A recorded trial as the states that a view shows: nothing of it is simulated."""
+"""A recorded trial as the states that a view shows, without simulation."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from rastrainer_simulator.training.touch_stage import touch_stage
 from rastrainer_simulator.vectors import Vector
 
 AFTER_S = 0.25
-"""The worst touch is shown until so long after it was made."""
+"""How long after the worst touch its replay ends."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class RecordedTrial:
         self.worst = _worst(track, setup)
 
     def state_at(self, time_s: float) -> SimulationState:
-        """Return what is seen at a time."""
+        """Return the state at a time."""
         trajectory = self._track.trajectory
         times = trajectory.times_s
         after = min(max(1, int(np.searchsorted(times, time_s, side="right"))), len(times) - 1)
@@ -163,11 +163,11 @@ class TrialLoading:
     """Loads a trial beside the control loop, in a thread.
 
     Attributes:
-        trial: comes when it is loaded; an `InputError` says in one sentence why there is none.
+        trial: the loaded trial, or an `InputError` if it cannot be loaded.
     """
 
     def __init__(self, journal: Path, setup: SimulationSetup) -> None:
-        """Begin; the journal is only read."""
+        """Start loading; the journal is only read."""
         self.trial: Future[RecordedTrial] = Future()
         self._is_canceled = False
         threading.Thread(
@@ -240,7 +240,7 @@ def _training_after(
             undone=before.undone + 1,
         )
     following = entry["nextPoint"]
-    # What the disk refused was taken back: the phase says from which fiducial on.
+    # Touches that could not be written were undone: the phase has the next fiducial.
     kept = labels.index(following) if following in labels else len(touches)
     return replace(
         before,

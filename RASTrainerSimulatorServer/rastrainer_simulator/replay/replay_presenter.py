@@ -55,11 +55,11 @@ _HINTS = (
 
 
 class ReplayPresenter:
-    """A `Presenter` whose user plays, pauses and seeks; nobody drives the arm.
+    """A `Presenter` for playing, pausing and seeking; the arm is not driven.
 
     Attributes:
-        screen: what is read.
-        control: held by nobody.
+        screen: the texts.
+        control: free.
     """
 
     control = Control()
@@ -105,7 +105,7 @@ class ReplayPresenter:
             self._do(_KEYS.get(code))
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
-        """Take a gamepad: what is newly pressed counts."""
+        """Handle a gamepad's newly pressed buttons."""
         held = frozenset(number for number, value in enumerate(buttons) if value > 0.5)
         for number in held - self._held.get(view, frozenset()):
             self._do(_PAD.get(number))
@@ -128,12 +128,12 @@ class ReplayPresenter:
         """Nothing is recorded."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
-        """Who does not look misses nothing."""
+        """Ignore it: nothing is missed."""
         if not is_visible:
             self._playback.pause(True)
 
     def on_silence(self, view: int) -> None:  # noqa: ARG002
-        """Nor does whoever looks at a picture that stands still."""
+        """Ignore it: the picture may be paused."""
         self._playback.pause(True)
 
     def _do(self, action: PlayerAction | None) -> None:
@@ -141,7 +141,7 @@ class ReplayPresenter:
             self._player.do(action)
 
     def _feel(self, result: StepResult) -> None:
-        """Tell what happened then, to be heard and felt again."""
+        """Publish the events as feedback: sounds and vibration."""
         for event in result.events:
             kind = feedback_event(event, result.state.touch)
             if kind is None:

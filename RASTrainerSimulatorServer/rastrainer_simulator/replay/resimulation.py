@@ -72,9 +72,8 @@ def replay(
 ) -> ReplayReport:
     """Simulate a trial again from its recorded inputs.
 
-    The replay forms the journal's entries anew and compares them with the recorded ones: events,
-    touches, 50 postures a second, and the hash over the posture of every single tick. `watch` is
-    given each step as it is simulated.
+    The computed entries are compared with the recorded ones: events, touches, 50 postures a second,
+    and the hash over the posture of every tick. `watch` is called with each simulated step.
 
     Raises:
         InputError: the journal's entries are not those of a trial.
@@ -112,11 +111,11 @@ def _replay(
     start = StartingPoint(**header["before"])
     _, last = tick_span(reading)
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
-        raise InputError(f"{reading.path} claims {last - start.tick} ticks: no trial is so long.")
+        raise InputError(f"{reading.path} has {last - start.tick} ticks: no trial is that long.")
     if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:
         raise InputError(f"{reading.path} claims ticks of {header['tickS']} s: no loop has them.")
     simulation = Simulation(setup, header["seed"])
-    simulation.continue_from(start)
+    simulation.restart_from(start)
     player = _Player(simulation, header["tickS"], watch)
     compared: dict[str, int] = defaultdict(int)
     for first, end in _parts(reading.entries):
@@ -146,7 +145,7 @@ def _parts(entries: Sequence[Mapping[str, Any]]) -> Iterator[tuple[int, int]]:
 
 
 class _Player:
-    """Simulates the parts of one trial and forms their entries anew."""
+    """Simulates the parts of one trial and computes their entries."""
 
     def __init__(
         self, simulation: Simulation, dt: float, watch: Callable[[StepResult], None]
@@ -161,14 +160,14 @@ class _Player:
     def play_part(
         self, earlier: Sequence[Mapping[str, Any]], part: Sequence[Mapping[str, Any]]
     ) -> list[dict[str, Any]]:
-        """Return the entries of one part, but for the header, formed anew."""
+        """Return the computed entries of one part, without the header."""
         if earlier:
             self._resume(earlier, part[0])
         self._play(part)
         if self._entries is None:
             return []
         self.versions = self._entries.versions
-        # Of a registered trial it is known: what the arm did until the score came is no part of it.
+        # A registered trial ends with its record: motion until the score came is not part of it.
         if self._simulation.state.training.phase not in FINISHED_PHASES:
             self.motion = self._entries.motion()
         return self._entries.taken()[0 if earlier else 1 :]
@@ -181,7 +180,7 @@ class _Player:
         point = StartingPoint(continued["tick"], continued["simTime"], camera=continued["camera"])
         self._simulation.resume_trial(interrupted, point)
         since = interrupted.point.sim_time
-        self._entries = TrialEntries.continued(
+        self._entries = TrialEntries.resumed(
             self._simulation, self._simulation.state, earlier, since, self._dt
         )
 
@@ -194,7 +193,7 @@ class _Player:
             result = simulation.step(dt, operator_input)
             self._watch(result)
             if self._entries is None:
-                self._entries = TrialEntries.begun(simulation, before, result, dt)
+                self._entries = TrialEntries.started(simulation, before, result, dt)
             if self._entries.add(simulation, operator_input, result) is not None:
                 self.motion = self._entries.motion()
 
@@ -238,7 +237,7 @@ def _first_difference(
 def _without_what_was_cut(
     again: Sequence[Mapping[str, Any]], recorded: Sequence[Mapping[str, Any]]
 ) -> Sequence[Mapping[str, Any]]:
-    """Leave out what the last tick says beyond the cut, which may lie between its lines."""
+    """Leave out entries of the last tick beyond the cut, which may be between its lines."""
     beyond = again[len(recorded) :]
     is_last_tick = all(entry["tick"] == recorded[-1]["tick"] for entry in beyond)
     return again[: len(recorded)] if is_last_tick else again

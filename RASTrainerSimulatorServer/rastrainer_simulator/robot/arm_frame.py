@@ -1,4 +1,4 @@
-"""Between World and q outside, and the arm's own frame and θ inside FABRIK."""
+"""Convert between World and q outside of FABRIK and the arm's frame and θ inside it."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ _SKEW = 1e-6
 
 
 class ArmFrame:
-    """Converts targets and joint angles; plain floats, whatever comes in."""
+    """Converts targets and joint angles to plain floats."""
 
     def __init__(self, geometry: SrsGeometry) -> None:
         self._base = tuple(map(tuple, geometry.base.tolist()))
@@ -86,7 +86,7 @@ class ArmFrame:
         self._q_limits = tuple(zip(geometry.q_lower, geometry.q_upper, strict=True))
 
     def theta(self, q: Sequence[float]) -> tuple[float, ...]:
-        """Return θ of q (rad), moved into the limits where it is outside."""
+        """Return θ of q (rad), clamped to the limits."""
         if len(q) != 7:
             raise InputError(f"A posture has seven joint angles, not {len(q)}.")
         q1, q2, q3, q4, q5, q6, q7 = map(float, q)
@@ -158,7 +158,7 @@ class ArmFrame:
         )
         if skew > _SKEW:
             raise InputError(
-                "The tool rotation is none: its columns must be perpendicular unit vectors, "
+                "The tool rotation is invalid: its columns must be perpendicular unit vectors, "
                 "the third being the first cross the second."
             )
         (fx, fy, fz), (gx, gy, gz) = self._tip

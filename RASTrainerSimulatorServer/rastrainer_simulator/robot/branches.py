@@ -91,7 +91,7 @@ def nearest_branch(
 ) -> tuple[float, ...] | None:
     """Return the branch inside the limits whose θ is nearest to `last` (least squares), or None.
 
-    `angles` is the branch of positive tilts; `rolls` tells whether θ7 has to follow the wrist.
+    `angles` is the branch of positive tilts; `rolls`: whether θ7 has to follow the wrist.
     """
     t1, t2, t3, t4, t5, t6, t7 = angles
     l1, l2, l3, l4, l5, l6, l7 = last

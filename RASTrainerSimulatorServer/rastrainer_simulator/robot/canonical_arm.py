@@ -1,7 +1,7 @@
 """The canonical S-R-S chain in plain floats: what FABRIK's inner loops read.
 
 Everything here lives in the arm's own frame: the shoulder is the origin and θ2 = 0 points the upper
-arm along z. `SrsGeometry` says how World and q relate to it.
+arm along z. `SrsGeometry` relates World and q to it.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def tilt_range(lower: float, upper: float) -> tuple[float, float]:
 
 
 def inside(theta: Angles, limits: Limits) -> bool:
-    """Tell whether each θ is within its limits."""
+    """Return whether each θ is within its limits."""
     t1, t2, t3, t4, t5, t6, t7 = theta
     (a1, b1), (a2, b2), (a3, b3), (a4, b4), (a5, b5), (a6, b6), (a7, b7) = limits
     return (
@@ -85,7 +85,7 @@ def inside(theta: Angles, limits: Limits) -> bool:
 
 
 def clamped(theta: Angles, limits: Limits) -> tuple[float, ...]:
-    """Return the angles, each moved to its nearer limit where it is beyond it."""
+    """Return the angles, each clamped to its limits."""
     return tuple([min(max(a, low), high) for a, (low, high) in zip(theta, limits, strict=True)])
 
 
@@ -130,5 +130,5 @@ def tip(arm: CanonicalArm, links: Chain) -> Vector:
 
 
 def clear(theta: Angles, small: float = _SMALL_TILT) -> bool:
-    """Tell whether shoulder, elbow and wrist are clear of their singularities by `small` rad."""
+    """Return whether shoulder, elbow and wrist are clear of their singularities by `small` rad."""
     return not (-small < theta[1] < small or -small < theta[3] < small or -small < theta[5] < small)

@@ -88,7 +88,7 @@ def elbow_circle(arm: CanonicalArm, wrist: Vector, guess: Vector) -> ElbowCircle
 
 
 def tilts_allow(arm: CanonicalArm, elbow: Vector, wrist: Vector, tool: Vector) -> bool:
-    """Tell whether the tilts of shoulder and wrist are inside their limits."""
+    """Return whether the tilts of shoulder and wrist are inside their limits."""
     ex, ey, ez = elbow
     low, high = arm.shoulder_cosines
     if not low - _SLACK <= ez / arm.upper <= high + _SLACK:
@@ -151,7 +151,7 @@ def _pans_at(pans: dict[int, tuple[Wave, Wave]], angles: Sequence[tuple[float, .
 
 
 def _tilt_waves(arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector) -> list[Wave]:
-    """Return what is negative where the tilt of shoulder or wrist is beyond its limits."""
+    """Return values that are negative where the tilt of shoulder or wrist exceeds its limits."""
     up, back, out = (0.0, 0.0, 1.0), scale(tool, -1.0), dot(wrist, tool)
     waves = []
     low, high = arm.shoulder_cosines

@@ -22,7 +22,7 @@ from rastrainer_simulator.vectors import Vector, scale
 _FLAT = 1e-9
 _NO_MOTION = 2e-4
 LEAP = 0.02 * 0.02
-"""What no step of teleoperation asks of the joints away from a singularity, squared, rad²."""
+"""Squared motion, rad², that no step of teleoperation needs away from a singularity."""
 _MOST_SLIDES = 4
 _MOST_KEPT = 4
 
@@ -53,8 +53,8 @@ def _slide(
     motion = squared_motion(theta, last)
     for _ in range(_MOST_SLIDES):
         links = chain(theta)
-        angle, way = _slide_angle(circle.axis, theta, links, last, goal.roll is not None)
-        if way < _NO_MOTION:
+        angle, distance = _slide_angle(circle.axis, theta, links, last, goal.roll is not None)
+        if distance < _NO_MOTION:
             break
         elbow = circle.turned(scale(links[0], arm.upper), angle)
         slid = close_at(arm, elbow, wrist, goal.held_tool, goal.roll, last)
@@ -96,7 +96,7 @@ def _slide_angle(
 ) -> tuple[float, float]:
     """Return the angle (rad) that brings θ nearest to `last`, and how far the joints then move.
 
-    `axis` is that of the elbow's circle, `links` the chain of θ; `rolls` tells whether the tool's
+    `axis` is that of the elbow's circle, `links` the chain of θ; `rolls`: whether the tool's
     roll is held too.
     """
     motion = self_motion(axis, links, rolls)

@@ -65,9 +65,9 @@ class Fabrik:
     ) -> Solution:
         """Return joint angles inside the limits that bring the tool to a target in World.
 
-        `target_position` (3,) is where the tip shall be, in m. `target_direction` (3,) is where the
-        tool shall point, from the wrist to the tip; `target_rotation` (3, 3) how the tip's frame
-        shall be turned; with neither, only the position counts. Of all postures that do it, one
+        `target_position` (3,) is that of the tip, m; `target_direction` (3,) that of the tool, from
+        the wrist to the tip; `target_rotation` (3, 3) that of the tip's frame. Without direction
+        and rotation only the position counts. Of all postures that reach the target, one
         near to `q_start` (7,) rad is chosen. Raises InputError for numbers that are no target.
         """
         target = (target_position, target_direction, target_rotation, q_start)
@@ -138,7 +138,7 @@ class Fabrik:
         ex, ey, ez = a * ux, a * uy, a * uz
         wrist = (ex + b * fx, ey + b * fy, ez + b * fz)
         if -_BENT < theta[3] < _BENT:
-            # A stretched arm has no plane; joint 4's axis tells in which it will bend.
+            # A stretched arm has no plane; joint 4's axis determines in which it will bend.
             lean = -_BENT if theta[3] >= 0.0 else _BENT
             ex += lean * (ny * uz - nz * uy)
             ey += lean * (nz * ux - nx * uz)

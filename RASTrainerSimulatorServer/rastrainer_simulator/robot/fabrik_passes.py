@@ -78,7 +78,7 @@ def _at_distance(
     square = distance * distance - along * along
     if square < -_ROUNDING:
         return None
-    # What rounding alone could leave of it has no direction.
+    # A remainder of the size of a rounding error has no direction.
     square = square if square > _ROUNDING else 0.0
     part = wrist[0] * ax + wrist[1] * ay + wrist[2] * az
     bx, by, bz = wrist[0] - part * ax, wrist[1] - part * ay, wrist[2] - part * az

@@ -15,7 +15,7 @@ OUT_OF_REACH = "The target is out of reach; the tool is as near to it as the arm
 ROLL_BLOCKED = (
     "The joint limits do not allow this roll of the tool there; it is as near as it gets."
 )
-BLOCKED = "No posture inside the joint limits holds the tool like that; the arm stays where it is."
+BLOCKED = "No posture inside the joint limits holds the tool like that; the arm does not move."
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class FabrikSettings:
             raise InputError("FABRIK needs tolerances above zero and at least one iteration.")
 
     def met(self, position_error_m: float, direction_error_rad: float) -> bool:
-        """Tell whether errors are within tolerance."""
+        """Return whether errors are within tolerance."""
         return position_error_m <= self.tolerance_m and direction_error_rad <= self.tolerance_rad
 
 
@@ -40,8 +40,8 @@ class Solution(NamedTuple):
     """Joint angles (rad) inside the limits, and how far from the target they hold the tool.
 
     `direction_error_rad` is the angle between the tool's directions, or of the rotation between the
-    poses where a rotation was asked for, or 0. `reason` is a sentence for the operator, empty where
-    the target is met.
+    poses if a rotation was given, or 0. `reason` is a sentence for the operator, empty if the
+    target is met.
     """
 
     q: tuple[float, ...]
@@ -76,7 +76,7 @@ class Goal(NamedTuple):
         return x - size * tx, y - size * ty, z - size * tz
 
     def is_near(self, arm: CanonicalArm, links: Chain) -> bool:
-        """Tell whether the goal continues a motion: the tool is already almost there."""
+        """Return whether the tool is already almost at the goal, as within a motion."""
         if dist(self.position, tip(arm, links)) > _NEAR_M:
             return False
         return self.tool is None or dot(links[2], self.tool) > _NEAR_COSINE

@@ -35,7 +35,7 @@ def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics
     """Return the kinematics of `model`.
 
     `backend` is "pinocchio" or "numpy"; by default the environment variable RASTRAINER_KINEMATICS
-    says which, else Pinocchio is used where it is installed (it has no wheels for Windows).
+    decides, else Pinocchio is used if it is installed (it has no wheels for Windows).
     """
     chosen = _chosen(backend)
     if chosen == "numpy":

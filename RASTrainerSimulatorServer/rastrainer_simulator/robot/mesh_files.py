@@ -1,4 +1,4 @@
-"""Which mesh files show a robot's links and stand for them in collisions; none is opened here."""
+"""Which mesh files show a robot's links and represent them in collisions; none is opened here."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class MeshPart:
     origin: np.ndarray  # (4, 4) float: the mesh's frame to the link's frame, m
     scale: tuple[float, float, float]
     color: Color
-    replaced: bool = False  # stands in for the URDF's own mesh
+    replaced: bool = False  # used instead of the URDF's own mesh
 
 
 def mesh_parts(
@@ -113,7 +113,7 @@ def mesh_inside(folder: Path, path: Path, link: str) -> Path:
     except (OSError, ValueError, RuntimeError):  # such as a ring of symbolic links
         is_inside = False
     if not is_inside:
-        raise InputError(f"The mesh {path} of {link} must lie in {folder} or below it.")
+        raise InputError(f"The mesh {path} of {link} must be in {folder} or below it.")
     return path
 
 

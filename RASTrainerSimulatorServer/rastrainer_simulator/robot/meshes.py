@@ -57,10 +57,10 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
     data, kind = _read_bytes(part), part.path.suffix[1:].lower()
     data = checked_content(data, kind, f"The mesh {part.path}")
     try:
-        # From bytes there is no folder in which a mesh could ask for further files.
+        # Loaded from bytes, a mesh cannot refer to further files.
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type=kind, process=False)
         vertices, faces = np.asarray(mesh.vertices, dtype=float), np.asarray(mesh.faces)
-    except Exception as error:  # a hostile file can break the parser in any way
+    except Exception as error:  # a hostile file can break the parser anywhere
         raise InputError(
             f"{part.path} cannot be read as a {kind.upper()} mesh ({type(error).__name__})."
         ) from error
@@ -93,7 +93,7 @@ def _read_bytes(part: MeshPart) -> bytes:
 
 
 def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Trimesh]]) -> bool:
-    """Tell whether meshes lie on the outstretched robot rather than around their links' origins.
+    """Return whether meshes lie on the outstretched robot rather than around their links' origins.
 
     A link's mesh lies about the middle between its own and the next joint.
     """
@@ -190,7 +190,7 @@ def _numbers_shown(tree: Any) -> int:
 
 
 def whole(value: Any) -> int:
-    """Return a count; raise ValueError for what is none."""
+    """Return a count; raise ValueError if it is not one."""
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise ValueError
     return value

@@ -81,7 +81,7 @@ def load_robot(
     default it is the outermost link behind the last joint. No mesh is opened here.
     Raises InputError for an unusable file and for a robot that is not a 7R S-R-S arm.
     """
-    # The import takes most of a second (trimesh, scipy): only who reads a URDF waits for it.
+    # The import takes most of a second (trimesh, scipy), so it waits until a URDF is read.
     from rastrainer_simulator.robot.urdf import read_urdf
 
     path = Path(urdf_path) if urdf_path else asset_path(*DEFAULT_URDF)

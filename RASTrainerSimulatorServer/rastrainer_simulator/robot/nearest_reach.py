@@ -51,7 +51,7 @@ def nearest_links(arm: CanonicalArm, target: Vector, last: Angles) -> tuple[Vect
     beside = hypot(x, y)
     pan = atan2(y, x) if beside > 1e-9 else last[0]
     plans = _plans(arm)
-    # Nothing gets nearer to what is too far away than the stretched arm: every joint free.
+    # Nearest to a target that is too far away is the stretched arm: every joint free.
     posture = _posture(plans[0], (1, 1, 1), beside, z)
     if hypot(beside, z) < arm.reach or not _allowed(arm, posture):
         candidates = []

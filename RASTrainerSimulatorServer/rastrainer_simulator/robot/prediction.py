@@ -197,7 +197,7 @@ def _elbow(
 
 
 def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vector:
-    """Return the turns of joints 5 to 7 (rad) that the goal's tool asks of a `turned` forearm."""
+    """Return the turns of joints 5 to 7 (rad) that the tool's goal needs with a turned forearm."""
     _, (fx, fy, fz), (tx, ty, tz), _, _, (wx, wy, wz) = links
     ox, oy, oz = turned
     gx, gy, gz = goal.held_tool
@@ -213,6 +213,6 @@ def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vec
     # The goal's x axis along the tool's y axis, which is joint 6's axis turned about the tool.
     ux, uy, uz = goal.roll[0]
     c, s = cos(theta[6]), sin(theta[6])
-    asked = c * (ux * wx + uy * wy + uz * wz) - s * (ux * ax + uy * ay + uz * az)
+    needed = c * (ux * wx + uy * wy + uz * wz) - s * (ux * ax + uy * ay + uz * az)
     made = ox * tx + oy * ty + oz * tz + d5 * (fx * tx + fy * ty + fz * tz)
-    return d5, d6, asked - made
+    return d5, d6, needed - made

@@ -16,7 +16,7 @@ from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.nearest_reach import nearest_links
 from rastrainer_simulator.vectors import Vector, dot
 
-# Passes that change the gap between them by less than this part of it lead nowhere.
+# Passes that change the gap between them by less than this share of it do not converge.
 _STALLED = 1e-3
 
 
@@ -26,7 +26,7 @@ class Start(NamedTuple):
     theta: Angles
     wrist: Vector
     elbow: Vector
-    farthest: float  # rad: a joint that would move more should look for another way
+    farthest: float  # rad: a joint that would move more calls for another solution
 
 
 class Reached(NamedTuple):

@@ -160,7 +160,7 @@ def _meeting_point(points: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, fl
     """Return the point nearest to three lines (least squares) and its distance to the farthest."""
     projectors = np.eye(3) - axes[:, :, None] * axes[:, None, :]
     right = (projectors @ points[:, :, None]).sum(axis=0)[:, 0]
-    # Lines that are all parallel have no such point; the least-norm answer then lies off them.
+    # Parallel lines have no such point; the least-norm solution is then off them.
     center = np.linalg.lstsq(projectors.sum(axis=0), right, rcond=None)[0]
     misses = (projectors @ (center - points)[:, :, None])[:, :, 0]
     return center, float(np.linalg.norm(misses, axis=1).max())

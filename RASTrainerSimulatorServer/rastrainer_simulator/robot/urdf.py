@@ -32,7 +32,7 @@ def read_urdf(path: Path) -> yourdfpy.Robot:
         robot = yourdfpy.URDF.load(
             io.BytesIO(text.encode()), build_scene_graph=False, load_meshes=False
         ).robot
-    except Exception as error:  # a hostile file can break the parser in any way
+    except Exception as error:  # a hostile file can break the parser anywhere
         raise InputError(
             f"{path} is not a usable URDF: an element lacks a name, a parent, a child or a number "
             f"({type(error).__name__}: {error})."

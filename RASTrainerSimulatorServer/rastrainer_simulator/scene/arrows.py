@@ -1,4 +1,4 @@
-"""Arrows on the skin, from each fiducial toward the next: ribbons laid on step by step."""
+"""Arrows on the skin, from each fiducial toward the next: ribbons projected step by step."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from rastrainer_simulator.scene.skin import RIM_RADIUS, Shape, Skin
 
 STEP = 2.0
-"""The ribbon is laid onto the skin anew after every 2 mm."""
+"""Length of a step, after which the ribbon is projected onto the skin again, mm."""
 GAP = 1.3
 LENGTHS = (26.0, 16.0, 10.0)
 """How long arrows are at most; shorter where else numbers would find no room."""
@@ -28,13 +28,13 @@ class Arrow:
     """The middle line of an arrow; mm, RAS.
 
     Attributes:
-        way: (n, 3) float, on the skin, from the fiducial on, a step apart.
+        path: (n, 3) float, on the skin, from the fiducial on, a step apart.
         outward: (n, 3) float, the skin's normals there.
-        start: length of the way at which the arrow begins.
+        start: length of the path at which the arrow starts.
         end: and at which its tip is.
     """
 
-    way: np.ndarray
+    path: np.ndarray
     outward: np.ndarray
     start: float
     end: float
@@ -45,7 +45,7 @@ class Arrow:
         return self.end > self.start
 
     def half_width(self, along: np.ndarray) -> np.ndarray:
-        """Return half the arrow's width at lengths of the way (k,)."""
+        """Return half the arrow's width at lengths of the path (k,)."""
         left = self.end - along
         head = HEAD_WIDTH / 2.0 * np.clip(left / HEAD_LENGTH, 0.0, 1.0)
         return np.where(left <= HEAD_LENGTH, head, SHAFT_WIDTH / 2.0)
@@ -55,7 +55,7 @@ class Arrow:
         if not self.is_drawn:
             return np.empty((0, 3)), np.empty(0)
         along = np.linspace(self.start, self.end, max(2, round(self.end - self.start) + 1))
-        return _at(self.way, along), self.half_width(along)
+        return _at(self.path, along), self.half_width(along)
 
 
 def arrows(skin: Skin, points: np.ndarray, longest: float = LENGTHS[0]) -> list[Arrow]:
@@ -78,8 +78,8 @@ def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
     head = np.linspace(neck, arrow.end, 4)
     along = np.concatenate([shaft, head])
     widths = np.concatenate([np.full(len(shaft), SHAFT_WIDTH / 2.0), arrow.half_width(head)])
-    middle, outward = _at(arrow.way, along), _unit(_at(arrow.outward, along))
-    to_left = _unit(np.cross(outward, _tangents(arrow.way, along)))
+    middle, outward = _at(arrow.path, along), _unit(_at(arrow.outward, along))
+    to_left = _unit(np.cross(outward, _tangents(arrow.path, along)))
     sides = np.array(_ACROSS)[:, None] * (widths[:, None] * to_left)[:, None]
     rows = [
         skin.onto(row, normal) for row, normal in zip(middle[:, None] + sides, outward, strict=True)
@@ -111,20 +111,20 @@ def _turned(
     turn: float,
     longest: float,
 ) -> tuple[Arrow, bool]:
-    """Return the arrow that sets out at `turn` (rad) from the straight way, and if it is whole.
+    """Return the arrow that starts at `turn` (rad) from the straight path, and whether it is whole.
 
     It ends before the goal's rim, and well before any of the `others`, which it must not seem to
     lead to.
     """
     first = RIM_RADIUS + GAP
-    way, outward = _walk(skin, start, goal, turn, first + longest)
-    along = np.arange(first, min(first + longest, STEP * (len(way) - 1)), 0.5)
-    places = _at(way, along)[:, None]
+    path, outward = _walk(skin, start, goal, turn, first + longest)
+    along = np.arange(first, min(first + longest, STEP * (len(path) - 1)), 0.5)
+    places = _at(path, along)[:, None]
     is_foreign = (np.linalg.norm(places - others, axis=2) < RIM_RADIUS + BERTH).any(axis=1)
     is_over = is_foreign | (np.linalg.norm(places[:, 0] - goal, axis=1) < RIM_RADIUS + GAP)
     stop = int(is_over.argmax()) if is_over.any() else len(along) - 1
     end = float(along[stop]) if len(along) else first
-    return Arrow(way, outward, first, end), not is_foreign[: stop + 1].any()
+    return Arrow(path, outward, first, end), not is_foreign[: stop + 1].any()
 
 
 def _walk(
@@ -133,8 +133,8 @@ def _walk(
     """Walk over the skin, `turn` (rad) aside of `goal`; return places a step apart, and normals."""
     outward = skin.outward(start)
     place = skin.onto(np.atleast_2d(start), outward)[0]
-    way, normals = [place], [outward]
-    while STEP * (len(way) - 1) < longest and np.linalg.norm(goal - place) > STEP:
+    path, normals = [place], [outward]
+    while STEP * (len(path) - 1) < longest and np.linalg.norm(goal - place) > STEP:
         toward = goal - place
         along = toward - (toward @ outward) * outward
         if np.linalg.norm(along) < 1e-6:
@@ -143,9 +143,9 @@ def _walk(
         ahead = place + STEP * along / np.linalg.norm(along)
         place = skin.onto(ahead[None], outward)[0]
         outward = skin.outward(place)
-        way.append(place)
+        path.append(place)
         normals.append(outward)
-    return np.array(way), np.array(normals)
+    return np.array(path), np.array(normals)
 
 
 def _kept_apart(made: list[Arrow]) -> list[Arrow]:
@@ -165,7 +165,7 @@ def _kept_apart(made: list[Arrow]) -> list[Arrow]:
             arrow = made[longer]
             if _spare(arrow) > 0.0:
                 end = max(arrow.end - STEP, arrow.start + SHORTEST)
-                made[longer] = Arrow(arrow.way, arrow.outward, arrow.start, end)
+                made[longer] = Arrow(arrow.path, arrow.outward, arrow.start, end)
 
 
 def _spare(arrow: Arrow) -> float:
@@ -182,13 +182,13 @@ def _distance(first: Arrow, second: Arrow) -> float:
 
 
 def _at(values: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Interpolate (n, 3) values, a step apart, at lengths of the way (k,)."""
+    """Interpolate (n, 3) values, a step apart, at lengths of the path (k,)."""
     steps = STEP * np.arange(len(values))
     return np.column_stack([np.interp(along, steps, values[:, axis]) for axis in range(3)])
 
 
-def _tangents(way: np.ndarray, along: np.ndarray) -> np.ndarray:
-    return _at(way, along + STEP / 2.0) - _at(way, along - STEP / 2.0)
+def _tangents(path: np.ndarray, along: np.ndarray) -> np.ndarray:
+    return _at(path, along + STEP / 2.0) - _at(path, along - STEP / 2.0)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

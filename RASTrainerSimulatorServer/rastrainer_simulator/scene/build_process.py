@@ -19,7 +19,7 @@ from rastrainer_simulator.scene.scene_glb import scene_glb
 
 
 def main() -> int:
-    """Build the scene that is asked for; return 2, with one sentence, where that is impossible."""
+    """Build the given scene; if that is impossible, print one sentence and return 2."""
     with contextlib.suppress(AttributeError, OSError):
         os.nice(10)  # The control loop of the parent comes first.
     wanted = json.load(sys.stdin)

@@ -74,7 +74,7 @@ class Surface:
         vertices: (n, 3) float, m.
         normals: (n, 3) float, unit vectors.
         triangles: (m, 3) int, counterclockwise seen from outside.
-        material: of all of it.
+        material: of all triangles.
     """
 
     vertices: np.ndarray
@@ -85,13 +85,13 @@ class Surface:
 
 @dataclass(frozen=True)
 class Node:
-    """Something that can be moved, colored or hidden by its name.
+    """A part of the scene that can be moved, colored or hidden by its name.
 
     Attributes:
         name: unique in the scene.
         surfaces: at most one of each material.
         children: what moves with it.
-        pose: (4, 4) float, to the parent's frame; None for where the parent is.
+        pose: (4, 4) float, to the parent's frame; None for the parent's pose.
     """
 
     name: str
@@ -107,7 +107,7 @@ class Node:
 
 
 def merged(surfaces: list[Surface]) -> tuple[Surface, ...]:
-    """Return one surface for each material: what is drawn in one go costs a view least."""
+    """Return one surface for each material: fewer surfaces are drawn faster."""
     by_material: dict[Material, list[Surface]] = {}
     for surface in surfaces:
         by_material.setdefault(surface.material, []).append(surface)

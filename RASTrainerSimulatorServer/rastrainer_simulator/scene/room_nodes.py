@@ -1,4 +1,4 @@
-"""The room, the table on which the robot stands, and the stand that holds the head."""
+"""The room, the robot's table, and the stand that holds the head."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _walls() -> list[Surface]:
 
 
 def _around(height: Span, out: float, material: Material) -> list[Surface]:
-    """Return a strip along all four walls that stands out by `out`."""
+    """Return a strip along all four walls that projects by `out`."""
     made = []
     for x in ((X[0] - WALL_THICKNESS, X[0] + out), (X[1] - out, X[1] + WALL_THICKNESS)):
         made.append(box(x, Y, height, material))
@@ -193,9 +193,9 @@ LEG_RADIUS = 0.028
 LEG_INSET = 0.09
 RAIL = 0.02
 INTO_TABLE = 0.02
-"""How far the stand reaches into the table: a trial's head may stand that much higher."""
+"""How far the stand reaches into the table: a trial's head may be that much higher."""
 COLLAR = 1.8
-"""Radius of the collar around the stand's foot, in radii of the stand: it has room to move."""
+"""Radius of the collar around the stand's foot, in radii of the stand, with room to move."""
 
 
 def table_node(furniture: Furniture, head_base: np.ndarray) -> Node:

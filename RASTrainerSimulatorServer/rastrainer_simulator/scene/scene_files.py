@@ -1,4 +1,4 @@
-"""The scenes as files: built once by a process of its own, then kept for the next time."""
+"""The scenes as files: built once by a separate process, then cached."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rastrainer_simulator.robot.model import RobotModel
 def setup_digest(setup: SimulationSetup) -> bytes:
     """Return a hash of scenario, robot and the code that makes scenes of them; reads their files.
 
-    A file that cannot be read counts as empty: who builds the scene says what is wrong.
+    A file that cannot be read counts as empty: building the scene reports the error.
     """
     whole = hashlib.sha256(f"{rastrainer.__version__} {setup.scenario_sha256}".encode())
     for path in sorted(Path(__file__).parent.glob("*.py")):
@@ -109,7 +109,7 @@ class SceneFile:
 
 
 class SceneFiles:
-    """Gives the scenes of a setup; what is missing is built, the wanted one first."""
+    """Provides the scenes of a setup; missing ones are built, the wanted one first."""
 
     def __init__(self, folder: Path, robot_meshes: Path | None = None) -> None:
         """Keep scenes in `folder`; `robot_meshes` are those that the setups were loaded with."""
@@ -130,7 +130,7 @@ class SceneFiles:
         Who cancels the wait ends the building, too.
 
         Raises:
-            InputError: there is no such task, or it cannot be built; the sentence says why.
+            InputError: there is no such task, or it cannot be built.
         """
         if task != NO_TASK:
             setup.scenario.task(task)
@@ -142,10 +142,10 @@ class SceneFiles:
         return self._ready[path]
 
     async def build_all(self, setup: SimulationSetup) -> None:
-        """Build what is still missing of a setup, so that no task has to wait for its scene.
+        """Build the missing scenes of a setup, so that no task has to wait for its scene.
 
         Raises:
-            InputError: a scene cannot be built; the sentence says why.
+            InputError: a scene cannot be built.
         """
         for task in await self._paths_of(setup):
             await self.scene(setup, task)
@@ -187,7 +187,7 @@ class SceneFiles:
         try:
             _, errors = await process.communicate(json.dumps(wanted).encode())
         finally:
-            # Whoever waits for it may have been told not to wait any more.
+            # The waiting task may have been cancelled.
             if process.returncode is None:
                 process.kill()
                 await process.wait()
@@ -211,7 +211,7 @@ async def _start() -> asyncio.subprocess.Process:
 
 
 def read_scene(file: SceneFile) -> bytes | None:
-    """Return the content of a scene's file; None where it is not any more what it was."""
+    """Return the content of a scene's file; None if it was changed or is missing."""
     try:
         content = file.path.read_bytes()
     except OSError:
@@ -220,7 +220,7 @@ def read_scene(file: SceneFile) -> bytes | None:
 
 
 def _sha256_of_glb(path: Path) -> str | None:
-    """Return the hash of a whole GLB file; None where there is none."""
+    """Return the hash of a complete GLB file; None if there is none."""
     try:
         content = path.read_bytes()
     except OSError:

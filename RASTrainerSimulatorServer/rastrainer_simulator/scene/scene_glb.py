@@ -72,7 +72,7 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
 
 
 def _first_links(robot: RobotModel) -> dict[int, RobotLink]:
-    """Return the link whose pose the state tells, for each count of joints before it."""
+    """Return the link whose pose is in the state, for each number of joints before it."""
     first: dict[int, RobotLink] = {}
     for link in robot.links:
         first.setdefault(link.joint, link)
@@ -86,7 +86,7 @@ WORLD_TO_GLTF = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1
 
 
 def to_glb(nodes: list[Node]) -> bytes:
-    """Return the GLB of nodes that stand in World.
+    """Return the GLB of nodes in World.
 
     A node of one surface carries it; one of several has a child for each, named
     `NODE_MATERIAL`.
@@ -191,7 +191,7 @@ def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes
 def scene_nodes(
     scenario: Scenario, robot: RobotModel, head: HeadMesh, task: Task | None
 ) -> list[Node]:
-    """Return what stands in World; what moves has its place from the simulation's state.
+    """Return the nodes in World; moving nodes get their poses from the simulation's state.
 
     Raises:
         InputError: a mesh cannot be read.

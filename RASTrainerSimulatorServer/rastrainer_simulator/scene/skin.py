@@ -68,7 +68,7 @@ class Skin:
     def onto(self, points: np.ndarray, outward: np.ndarray) -> np.ndarray:
         """Return where lines through `points` (n, 3) along `outward` (3,) enter the skin, (n, 3).
 
-        A point whose line misses the skin stays where it is.
+        A point whose line misses the skin is not moved.
         """
         placed = points.tolist()
         hit, along, place = [0.0] * 3, mutable(0.0), [0.0] * 3
@@ -83,12 +83,12 @@ class Skin:
         return np.array(placed)
 
     def lay(self, flat: np.ndarray, point: np.ndarray) -> np.ndarray:
-        """Lay flat points (n, 2) float around a point of the skin; return (n, 3) float."""
+        """Project flat points (n, 2) float around a point of the skin; return (n, 3) float."""
         frame = self.frame(point)
         return self.onto(point + flat @ frame[:2], frame[2])
 
     def lay_shape(self, points: np.ndarray, triangles: np.ndarray, at: np.ndarray) -> Shape:
-        """Lay a flat shape, (n, 2) float points and (m, 3) int triangles, around a point."""
+        """Project a flat shape, (n, 2) float points and (m, 3) int triangles, around a point."""
         outward = self.frame(at)[2]
         return Shape(self.lay(points, at), triangles, np.tile(outward, (len(points), 1)))
 

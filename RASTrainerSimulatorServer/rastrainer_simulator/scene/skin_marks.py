@@ -16,9 +16,9 @@ ANGLES = np.radians(np.arange(0, 360, 20))
 MARGINS = (2.5, 1.5)
 """How far a number keeps from everything else, mm: the most that is possible for all."""
 NUMBERS_APART = 3.0
-"""Two numbers keep so many times as far from each other: 5 beside 2 must not read as 52."""
+"""How many times that margin two numbers keep from each other: 5 beside 2 must not read as 52."""
 OWN_SHARE = 0.8
-"""A number's distance to its own dot is at most so much of that to any other: no mistaking."""
+"""Largest ratio of a number's distance to its own dot and to any other, so that it is clear."""
 ENOUGH = 16
 """Places to choose from, after which none farther from the fiducial is looked at."""
 MOST_TRIES = 20_000
@@ -29,7 +29,7 @@ _ROOM_ENOUGH = 6.0
 
 @dataclass(frozen=True)
 class Place:
-    """One place where a number could stand.
+    """One possible place for a number.
 
     Attributes:
         middle: (3,) float, on the skin.
@@ -50,7 +50,7 @@ def number_places(
     """Return the middle (3,) of each number, and whether all keep at least the least margin.
 
     `points` (n, 3) float are the fiducials; `sizes` the width and height (2,) of each number, mm.
-    Numbers that cannot all keep the margin stand where each has the most room.
+    If not all numbers can keep the margin, each goes where it has the most room.
     """
     samples = [arrow.samples() for arrow in arrows]
     obstacles = np.concatenate([points, *(places for places, _ in samples)])
@@ -151,7 +151,7 @@ def _apart(first: Place, second: Place) -> float:
 
 
 ARROW_LIFT, RIM_LIFT, NUMBER_LIFT, DOT_LIFT = 0.5, 0.5, 0.6, 0.8
-"""How far above the skin each lies, mm, so that no wrinkle hides it."""
+"""How far each is above the skin, mm, so that no wrinkle hides it."""
 
 
 @dataclass(frozen=True)
@@ -167,31 +167,31 @@ class SkinMark:
 
 @dataclass(frozen=True)
 class Placement:
-    """Where the marks of a task stand.
+    """Where the marks of a task are.
 
     Attributes:
         numbers: their flat shapes.
         places: (3,) float, RAS mm, the middle of each number.
-        ways: the arrows.
+        arrows: from each fiducial to the next.
         has_room: whether all numbers keep clear of arrows, rims and each other.
     """
 
     numbers: list[Flat]
     places: list[np.ndarray]
-    ways: list[Arrow]
+    arrows: list[Arrow]
     has_room: bool
 
 
 def place_marks(skin: Skin, points: np.ndarray, labels: Sequence[str]) -> Placement:
-    """Return where numbers and arrows stand, the arrows as long as the numbers leave room."""
+    """Return where numbers and arrows go, the arrows as long as the numbers leave room."""
     numbers = [number(label) for label in labels]
     sizes = [np.ptp(flat, axis=0) for flat, _ in numbers]
     for longest in LENGTHS:
-        ways = arrows(skin, points, longest)
-        places, has_room = number_places(skin, points, sizes, ways)
+        placed_arrows = arrows(skin, points, longest)
+        places, has_room = number_places(skin, points, sizes, placed_arrows)
         if has_room:
             break
-    return Placement(numbers, places, ways, has_room)
+    return Placement(numbers, places, placed_arrows, has_room)
 
 
 def skin_marks(head: HeadMesh, points: np.ndarray, labels: Sequence[str]) -> list[SkinMark]:
@@ -199,7 +199,8 @@ def skin_marks(head: HeadMesh, points: np.ndarray, labels: Sequence[str]) -> lis
     skin = Skin(head)
     placed = place_marks(skin, points, labels)
     ribbons = [
-        _lifted(arrow_shape(skin, way), ARROW_LIFT) if way.is_drawn else None for way in placed.ways
+        _lifted(arrow_shape(skin, arrow), ARROW_LIFT) if arrow.is_drawn else None
+        for arrow in placed.arrows
     ]
     marks = []
     for index, (point, label) in enumerate(zip(points, labels, strict=True)):

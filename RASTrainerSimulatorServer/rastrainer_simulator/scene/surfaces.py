@@ -49,7 +49,7 @@ def turned(
 ) -> Surface:
     """Return what a lathe makes: `profile` has radius and height, from below upward.
 
-    `pose` (4, 4) float moves it from where it stands upright.
+    `pose` (4, 4) float moves it from its upright pose.
     """
     angles = np.linspace(0.0, 2.0 * np.pi, ROUND, endpoint=False)
     circle = np.column_stack([np.cos(angles), np.sin(angles)])

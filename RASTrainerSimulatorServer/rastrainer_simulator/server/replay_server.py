@@ -26,7 +26,7 @@ from rastrainer_simulator.server.server import stop_on_signals
 
 
 def show(
-    journal: Path, scenario: Path | None, port: int | None, has_window: bool, tell: Callable
+    journal: Path, scenario: Path | None, port: int | None, has_window: bool, announce: Callable
 ) -> None:
     """Show a journal's trial to views until the window is closed, Escape or Ctrl-C is pressed.
 
@@ -36,23 +36,25 @@ def show(
     track = read_track(journal)
     setup = setup_of(track.header, scenario)
     playback = Playback(RecordedTrial(track, setup), setup)
-    asyncio.run(_serve(playback, port, has_window, tell))
+    asyncio.run(_serve(playback, port, has_window, announce))
 
 
-async def _serve(playback: Playback, port: int | None, has_window: bool, tell: Callable) -> None:
+async def _serve(
+    playback: Playback, port: int | None, has_window: bool, announce: Callable
+) -> None:
     stop = asyncio.Event()
     presenter = ReplayPresenter(playback, _language(), stop.set)
     window: DesktopProcess | None = None
     tasks: list[asyncio.Task[None]] = []
     with stop_on_signals(asyncio.get_running_loop(), stop):
-        views = await open_views(playback, presenter, tell, port, None)
+        views = await open_views(playback, presenter, announce, port, None)
         try:
             tasks.append(asyncio.create_task(playback.run()))
             if has_window:
                 window = DesktopProcess(
                     f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open(), log_folder()
                 )
-                tasks.append(asyncio.create_task(window.run(stop.set, tell)))
+                tasks.append(asyncio.create_task(window.run(stop.set, announce)))
             await stop.wait()
         finally:
             for task in tasks:

@@ -60,7 +60,7 @@ class ScenarioLoader:
         return self._loading
 
     def reload(self) -> Future[Answer]:
-        """Make the present scenario's simulation anew, such as with other settings."""
+        """Make the present scenario's simulation again, for instance with other settings."""
         return self._worker.submit(self._use, self._control_loop.setup.scenario.folder)
 
     def listed(self) -> Future[list[ListedScenario]]:
@@ -72,7 +72,7 @@ class ScenarioLoader:
         return self._pictures.get(name)
 
     def close(self) -> None:
-        """Wait for what is being loaded, and load nothing more."""
+        """Wait for the scenario that is being loaded, and load no other."""
         self._worker.shutdown(cancel_futures=True)
 
     def _load(self, folder: str) -> Answer:

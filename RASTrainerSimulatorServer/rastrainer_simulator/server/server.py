@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 
-_LOOK_AFTER_LOOP_S = 1.0
+_LOOP_CHECK_PERIOD_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class ServerOptions:
 
     Attributes:
         records: folder of the trials' journals.
-        seed: of the heads' poses in the trials; who knows it knows the truth.
+        seed: of the heads' poses in the trials, which determines the truth.
         host: address to listen on.
         port: to listen on; 0 is any free one.
         connect_to: host and port of a listening Slicer, in place of listening.
@@ -95,7 +95,7 @@ class ServerOptions:
 
 
 class SimulatorServer:
-    """One simulation and everyone who watches or commands it."""
+    """One simulation with its clients and views."""
 
     def __init__(self, options: ServerOptions):
         """Load the scenario and the robot, which takes about a second.
@@ -148,14 +148,14 @@ class SimulatorServer:
             limits=self._limits.clients,
             answers=self._study.unacknowledged_answers,
         )
-        feed = StateFeed(link.publisher.is_due, link.tell, loop)
+        feed = StateFeed(link.publisher.is_due, link.publish, loop)
         unsubscribe = self._control_loop.subscribe(feed)
         self._control_loop.subscribe(TrialLog(loop))
         tasks = [loop.create_task(link.beat())]
         stop = asyncio.Event()
         presenter = self._presenter(link, stop) if self._options.has_views else None
         serve_views, views, window = self._views_to_serve(presenter), None, None
-        # What was loaded stays: no garbage collection needs to look at it between two ticks.
+        # Keep garbage collection between two ticks short: what is loaded now is never freed.
         gc.collect()
         gc.freeze()
         with stop_on_signals(loop, stop):
@@ -203,7 +203,7 @@ class SimulatorServer:
         try:
             preferences = read_preferences(self._config / PREFERENCES_FILE)
         except InputError:
-            # Whether the file is missing or wrong, the presenter looks at it again, and says so.
+            # The presenter reads the file again, and reports that it is missing or invalid.
             preferences = Preferences()
         return preferences.applied_to(SimulationSettings())
 
@@ -265,10 +265,10 @@ class SimulatorServer:
         # Here, before the control loop ticks: the import of aiohttp would make ticks late.
         from rastrainer_simulator.net.views.open_views import open_views
 
-        return lambda tell: open_views(
+        return lambda announce: open_views(
             presenter.presenter.shown,
             presenter.presenter,
-            tell,
+            announce,
             self._options.view_port,
             self._options.robot_meshes,
             self._config / "certificates" if self._options.has_network else None,
@@ -299,7 +299,7 @@ class SimulatorServer:
     async def _until(self, stop: asyncio.Event) -> None:
         while not stop.is_set():
             with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(stop.wait(), _LOOK_AFTER_LOOP_S)
+                await asyncio.wait_for(stop.wait(), _LOOP_CHECK_PERIOD_S)
             if not self._control_loop.is_running:
                 raise RASTrainerError("The control loop has broken down: the log says why.")
 
@@ -345,10 +345,10 @@ def stop_on_signals(loop: asyncio.AbstractEventLoop, stop: asyncio.Event) -> Ite
     """Set the event on SIGTERM, on Ctrl-C and when the terminal is closed."""
 
     def end(name: str) -> None:
-        _log.info("The simulator is asked to end by %s.", name)
+        _log.info("The simulator ends by %s.", name)
         stop.set()
 
-    def ask(number: int, *_frame: object) -> None:
+    def request_stop(number: int, *_frame: object) -> None:
         loop.call_soon_threadsafe(end, signal.Signals(number).name)
 
     # Not by the event loop's own means, which Windows lacks.
@@ -357,7 +357,7 @@ def stop_on_signals(loop: asyncio.AbstractEventLoop, stop: asyncio.Event) -> Ite
     # Who starts a program by nohup wants it to outlive the terminal.
     if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
         numbers.append(hang_up)
-    before = {number: signal.signal(number, ask) for number in numbers}
+    before = {number: signal.signal(number, request_stop) for number in numbers}
     try:
         yield
     finally:

@@ -1,1 +1,1 @@
-"""From the operator's hands to where the tool's tip shall be."""
+"""From the operator's input to the target of the tool's tip."""

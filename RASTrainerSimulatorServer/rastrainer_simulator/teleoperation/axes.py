@@ -26,7 +26,7 @@ class Axes:
     up: Vector
 
     def to_world(self, amounts: tuple[float, float, float]) -> Vector:
-        """Return the World vector of so much to the right, forward and up."""
+        """Return the World vector of a displacement to the right, forward and up."""
         sideways, ahead, above = amounts
         return vector(
             sideways * r + ahead * f + above * u

@@ -26,9 +26,9 @@ from rastrainer_simulator.vectors import (
 ARRIVED = 1e-6
 """A position (m) or direction (rad) this near counts as reached."""
 STALLED_AFTER = 0.3
-"""s without getting nearer after which a move ends where it is."""
+"""s without progress after which a move ends."""
 NEAR = 1e-4
-"""m: a move that ends so near has reached its target; the skin is not passed for less."""
+"""m: a move that ends within this distance has reached its target."""
 PROGRESS = 1e-5
 """m or rad that count as getting nearer."""
 
@@ -130,7 +130,7 @@ CommandedMotion = JogCommand | MoveCommand
 
 
 def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> CommandedMotion:
-    """Return the motion that Jog or MoveTipTo asks for.
+    """Return the motion of a Jog or MoveTipTo command.
 
     The frame "camera" is right, forward and up as the camera sees them, "tool" the axes of the
     tool's tip; both as they are when the command arrives.
@@ -148,9 +148,9 @@ def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> Comm
     )
 
 
-def _direction(asked: Vector | None) -> Vector | None:
-    """Return a unit vector; one without length asks for nothing."""
-    return None if asked is None or length(asked) < 1e-9 else unit(asked)
+def _direction(given: Vector | None) -> Vector | None:
+    """Return a unit vector; None for one without length."""
+    return None if given is None or length(given) < 1e-9 else unit(given)
 
 
 def started(command: CommandedMotion) -> Jogging | Moving:

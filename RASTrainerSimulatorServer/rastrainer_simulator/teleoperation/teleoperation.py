@@ -1,4 +1,4 @@
-"""From the operator's sticks and commands to where the tool's tip shall be after this tick."""
+"""From the operator's sticks and commands to the target of the tool's tip after this tick."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ class TeleoperationSettings:
         response: dead zone and response curve of the sticks.
         coarse_speed: of the tip at full deflection, m/s.
         fine_speed: the same while the trigger for fine speed is held, m/s.
-        acceleration: most change of the tip's velocity, m/s²; a released stick stops at once.
-        steering: who decides the tool's direction, and how fast it turns.
+        acceleration: of the tip at most, m/s²; a released stick stops it immediately.
+        steering: how the tool's direction is chosen, and how fast it turns.
     """
 
     response: StickResponse = field(default_factory=StickResponse)
@@ -92,12 +92,12 @@ class MotionRequest:
     """What the operator wants of this tick.
 
     Attributes:
-        motion: what asks for it; NONE means that the arm shall stand still.
+        motion: its source; NONE keeps the arm still.
         displacement: of the tip, m, World.
         direction: of the tool, unit vector; None where it is free.
         across: the x axis of the tool's tip, unit vector; None where the tool may roll.
         ended: how a commanded motion has just ended, None while none has.
-        goal: where the motion shall end, m, World; None where no place is commanded.
+        goal: end of the motion, m, World; None if no position is commanded.
     """
 
     motion: Motion

@@ -1,4 +1,4 @@
-"""Where the tool shall point: as the tip needs it, held and steered, or along the normal."""
+"""The direction of the tool: as the tip needs it, held and steered, or along the normal."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ class SteeringSettings:
     """How the tool's direction is steered; lengths in m, angles in rad.
 
     Attributes:
-        choice: who decides the direction.
+        choice: how the direction is chosen.
         coarse_turn: fastest turn by the stick, rad/s.
         fine_turn: the same while the trigger for fine speed is held, rad/s.
         leaning_turn: fastest turn toward the surface normal, rad/s.
         largest_lean: of CLEAR, between the tool and the normal at the surface.
         near: clearance of the tip up to which the lean is limited to that.
         far: clearance from which the lean is not limited.
-        shaft_clearance: of the shaft, below which the tool turns away from what is near to it.
+        shaft_clearance: clearance of the shaft below which the tool turns away.
         from_above: least downward part of the direction toward which the tool leans, 0…1: coming
             from below, the wrist would be at the table.
     """
@@ -84,7 +84,7 @@ class NearestSurface:
 
 
 class ToolSteering:
-    """Keeps the direction that the tool shall have."""
+    """Keeps the wanted direction of the tool."""
 
     def __init__(self, settings: SteeringSettings) -> None:
         self._settings = settings
@@ -94,15 +94,15 @@ class ToolSteering:
 
     @property
     def is_steered(self) -> bool:
-        """Whether the steering stick has a say."""
+        """Whether the steering stick has an effect."""
         return self._settings.choice not in (ToolDirection.FREE, ToolDirection.CLEAR)
 
     def reset(self) -> None:
-        """Forget what is held: the tool keeps the direction it has when it is next moved."""
+        """Forget the held direction: the next motion keeps the tool's direction."""
         self._held = self._frame = None
 
     def across(self, wanted: Vector, direction: Vector, across: Vector) -> Vector | None:
-        """Return the x axis that the tool shall have along `wanted`, None where its roll is free.
+        """Return the wanted x axis of the tool along `wanted`, None if its roll is free.
 
         `direction` and `across` are the tool's direction and x axis now.
         """
@@ -126,7 +126,7 @@ class ToolSteering:
         direction: Vector,
         surface: NearestSurface | None,
     ) -> Vector | None:
-        """Return the direction that the tool shall have after this tick, None where it is free.
+        """Return the wanted direction of the tool after this tick, None if it is free.
 
         `turn` is the steering stick's response (right, up), `direction` the tool's direction now,
         `surface` the head near the tool, if any.
@@ -163,7 +163,7 @@ class ToolSteering:
 
 
 def _turned(direction: Vector, turn: tuple[float, float], most: float, axes: Axes) -> Vector:
-    """Swing the tip to the right and pitch it upward: what a stick pushed that way shows."""
+    """Swing the tip to the right and pitch it upward, as a stick pushed right and up does."""
     to_the_right = cross(direction, unit(reject(axes.right, direction)))
     spin = add(scale(to_the_right, turn[0]), scale(axes.right, turn[1]) if turn[1] != 0.0 else ZERO)
     size = length(spin)

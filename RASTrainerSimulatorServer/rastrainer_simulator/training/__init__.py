@@ -1,1 +1,1 @@
-"""The trial: its phases, its touches, what is said, and what is true."""
+"""The trial: its phases, touches, instructions and ground truth."""

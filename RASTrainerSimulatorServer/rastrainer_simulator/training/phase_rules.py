@@ -1,4 +1,4 @@
-"""Which command is right in which phase, and what is said when it is not."""
+"""Which command is allowed in which phase, and the sentences that refuse the others."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.GET_TRIAL)
 
 
 def refusal(command: OperatorCommand, state: TrainingState, texts: Texts) -> str | None:
-    """Return the sentence that refuses a command in the trial's phase, None where it is right.
+    """Return the sentence that refuses a command in the trial's phase, None if it is allowed.
 
     A command that names a trial is right for the present trial only.
     """

@@ -57,7 +57,7 @@ def refused_touch(
         next_point: label of the fiducial that is next.
         fiducials: label → position, World, m.
         settings: what counts as a touch.
-        texts: says the sentence.
+        texts: the sentences.
     """
     away, radius = distance(now.tip, fiducials[next_point]), settings.acceptance_radius
     if away > radius:

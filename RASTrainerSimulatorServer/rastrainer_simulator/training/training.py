@@ -50,7 +50,7 @@ class Training:
     """The state machine of a trial.
 
     `state` is what everyone may know, `truth` where the head really is. Time and the tip's position
-    come with every command: the trial has no clock of its own.
+    come with every command: the trial has no clock.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class Training:
             INTERRUPTED: self._interrupted,
         }
 
-    def continue_from(self, revision: int) -> None:
+    def restart_from(self, revision: int) -> None:
         """Count revisions on from another simulation's, before the first trial."""
         self.state = replace(self.state, revision=revision)
         self._history = {revision: self.state}
@@ -116,7 +116,7 @@ class Training:
         return command in self._handlers
 
     def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        """Carry out a command, or refuse it with a sentence that says what would be right."""
+        """Carry out a command, or refuse it with a sentence about what would be right."""
         sentence = refusal(command, self.state, self._texts)
         if sentence is not None:
             return TrainingReply(False, sentence)
@@ -237,7 +237,7 @@ class Training:
         )
 
     def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        """Tell the truth in return for a registration, which then cannot be changed any more."""
+        """Accept a registration, which becomes final, and reveal the truth."""
         known = self.state.registration
         registration = FinalRegistration.from_arguments(command.arguments)
         if known is not None and not known.agrees_with(registration):
@@ -316,7 +316,7 @@ class Training:
         return TrainingReply(True, events=(event,))
 
     def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
-        """Take on a state of another phase and return the event of it."""
+        """Enter another phase and return the event of it."""
         self._keep(state, key, **values)
         data = {**self._summary(), "instruction": self.state.instruction}
         return Event(EventKind.PHASE, now.sim_time, data)

@@ -1,4 +1,4 @@
-"""What only a simulator can tell: how far a registration and each touch are from the truth."""
+"""The true error of a registration and of each touch, which only a simulator knows."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Truth:
 
     Attributes:
         head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        target: (3,) float, RAS mm, where the true error of a registration is told.
+        target: (3,) float, RAS mm, where the true error of a registration is reported.
         fiducials: label → (3,) float, RAS mm, of the trial's task.
     """
 
@@ -54,7 +54,7 @@ class Truth:
         world_to_head: np.ndarray,
         touches: Iterable[tuple[str, tuple[float, float, float]]],
     ) -> dict[str, Any]:
-        """Return what the answer to TrialScored tells, ready for JSON."""
+        """Return the data of the answer to TrialScored, ready for JSON."""
         return {
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "trueTreMm": self.target_error_mm(world_to_head),

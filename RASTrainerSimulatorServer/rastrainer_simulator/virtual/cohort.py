@@ -1,7 +1,7 @@
 """A whole simulated study: played, stored like a real one, with the truth beside it.
 
-What interrupts it (Ctrl-C, a full disk, a power failure) leaves a study that the same call resumes:
-its jobs follow from the seed, and only those are played whose trials are not there.
+After an interruption (Ctrl-C, a full disk, a power failure) the same call resumes the study: its
+jobs follow from the seed, and only those without a stored trial are played.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class CohortRun:
     """How a simulation went.
 
     Attributes:
-        found: Trials that had been played before, where the cohort was resumed.
+        found: Trials that had been played before, if the cohort was resumed.
         played: Trials that were finished and stored now.
-        stuck: Trials of now in which the virtual trainee did not get to a fiducial.
+        stuck: Trials played now in which the virtual trainee did not reach a fiducial.
         seconds: Wall time of playing and storing.
         simulated_s: Trial time of the trials that were finished now.
     """
@@ -65,9 +65,9 @@ def simulate_cohort(
     """Play the study of a protocol with virtual trainees and store it in a folder.
 
     The folder is empty, or holds such a study of equal arguments that was interrupted: then only
-    what is missing is played, and the study becomes what it would have been. Questionnaires, breaks
-    and trial runs are left out: virtual trainees have no opinion and need no rest. The protocol
-    that is stored says so. `on_trial` is told how many trials are done.
+    the missing trials are played, with the same result. Questionnaires, breaks and trial runs are
+    left out, also in the stored protocol: virtual trainees have no opinion and need no rest.
+    `on_trial` is called with the number of finished trials.
 
     Raises:
         InputError: the folder holds something else, a task is not in the scenario, or the engine
@@ -77,7 +77,7 @@ def simulate_cohort(
     if not (folder / DATABASE).is_file():
         make_empty_folder(folder)
     protocol = _virtual(protocol)
-    began = time.perf_counter()
+    start = time.perf_counter()
     records = folder / RECORDS if with_journals else None
     played_with = PlaySettings(settings.scenario, settings.step_s, protocol.references, records)
     function = functools.partial(play_job, settings=played_with)
@@ -107,7 +107,7 @@ def simulate_cohort(
             if on_trial is not None:
                 on_trial(sum(counts.values()))
         store.finish()
-    return CohortRun(**counts, seconds=time.perf_counter() - began, simulated_s=simulated_s)
+    return CohortRun(**counts, seconds=time.perf_counter() - start, simulated_s=simulated_s)
 
 
 def _virtual(protocol: StudyProtocol) -> StudyProtocol:
@@ -122,7 +122,7 @@ def _virtual(protocol: StudyProtocol) -> StudyProtocol:
 
 
 def _circumstances(settings: PlaySettings, with_journals: bool) -> dict[str, Any]:
-    """Return what else the trials follow from: half a cohort of each would be neither."""
+    """Return the other conditions of the trials, which must be equal in a whole cohort."""
     folder = settings.scenario or asset_path(*DEFAULT_SCENARIO)
     return {
         "step": settings.step_s,

@@ -10,7 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.virtual.worker_pool import (
     ATTEMPTS,
     WorkerDiedError,
-    died_sentence,
+    died_message,
     run_on_workers,
 )
 
@@ -31,16 +31,16 @@ def run_jobs(
 ) -> Iterator[Result]:
     """Yield the result of each job, in their order.
 
-    A job whose process is killed is done again by another one; not so where `workers` is 1, since
-    then it is this process.
+    A job whose process is killed is repeated by another one, unless `workers` is 1 and it is this
+    process.
 
     Args:
         function: Can be pickled; depends on nothing but the job.
         jobs: Can be pickled.
         engine: `processes`, or `dask` (package `distributed`).
-        workers: Processes on this machine; one a core by default.
+        workers: Processes on this machine; one per core by default.
         address: Of a Dask scheduler, for more than one machine; a local cluster by default.
-        name_of: What a job is called in the sentence of an error.
+        name_of: Returns the name of a job for error messages.
 
     Raises:
         InputError: Dask is not installed, or there is no scheduler at the address.
@@ -83,6 +83,6 @@ def _on_dask(
             try:
                 yield future.result()
             except KilledWorker:
-                # Dask blames every job that was at the worker, also one whose end it had not heard.
+                # Dask blames every job of the worker, even one that had just finished.
                 cause = " or another trial at the same worker"
-                raise WorkerDiedError(died_sentence(name_of(job), cause)) from None
+                raise WorkerDiedError(died_message(name_of(job), cause)) from None

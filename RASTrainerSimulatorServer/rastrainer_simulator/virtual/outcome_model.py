@@ -42,7 +42,7 @@ class OutcomeModel:
         trial_time_sd: Between trials of a trainee, of the logarithm of the time.
         learning: b; the n-th trial takes n^−b of the first one's time.
         carries_practice: Whether n counts the trials of both modes, as for the virtual trainees
-            that are played; else each mode begins anew.
+            that are played; otherwise each mode starts from 1.
         mode_time: Factor on the time in each mode; 1 for those left out.
         mode_fle: Factor on the localization error in each mode.
         accuracy_learning: As `learning`, of the localization error.
@@ -159,7 +159,7 @@ def draw_trials(
 
 
 def trial_numbers(orders: Sequence[Sequence[str]], modes: Sequence[str], tasks: int) -> np.ndarray:
-    """Return which trial each is of those who do all tasks in turn, mode by mode.
+    """Return the number of each trial if all tasks are done in turn, mode by mode.
 
     The array is (trainees, modes, tasks) int, from 1.
     """

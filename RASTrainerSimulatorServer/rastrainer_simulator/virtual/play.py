@@ -1,7 +1,4 @@
-"""Play one trial of a cohort with the whole simulation: arm, contact, hands, registration, score.
-
-The function is the same on one core, on all, and on another machine: it needs only its job.
-"""
+"""Play one trial of a cohort with the whole simulation, from the arm to the score."""
 
 from __future__ import annotations
 
@@ -51,7 +48,7 @@ class PlaySettings:
 
 @dataclass(frozen=True)
 class PlayedTrial:
-    """What a job gave; `analysis` is None where the trainee got stuck."""
+    """The result of a job; `analysis` is None if the trainee got stuck."""
 
     job: TrialJob
     analysis: TrialAnalysis | None
@@ -64,11 +61,11 @@ class PlayedTrial:
 
 
 def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
-    """Play, register and score one trial; equal jobs give equal trials on any machine alike."""
+    """Play, register and score one trial; equal jobs give equal trials on any machine."""
     simulation = _simulation(settings.scenario)
-    # Nothing of the trial before: a job alone says what comes of it.
-    simulation.continue_from(StartingPoint())
-    watch = _Watch(settings.step_s)
+    # The trial depends on the job alone, not on the trial before.
+    simulation.restart_from(StartingPoint())
+    recorder = _EntryRecorder(settings.step_s)
     try:
         trial = play_virtual_trial(
             simulation,
@@ -76,19 +73,19 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
             job.seed,
             job.skill,
             settings.step_s,
-            watch,
+            recorder,
             job.trainee,
             Mode(job.mode),
             job.trial_id,
         )
     except UnfinishedTrialError:
-        # The next trial needs a simulation that is not in the middle of one.
+        # The next trial needs a simulation without an open trial.
         _simulation.cache_clear()
         return PlayedTrial(job, None)
-    assert watch.entries is not None
-    assert watch.record is not None  # The trial was registered.
-    watch.record.measured()
-    entries = _dated(watch.entries.taken(), job.started)
+    assert recorder.entries is not None
+    assert recorder.record is not None  # The trial was registered.
+    recorder.record.measured()
+    entries = _dated(recorder.entries.taken(), job.started)
     registered = next(entry for entry in entries if entry["kind"] == "registered")
     record = TrialRecord.from_json(registered["record"])
     if settings.records is not None:
@@ -102,8 +99,8 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     return PlayedTrial(job, analysis.scored(scenario, truth, settings.references))
 
 
-class _Watch:
-    """Forms the journal's entries of the trial that is played."""
+class _EntryRecorder:
+    """Collects the journal's entries of the played trial."""
 
     def __init__(self, step_s: float) -> None:
         self._step_s = step_s
@@ -118,12 +115,12 @@ class _Watch:
         result: StepResult,
     ) -> None:
         if self.entries is None:
-            self.entries = TrialEntries.begun(simulation, before, result, self._step_s)
+            self.entries = TrialEntries.started(simulation, before, result, self._step_s)
         self.record = self.entries.add(simulation, operator_input, result) or self.record
 
 
 def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, Any]]:
-    """Date entries from when the trial is said to have begun, in simulated time."""
+    """Date entries from the trial's start, in simulated time."""
     zero = entries[0]["simTime"]
 
     def utc(sim_time: float) -> str:
@@ -142,8 +139,8 @@ def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, A
 
 def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetime) -> None:
     name = f"{file_stamp(iso(started))}_{entries[0]['trialId']}{SUFFIX}"
-    # Whole or not there, also where this process is killed; one of a trial that was not stored
-    # any more is replaced by its like.
+    # Complete or missing, even if this process is killed; the journal of a trial that was not
+    # stored is replaced by an equal one.
     partial = folder / f".{name}.partial"
     partial.unlink(missing_ok=True)
     journal = Journal(partial)

@@ -18,7 +18,7 @@ from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 NAMESPACE = uuid.UUID("2b1f9c1e-52dd-5f0c-9c51-5261546f686f")
 FIRST_DAY = datetime(2000, 1, 1, 9, tzinfo=timezone.utc)
-"""Virtual trials bear dates that nobody takes for real ones."""
+"""Virtual trials have dates that cannot be mistaken for real ones."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class TrialJob:
         task: Name of the task.
         skill: Of the hands in this trial.
         seed: Of the head's pose and of the hands.
-        started: When it is said to have begun.
+        started: Its date and time.
     """
 
     trainee: str
@@ -72,7 +72,7 @@ def trial_jobs(
 
 
 def pseudonym(place: int) -> str:
-    """Return the name of the trainee at a place, the first is 0."""
+    """Return the name of the trainee at a place, from 0."""
     return f"V{place + 1:04d}"
 
 
@@ -88,13 +88,13 @@ _INTERACTION, _TRIAL = 1, 2
 
 @dataclass(frozen=True)
 class ModeEffect:
-    """What a mode does to everyone's hands.
+    """The effect of a mode on every trainee.
 
     Attributes:
         speed: Factor on the speed.
         aim: Factor on the scatter of the aim.
-        bias_mm: What the view misleads the aim by: x, y, z in `World`, mm; of it the part along the
-            skin is what counts, since the tip stands on the skin.
+        bias_mm: Systematic error of the aim, as by a distorted view: x, y, z in `World`, mm; only
+            its part along the skin has an effect, since the tip is on the skin.
     """
 
     speed: float = 1.0
@@ -104,23 +104,23 @@ class ModeEffect:
 
 @dataclass(frozen=True)
 class Population:
-    """From whom virtual trainees are drawn.
+    """The distribution of virtual trainees.
 
     Attributes:
         skill: Of the typical trainee at the first trial.
         speed_spread: Standard deviation, between trainees, of the logarithm of the speed.
         aim_spread: The same of the scatter of the aim.
         learning: b; the n-th trial of all takes n^−b of the first one's time. Speed, gain and
-            pauses all improve by n^b, as far as the robot's limit of speed allows.
+            pauses all improve by n^b, up to the robot's speed limit.
         modes: Effect of each mode; none for those left out.
         accuracy_learning: The same exponent of the scatter of the aim.
         interaction: Standard deviation, between trainees and modes, of the logarithms of speed and
             scatter: how differently a mode suits different trainees.
         tempo_spread: Standard deviation, between trials of a trainee, of the logarithm of the
-            speed: haste and patience.
+            speed: haste and leisure.
         trade_off: k; a trial played x times as fast as usual has a scatter x^k times as large.
         lapses: Share of trials in which one touch slips by 4 mm, is noticed and taken back; None
-            for what `skill.slip_at` says.
+            for `skill.slip_at`.
     """
 
     skill: Skill = field(default_factory=Skill)
@@ -149,7 +149,7 @@ class Population:
             raise InputError("The exponent of speed and accuracy must be from 0 to 2.")
 
     def skill_of(self, trainee: int, mode: str, trial: int, seed: int) -> Skill:
-        """Return the hands of a trainee in his or her n-th trial of all, the first is 1.
+        """Return the skill of a trainee in the n-th trial of all, from 1.
 
         The same seed gives the same trainees, however many there are.
         """
@@ -166,7 +166,7 @@ class Population:
         speed = self.skill.speed_mm_s * brisk * effect.speed
         slip_at = self.skill.slip_at
         if self.lapses is not None:
-            # Which fiducial it is, the trial's own seed says.
+            # The trial's own seed decides at which fiducial.
             slip_at = 2 if of_trial.random() < self.lapses else None
         return replace(
             self.skill,

@@ -30,7 +30,7 @@ class RejectionRates:
         holm: Share that holds after the correction for all outcomes.
         ranks: Share with p < .05 by the rank test.
         coverage: Share whose 95 % interval holds the true difference; None for the score, whose
-            true difference the model does not tell.
+            true difference is not in the model.
         true_difference: Mean difference that very many trainees have, second mode minus first,
             their order apart; None for the score.
     """

@@ -18,7 +18,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.score_reference import fiducial_normals
 
 LIFT_MM = 35.0
-"""How far the tip is taken off the skin before it travels to the next fiducial."""
+"""How far the tip is lifted off the skin before it travels to the next fiducial."""
 
 PRESS_MM = 1.5
 """How far below the skin the last aim is: the tip is to be felt touching it."""
@@ -39,11 +39,11 @@ class Skill:
         gain_per_s: how briskly the remaining distance is closed.
         aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
         tremor_mm_s: standard deviation of the hand's unwanted velocity, along each axis.
-        overshoot: how far the first aim goes past the fiducial, as a share of the way.
+        overshoot: how far the first aim goes past the fiducial, as a share of the distance.
         reaction_s: pause before each new movement.
         dwell_s: how long the tip is held still before a touch.
         slip_at: the fiducial (1 is the first) at which the trainee slips by 4 mm, notices and
-            takes the touch back; None for a trainee who never does.
+            undoes the touch; None for a trainee who never does.
         aim_bias_mm: by what the view misleads the aim; x, y, z in World. The part along the skin
             is what counts.
     """
@@ -68,7 +68,7 @@ class Observation:
         tip_mm: (3,) float, of the tool, World, mm.
         is_in_contact: whether the tool is shown to touch the head.
         phase: of the trial.
-        next_point: number of the fiducial to touch, from 1; None where there is none.
+        next_point: number of the fiducial to touch, from 1; None if there is none.
     """
 
     sim_time_s: float
@@ -116,7 +116,7 @@ class ScriptedTrainee:
     def of(
         cls, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
     ) -> ScriptedTrainee:
-        """Return one for a task, who slips, if ever, somewhere; HeadToWorld is (4, 4) float, mm.
+        """Return a trainee for a task; HeadToWorld is (4, 4) float, mm.
 
         Raises:
             InputError: there is no such task, or the head's mesh cannot be used.
@@ -137,7 +137,7 @@ class ScriptedTrainee:
         if observation.phase not in (Phase.RUNNING, Phase.COMPLETE):
             return None
         if self._takes_back:
-            return self._take_back(observation)
+            return self._undo(observation)
         if observation.phase is Phase.COMPLETE:
             return CommandName.REGISTER, {}
         if observation.next_point == self._touched:
@@ -148,11 +148,11 @@ class ScriptedTrainee:
         return self._approach(observation)
 
     def touch_refused(self) -> None:
-        """Tell the trainee that the last touch did not count: it approaches the point again."""
+        """Note that the last touch was refused: the trainee approaches the point again."""
         self._touched = None
         self._takes_back = False
 
-    def _take_back(self, observation: Observation) -> Action | None:
+    def _undo(self, observation: Observation) -> Action | None:
         """Undo the slip as soon as it is seen to have been recorded."""
         if observation.next_point == self._touched:
             return None
@@ -193,16 +193,16 @@ class ScriptedTrainee:
             self._acts_from_s = observation.sim_time_s + self._skill.dwell_s
             return None
         velocity = self._velocity(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
-        # The hand pushes no more once the skin is felt: it only corrects along it.
+        # In contact the hand does not push on: it only corrects along the skin.
         eases_off = is_aim and observation.is_in_contact
         return _jog(self._along_skin(velocity) if eases_off else velocity)
 
     def _is_over_aim(self, remaining: np.ndarray) -> bool:
-        """Tell whether the tip is less than 0.4 mm beside the aim, however high above it."""
+        """Return whether the tip is less than 0.4 mm beside the aim, at any height above it."""
         return bool(np.linalg.norm(self._along_skin(remaining)) < 0.4)
 
-    def _along_skin(self, way: np.ndarray) -> np.ndarray:
-        return way - self._outward_at_aim * float(way @ self._outward_at_aim)
+    def _along_skin(self, displacement: np.ndarray) -> np.ndarray:
+        return displacement - self._outward_at_aim * float(displacement @ self._outward_at_aim)
 
     def _velocity(self, remaining: np.ndarray, fastest_mm_s: float) -> np.ndarray:
         """Return the velocity of the hand, (3,) float, World, mm/s, with its tremor."""
@@ -254,7 +254,7 @@ def _jog(velocity: np.ndarray) -> Action:
 
 
 def seeded_skill(skill: Skill, seed: int) -> Skill:
-    """Return the skill of a trainee who slips, if ever, at a fiducial drawn from the seed."""
+    """Return the skill with `slip_at`, if any, at a fiducial drawn from the seed."""
     if skill.slip_at is None:
         return skill
     point = int(np.random.default_rng([seed, 1]).integers(2, 15))

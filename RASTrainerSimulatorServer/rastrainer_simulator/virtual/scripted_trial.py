@@ -34,7 +34,7 @@ class ScriptedTrialResult:
 
 
 def say_hello(client: Client, name: str) -> None:
-    """Greet the server, and ask for poses also while the arm stands: they are our clock.
+    """Greet the server, and subscribe to poses even while the arm is still: they are our clock.
 
     Raises:
         TrialStoppedError: it speaks another version of the protocol.
@@ -54,11 +54,11 @@ def play_trial(
 ) -> ScriptedTrialResult:
     """Play one task from its start to its registration, by commands alone.
 
-    The seed is given to `StartTask` too: knowing it is how the scripted trainee sees where the
-    head stands, which a person sees on the screen. `on_progress` gets every new `SimState`.
+    `StartTask` gets the same seed, by which the scripted trainee knows where the head is, as a
+    person sees on the screen. `on_progress` gets every new `SimState`.
 
     Raises:
-        TrialStoppedError: the server refused a command, or the tip did not get there.
+        TrialStoppedError: the server refused a command, or the tip did not reach a fiducial.
         LinkError: the connection was lost.
     """
     head_to_world = scenario.perturbed_head_to_world(seed)

@@ -25,7 +25,7 @@ LONGEST_S = 1800.0
 NOTHING: Mapping[str, Any] = {}
 
 OnStep = Callable[[Simulation, SimulationState, OperatorInput, StepResult], Any]
-"""Is told the simulation, the state before, the input and the result of each step."""
+"""Called with the simulation, the state before, the input and the result of each step."""
 
 
 class UnfinishedTrialError(RASTrainerError):
@@ -69,9 +69,9 @@ def play_virtual_trial(
         skill: of the hands.
         dt: the simulation's step in s.
         on_step: is called after each step as a recorder wants it.
-        trainee: pseudonym; by default told from the seed.
+        trainee: pseudonym; by default derived from the seed.
         mode: goes into the record; the hands do not see it.
-        trial_id: UUID; by default told from the simulation's seed and the number of the trial.
+        trial_id: UUID; by default derived from the simulation's seed and the trial's number.
 
     Raises:
         InputError: there is no such task.

@@ -1,7 +1,7 @@
-"""Worker processes with one job each at a time, so that of one that dies the job is known.
+"""Worker processes with one job at a time, so that the job of a process that dies is known.
 
-`concurrent.futures` gives up all jobs when one process is killed (by the system when memory runs
-out, by a crash in a library). Here that job alone is given to a new process.
+`concurrent.futures` gives up all jobs when one process is killed (out of memory, or by a crash in a
+library). Here only its job is repeated by a new process.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from typing import Any
 from rastrainer.errors import InputError, RASTrainerError
 
 ATTEMPTS = 3
-"""So many processes may die at one job."""
+"""Number of processes that may die at one job."""
 AHEAD = 8
-"""Jobs a worker that may be done before their turn: results wait in memory."""
+"""Jobs per worker that may be done before their turn: results wait in memory."""
 
 
 class WorkerDiedError(InputError):
-    """Every process that was given a job died at it."""
+    """Every process that tried a job died."""
 
 
 def run_on_workers(
@@ -40,10 +40,10 @@ def run_on_workers(
         function: Can be pickled. What it raises is raised here.
         jobs: Can be pickled.
         workers: Most processes at a time.
-        name_of: What a job is called in the sentence of an error.
+        name_of: Returns the name of a job for error messages.
 
     Raises:
-        WorkerDiedError: a job was given to `ATTEMPTS` processes, and all died.
+        WorkerDiedError: `ATTEMPTS` processes died at one job.
     """
     pool = _Pool(function, workers, name_of)
     try:
@@ -54,7 +54,7 @@ def run_on_workers(
 
 @dataclass
 class _Task:
-    """A job, its place in the order, and at how many processes it has been."""
+    """A job, its place in the order, and the number of attempts."""
 
     place: int
     job: Any
@@ -62,7 +62,7 @@ class _Task:
 
 
 class _Worker:
-    """One process and the pipe to it; `task` is what it was given."""
+    """One process, the pipe to it, and its task."""
 
     def __init__(self, function: Callable[[Any], Any]) -> None:
         # Not forked: collision meshes and threads of numpy do not survive that.
@@ -74,10 +74,10 @@ class _Worker:
             self.process.start()
         theirs.close()
 
-    def give(self, task: _Task) -> None:
+    def send(self, task: _Task) -> None:
         task.attempts += 1
         self.task = task
-        # Of one that is dead, the pipe's end tells below.
+        # A dead process is noticed below, at the pipe's end.
         with contextlib.suppress(OSError):
             self.connection.send(task.job)
 
@@ -107,16 +107,16 @@ class _Pool:
                 if task is None:
                     break
                 given = max(given, task.place + 1)
-                self._idle_worker().give(task)
+                self._idle_worker().send(task)
             busy = [(worker, task) for worker in self._workers if (task := worker.task) is not None]
             if not busy:
                 return
             ready = wait([worker.connection for worker, _ in busy])
             for worker, task in busy:
                 if worker.connection in ready:
-                    self._take_from(worker, task)
+                    self._receive(worker, task)
             while turn in self._done:
-                # An error waits for its turn, too: what comes before it is not lost.
+                # An error waits for its turn, too: earlier results are not lost.
                 result, error = self._done.pop(turn)
                 if error is not None:
                     raise error
@@ -138,7 +138,7 @@ class _Pool:
         self._workers.append(_Worker(self._function))
         return self._workers[-1]
 
-    def _take_from(self, worker: _Worker, task: _Task) -> None:
+    def _receive(self, worker: _Worker, task: _Task) -> None:
         try:
             outcome = worker.connection.recv()
         except (EOFError, OSError):
@@ -148,24 +148,24 @@ class _Pool:
         worker.task = None
 
     def _replace(self, worker: _Worker, task: _Task) -> None:
-        """Give the job of a process that died to another one."""
+        """Repeat the job of a process that died with another one."""
         self._workers.remove(worker)
-        # It closed its end: it is dead, or about to be.
+        # It closed its end: it is dead or about to be.
         worker.process.join()
         exit_code = worker.end()
         if task.attempts < ATTEMPTS:
             self._again.append(task)
             return
-        sentence = died_sentence(self._name_of(task.job), _cause(exit_code))
+        sentence = died_message(self._name_of(task.job), _cause(exit_code))
         self._done[task.place] = None, WorkerDiedError(sentence)
 
 
-def died_sentence(job: str, cause: str = "") -> str:
-    """Return what is said of a job that all its processes died at."""
+def died_message(job: str, cause: str = "") -> str:
+    """Return the error message of a job at which all processes died."""
     return (
         f"{job} cannot be played: {ATTEMPTS} worker processes were ended while they played "
         f"it{cause}. The computer may be short of memory: try fewer workers, or --workers 1 to see "
-        "the error itself. What was played before is stored, and the same command resumes."
+        "the error itself. The trials played so far are stored, and the same command resumes."
     )
 
 
@@ -177,8 +177,8 @@ def _cause(exit_code: int | None) -> str:
 
 
 def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
-    """Do jobs until the other end is closed, also by its process's death."""
-    # Ctrl-C reaches all processes of a terminal; the one that gives the jobs ends the others.
+    """Do jobs until the other end is closed, also by the death of its process."""
+    # Ctrl-C reaches all processes of a terminal; the main process ends the others.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with contextlib.suppress(EOFError, OSError):
         while True:
@@ -191,13 +191,13 @@ def _outcome(function: Callable[[Any], Any], job: Any) -> tuple[Any, Exception |
     except RASTrainerError as error:
         return None, error
     except Exception:
-        # Not every exception can be pickled; its traceback can.
+        # Not every exception can be pickled, but its traceback can.
         return None, RuntimeError(f"A worker process failed:\n{traceback.format_exc()}")
 
 
 @contextlib.contextmanager
 def _interrupts_blocked() -> Iterator[None]:
-    """Keep Ctrl-C from a process that is being started; it inherits this."""
+    """Block Ctrl-C for a process that is being started, which inherits this."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

@@ -46,7 +46,7 @@ def test_the_head_is_one_closed_body_without_tunnels():
     assert _body_count() == 1
 
 
-def test_the_head_stands_on_a_flat_base():
+def test_the_head_has_a_flat_base():
     heights = MESH.vertices[:, 2]
     base = heights == heights.min()
     assert base.sum() > 300
@@ -80,7 +80,7 @@ def test_the_head_is_smooth_without_the_steps_of_its_voxels():
     assert np.percentile(bending, 90) < 10
 
 
-def test_the_head_stands_upright_with_its_face_to_the_camera_and_its_right_to_the_robot():
+def test_the_head_is_upright_with_its_face_to_the_camera_and_its_right_to_the_robot():
     turn = SCENARIO.head_to_world[:3, :3]
     assert np.allclose(turn @ [0, 0, 1], [0, 0, 1])
     assert np.allclose(turn @ [0, 1, 0], [0, -1, 0])

@@ -9,14 +9,21 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.face_removal import face_vertices
+from rastrainer.head.face_removal import RADIUS_MM, face_vertices, nose_tip, without_face
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh
-from rastrainer.head.volume import read_head_volume
+from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
 from rastrainer.scenario.package import unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import write_scenario
+from rastrainer.slicer.head.extraction import findHead
+from rastrainer.slicer.head.head_body import HeadSettings
+from rastrainer.slicer.head.mask import squaredDistances
+from rastrainer.slicer.head.volume import Volume
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.export import Grid, without_face_in
 from rastrainer_simulator.cli.main import main
+from Testing.domain.head.test_face_removal import head as ball_with_a_face
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
 from Testing.simulator.authoring.heads import egg
 
@@ -43,7 +50,7 @@ def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(
     folder, tmp_path, capsys
 ):
     assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 0
-    assert "Taken off: the face, the skull, its title, its name, its source." in (
+    assert "Removed: the face, the skull, its title, its name, its source." in (
         capsys.readouterr().out
     )
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
@@ -65,7 +72,7 @@ def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(
 def test_face_and_names_are_kept_where_that_is_wanted(folder, tmp_path, capsys):
     words = ["scenario", "pack", str(folder), str(tmp_path / "out.zip"), "--keep-face"]
     assert main([*words, "--keep-names"]) == 0
-    assert "Nothing was taken off." in capsys.readouterr().out
+    assert "Nothing was removed." in capsys.readouterr().out
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
     assert given.head_mesh.read_bytes() == (folder / "head.ply").read_bytes()
     assert given.skull_mesh is not None
@@ -76,7 +83,7 @@ def test_face_and_names_are_kept_where_that_is_wanted(folder, tmp_path, capsys):
     assert given.provenance == before.provenance
 
 
-def test_by_default_nothing_in_the_file_tells_the_title_or_the_source(tmp_path):
+def test_by_default_nothing_in_the_file_reports_the_title_or_the_source(tmp_path):
     folder = written(tmp_path / "egg", np.argsort(-egg().vertices[:, 2])[:300:20])
     path = folder / "scenario.json"
     content = json.loads(path.read_text())
@@ -94,7 +101,7 @@ def test_by_default_nothing_in_the_file_tells_the_title_or_the_source(tmp_path):
     assert given.targets[0].name == "Cyst"
 
 
-def test_fiducials_on_the_face_are_told_and_nothing_is_written(tmp_path, capsys):
+def test_fiducials_on_the_face_are_reported_and_nothing_is_written(tmp_path, capsys):
     head = egg()
     spots = np.argsort(-head.vertices[:, 2])[:300:20]
     spots[3] = head.vertices[:, 1].argmax()
@@ -102,3 +109,108 @@ def test_fiducials_on_the_face_are_told_and_nothing_is_written(tmp_path, capsys)
     assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 2
     assert "has fiducials on the face (4)" in capsys.readouterr().err
     assert not (tmp_path / "out.zip").exists()
+
+
+REACH_MM = 6
+OBLIQUE = np.array([[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, -1.0]]) * 2.0
+
+
+@pytest.fixture(scope="module")
+def colin27():
+    """The default scenario's head, its images, and these without the face."""
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    head, volume = read_head_mesh(scenario.head_mesh), read_head_volume(scenario.volume)
+    return head, volume, without_face_in(volume, head)
+
+
+def images_of(head, axes):
+    """Return 100 within a head and 0 around it, on a grid with these axes (3, 3), mm."""
+    count = np.ceil(260.0 / np.linalg.norm(axes, axis=0)).astype(int)
+    matrix = transforms.rigid(axes, -axes @ ((count - 1) / 2.0))
+    inside = Grid(tuple(count), matrix).inside(head)
+    return HeadVolume(np.where(inside, 100, 0).astype(np.uint8), matrix, 100.0, 50.0)
+
+
+def to_skin_found_in(images, places):
+    """Return how far places (n, 3), RAS mm, are outside of the head that is found in images.
+
+    It is exact up to `REACH_MM`; farther places are at least so far away.
+    """
+    volume = Volume(images.values.astype(np.float32), images.ijk_to_ras)
+    found = findHead(volume, HeadSettings(), lambda _step, _share: None)
+    voxels = tuple(np.rint(places - found.origin).astype(int).T)
+    outward, inward = (
+        np.sqrt(squaredDistances(body, REACH_MM)[voxels].astype(float))
+        for body in (found.body, ~found.body)
+    )
+    return outward - inward
+
+
+def middle_of_face(head):
+    """Return the vertices (n, 3), RAS mm, of the face that are not near its rim."""
+    away = np.linalg.norm(head.vertices - nose_tip(head), axis=1)
+    return head.vertices[face_vertices(head) & (away < RADIUS_MM - 12)]
+
+
+@pytest.mark.soak
+def test_the_skin_that_is_found_in_the_images_afterwards_has_nothing_of_the_face(colin27):
+    head, before, after = colin27
+    face = middle_of_face(head)
+    assert np.median(np.abs(to_skin_found_in(before, face))) <= 1.0
+    assert to_skin_found_in(after, face).min() > 4.0
+
+
+def test_the_skin_that_is_found_afterwards_in_the_images_of_a_ball_has_nothing_of_its_face():
+    head = ball_with_a_face()
+    after = without_face_in(images_of(head, np.eye(3) * 2.0), head)
+    assert to_skin_found_in(after, middle_of_face(head)).min() > 4.0
+
+
+def test_the_brain_stays_but_for_what_is_close_behind_the_face(colin27):
+    head, before, after = colin27
+    grid = Grid(before.values.shape, before.ijk_to_ras)
+    inside = grid.inside(head)
+    is_deep = grid.distances(~inside) > 25.0
+    assert is_deep.sum() > 1_000_000
+    assert (after.values != before.values)[is_deep].mean() < 0.001
+    assert (after.values != before.values)[inside].mean() < 0.06
+
+
+@pytest.mark.parametrize("axes", [np.eye(3) * 2.0, OBLIQUE], ids=["RAS", "oblique"])
+def test_two_people_who_differ_in_the_face_alone_have_the_same_images_without_it(axes):
+    one, other = ball_with_a_face(brow_mm=4.0), ball_with_a_face(brow_mm=-3.0)
+    first, second = images_of(one, axes), images_of(other, axes)
+    assert np.count_nonzero(first.values != second.values) > 500
+    first, second = without_face_in(first, one), without_face_in(second, other)
+    differing = np.count_nonzero(first.values != second.values)
+    assert differing < 0.002 * np.count_nonzero(first.values)
+
+
+def test_nothing_of_the_images_is_left_outside_of_the_shield():
+    head = ball_with_a_face()
+    images = images_of(head, np.eye(3) * 2.0)
+    grid = Grid(images.values.shape, images.ijk_to_ras)
+    around = np.linalg.norm(grid.places() - nose_tip(head), axis=-1) < RADIUS_MM
+    left = without_face_in(images, head).values > 0
+    assert (images.values > 0)[around & ~grid.inside(without_face(head))].any()
+    assert not left[around & ~grid.inside(without_face(head))].any()
+
+
+def test_what_is_written_into_the_air_around_the_head_goes_too():
+    head = ball_with_a_face()
+    images = images_of(head, np.eye(3) * 2.0)
+    values = images.values.copy()
+    values[2:6, 10:60, 120] = 90
+    images = HeadVolume(values, images.ijk_to_ras, 100.0, 50.0)
+    grid = Grid(values.shape, images.ijk_to_ras)
+    far = grid.distances(grid.inside(head)) > KEPT_MM
+    assert values[far].any()
+    assert not without_face_in(images, head).values[far].any()
+
+
+def test_images_whose_air_is_not_zero_get_air_in_the_place_of_the_face():
+    head = ball_with_a_face()
+    images = images_of(head, np.eye(3) * 2.0)
+    units = np.where(images.values > 0, 40, -1000).astype(np.int16)
+    left = without_face_in(HeadVolume(units, images.ijk_to_ras, 400.0, 40.0), head)
+    assert set(np.unique(left.values)) == {-1000, 40}

@@ -41,7 +41,7 @@ def read(planning, folder, points, labels=LABELS, count=1):
     return *told, warnings
 
 
-def test_clicks_within_five_millimeters_of_the_skin_are_moved_onto_it_and_that_is_told(
+def test_clicks_within_five_millimeters_of_the_skin_are_moved_onto_it_and_that_is_reported(
     planning, on_skin, tmp_path
 ):
     lifted = on_skin + np.linspace(-4.5, 4.5, 15)[:, None] * outward_normals(planning.mesh, on_skin)
@@ -72,7 +72,7 @@ def test_numbers_in_the_labels_are_the_order_to_touch(planning, on_skin, tmp_pat
     assert task.labels == LABELS
 
 
-def test_a_list_that_is_no_task_and_a_seventh_list_are_refused(planning, on_skin, tmp_path):
+def test_an_invalid_list_and_a_seventh_list_are_refused(planning, on_skin, tmp_path):
     _, wrong, _ = read(planning, tmp_path, on_skin[:14], LABELS[:14])
     assert wrong == ["Trial run: it has 14 fiducials; a task has 15."]
     twice = on_skin.copy()
@@ -82,7 +82,7 @@ def test_a_list_that_is_no_task_and_a_seventh_list_are_refused(planning, on_skin
     assert wrong == ["A scenario has at most 6 tasks; 7 are given."]
 
 
-def test_everything_that_is_wrong_is_told_at_once(planning, on_skin, tmp_path):
+def test_everything_that_is_wrong_is_reported_at_once(planning, on_skin, tmp_path):
     low = on_skin.copy()
     low[8] = nearest_on_mesh(planning.mesh, np.array([0.0, -30.0, -75.0])).position
     low[5] = nearest_on_mesh(planning.mesh, np.array([30.0, -20.0, -75.0])).position

@@ -32,7 +32,7 @@ def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_pat
     assert copy.preview is not None
 
 
-def test_a_copy_with_targets_tells_the_error_at_the_first(tmp_path):
+def test_a_copy_with_targets_reports_the_error_at_the_first(tmp_path):
     words = ("--target", "Tumor", *INSIDE, "--target", "Cyst", "20", "0", "20")
     assert copied(tmp_path / "copy", *words) == 0
     copy = load_scenario(tmp_path / "copy")
@@ -47,7 +47,7 @@ def test_a_copy_with_targets_tells_the_error_at_the_first(tmp_path):
         (("--target", "Tumor", "0", "-100", "95"), "Tumor is"),
     ],
 )
-def test_a_plan_that_cannot_be_carried_out_is_told_and_nothing_is_written(
+def test_a_plan_that_cannot_be_carried_out_is_reported_and_nothing_is_written(
     tmp_path, capsys, words, sentence
 ):
     assert copied(tmp_path / "copy", *words) == 2

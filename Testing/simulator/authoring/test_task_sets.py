@@ -57,7 +57,7 @@ def test_there_are_six_tasks_of_rising_complexity_on_the_skin_off_the_face(plann
     assert np.linalg.norm(fiducials[:, None] - face[None], axis=2).min() > 5.0
 
 
-def test_the_check_of_hand_placed_fiducials_finds_nothing_wrong_with_them(planning, tasks):
+def test_the_check_of_manually_placed_fiducials_finds_nothing_wrong_with_them(planning, tasks):
     assert check_tasks(planning, tasks[::3], first_seed=70_000) == []
 
 
@@ -65,7 +65,7 @@ def test_everything_that_is_promised_of_a_set_is_kept(planning, tasks):
     assert broken_promises(planning, tasks) == []
 
 
-def test_the_first_planned_target_is_the_one_whose_error_is_told(planning):
+def test_the_first_planned_target_is_the_one_whose_error_is_reported(planning):
     assert planning.scenario.target_name == "Tumor"
     assert check_plan(planning) == []
 
@@ -102,7 +102,7 @@ def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(planning):
     assert "From below" in check_plan(PlanningSetup(scenario, planning.mesh))[0]
 
 
-def test_a_first_target_too_deep_to_start_above_stays_a_further_one_and_that_is_told():
+def test_a_first_target_too_deep_to_start_above_stays_a_further_one_and_that_is_reported():
     deep = PlannedTarget("Brainstem", np.array([0.0, -10.0, -60.0]))
     warnings = []
     wishes = replace(WISHES, targets=(deep, *WISHES.targets))

@@ -84,7 +84,7 @@ def test_register_pairs_by_order_where_labels_are_left_out(files, tmp_path, run_
     assert result["fre_mm"] == pytest.approx(register(moving, fixed).fre_mm)
 
 
-def test_register_tells_warnings_in_json_and_in_words(files, tmp_path, run_json, capsys):
+def test_register_reports_warnings_in_json_and_in_words(files, tmp_path, run_json, capsys):
     moving, _, _, fixed_file = files
     moving[[2, 8]] = moving[[8, 2]]
     swapped = write_csv(tmp_path / "swapped.csv", moving)

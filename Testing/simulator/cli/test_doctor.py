@@ -108,7 +108,7 @@ def test_on_a_display_the_renderer_of_opengl_is_named(monkeypatch):
         ("print('renderer')", "OpenGL does not work"),
     ],
 )
-def test_an_opengl_that_takes_its_process_down_is_told(monkeypatch, script, words):
+def test_an_opengl_that_takes_its_process_down_is_reported(monkeypatch, script, words):
     monkeypatch.setenv("DISPLAY", ":0")
     (finding,) = check_graphics((sys.executable, "-c", script))
     assert finding.verdict is CheckStatus.WARNING
@@ -130,7 +130,9 @@ def test_a_gamepad_is_named_and_none_is_a_warning(tmp_path):
     assert "is plugged in" in finding.sentence
 
 
-def test_slicer_and_its_extension_are_found_or_it_is_said_where_to_get_them(tmp_path, monkeypatch):
+def test_slicer_and_its_extension_are_found_or_the_user_learns_where_to_get_them(
+    tmp_path, monkeypatch
+):
     monkeypatch.setenv("PATH", "")
     monkeypatch.delenv("SLICER_HOME", raising=False)
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
@@ -148,7 +150,7 @@ def test_slicer_and_its_extension_are_found_or_it_is_said_where_to_get_them(tmp_
     assert verdicts(check_slicer((tmp_path,))) == [CheckStatus.OK, CheckStatus.OK]
 
 
-def test_a_slicer_older_than_5_10_is_told(tmp_path, monkeypatch):
+def test_a_slicer_older_than_5_10_is_reported(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.delenv("SLICER_HOME", raising=False)
     for name in ("Slicer-5.8.1-linux-amd64", "Slicer-5.10.0-linux-amd64", "Slicer"):
@@ -195,7 +197,7 @@ def test_a_folder_is_judged_by_whether_it_can_be_written_to_and_by_its_room(tmp_
         assert finding.verdict is verdict
 
 
-def test_a_clock_that_was_set_back_is_told_by_the_journals(tmp_path):
+def test_a_clock_that_was_set_back_is_reported_by_the_journals(tmp_path):
     assert verdicts(check_clock(tmp_path, NOW)) == [CheckStatus.OK]
     (tmp_path / f"20260501T120000Z_x{SUFFIX}").touch()
     (finding,) = check_clock(tmp_path, NOW)
@@ -229,7 +231,7 @@ def test_a_journal_that_cannot_be_used_is_named(tmp_path):
     assert "rastrainer verify" in finding.remedy
 
 
-def test_a_page_that_was_not_built_is_told(monkeypatch, tmp_path):
+def test_a_page_that_was_not_built_is_reported(monkeypatch, tmp_path):
     monkeypatch.setattr(software, "page_folder", lambda: tmp_path)
     assert verdicts(software.check_page()) == [CheckStatus.OK]
     monkeypatch.setattr(software, "page_folder", lambda: None)
@@ -245,7 +247,7 @@ def words(folder: Path, port: int):
     ]
 
 
-def test_the_doctor_tells_a_line_a_check_and_ends_with_1_where_there_is_a_problem(
+def test_the_doctor_reports_a_line_a_check_and_ends_with_1_where_there_is_a_problem(
     tmp_path, free_port, held, capsys
 ):
     assert main(words(tmp_path, free_port)) == 0

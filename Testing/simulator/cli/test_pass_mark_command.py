@@ -67,7 +67,9 @@ def test_scores_of_two_versions_give_no_mark(study, capsys):
     assert "scores of the versions 1 and 2, which do not compare" in capsys.readouterr().err
 
 
-def test_a_mark_of_earlier_scores_says_so_and_is_written_into_no_protocol(study, tmp_path, capsys):
+def test_a_mark_of_earlier_scores_is_reported_and_is_written_into_no_protocol(
+    study, tmp_path, capsys
+):
     with Study.open(study) as opened:
         for number in range(20, 23):
             for names, time_s in ((NOVICES, 260.0), (EXPERTS, 110.0)):
@@ -115,7 +117,7 @@ def test_groups_that_give_no_mark_are_refused_and_nothing_is_written(
     assert protocol.read_bytes() == SHIPPED.read_bytes()
 
 
-def test_aborted_trials_of_the_groups_are_told_since_they_have_no_score(study, capsys):
+def test_aborted_trials_of_the_groups_are_reported_since_they_have_no_score(study, capsys):
     before = means(study, NOVICES)
     with Study.open(study) as opened:
         for number, name in enumerate((NOVICES[0], NOVICES[0], EXPERTS[1])):

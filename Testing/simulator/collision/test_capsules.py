@@ -102,7 +102,7 @@ def test_a_long_solid_gets_two_capsules_and_a_short_one_one():
         assert len(covering_capsules(points, 0.01)) == count
 
 
-def test_points_on_a_mesh_are_no_farther_apart_than_asked():
+def test_points_on_a_mesh_are_no_farther_apart_than_requested():
     block = trimesh.creation.box(extents=(0.1, 0.2, 0.3))
     points = surface_points(block.vertices, block.faces, 0.01)
     edge = points[(points[:, 0] == 0.05) & (points[:, 1] == 0.1)]

@@ -6,9 +6,12 @@ from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR
 from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.robot_shape import ArmCapsules
 from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, at, posture
-from Testing.simulator.collision.brute_force import segment_to_segments, segment_to_triangles
+from Testing.simulator.collision.brute_force import (
+    segment_to_segments,
+    segment_to_triangles,
+    vtk_distance,
+)
 from Testing.simulator.collision.heads import bumpy_head
-from Testing.simulator.collision.vtk_distance import vtk_distance
 
 FIVE_HUNDREDTHS_MM = 5e-5
 CENTER = (0.5, 0.0, 0.25)
@@ -239,7 +242,7 @@ def test_the_quick_answer_whether_all_is_clear_is_that_of_the_clearances(
     assert 0.1 < np.mean(said) < 0.9
 
 
-def test_a_head_that_is_moved_is_measured_anew(head, head_to_world, collision):
+def test_a_head_that_is_moved_is_measured_again(head, head_to_world, collision):
     links = KINEMATICS.links(ROBOT.home)
     before = collision.check(links)
     collision.set_head_pose(at(head[0], (0.5, 0.3, 0.2)))

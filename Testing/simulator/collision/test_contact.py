@@ -12,8 +12,8 @@ from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, TICK, Driver, at, posture
+from Testing.simulator.collision.brute_force import vtk_distance
 from Testing.simulator.collision.heads import ball, box, groove, together
-from Testing.simulator.collision.vtk_distance import vtk_distance
 
 DEEPEST = 1e-4
 TOUCHING = 5e-5
@@ -113,7 +113,7 @@ def test_every_fiducial_of_the_default_tasks_can_be_touched_with_the_tip(head, s
             assert driver.clearance.tip_m <= TOUCHING
 
 
-def test_a_pressed_tip_stands_still():
+def test_a_pressed_tip_does_not_move():
     driver = above(box((0.2, 0.2, 0.1), (0.0, 0.0, 0.0)), (0.5, 0.0, 0.2))
     for _ in range(20):
         driver.push(DOWN * 0.5 * TICK)

@@ -6,9 +6,12 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.capsules import thin_segment
 from rastrainer_simulator.collision.head_surface import HeadSurface
-from Testing.simulator.collision.brute_force import point_to_triangles, segment_to_triangles
+from Testing.simulator.collision.brute_force import (
+    point_to_triangles,
+    segment_to_triangles,
+    vtk_distance,
+)
 from Testing.simulator.collision.heads import ball, box, bumpy_head, together
-from Testing.simulator.collision.vtk_distance import vtk_distance
 
 MICROMETRE = 1e-6
 

@@ -85,7 +85,7 @@ def test_a_stick_held_down_presses_to_the_limit_and_no_farther(simulation):
     assert depths[-1] == DEEPEST
 
 
-def test_lifting_takes_the_depth_back_and_the_end_of_contact_tells_the_greatest(simulation):
+def test_lifting_takes_the_depth_back_and_the_end_of_contact_reports_the_greatest(simulation):
     for _ in range(40):
         simulation.step(DT, DOWN)
     rest(simulation, 1)
@@ -103,7 +103,7 @@ def test_lifting_takes_the_depth_back_and_the_end_of_contact_tells_the_greatest(
     assert left.data["depthMm"] == MM_PER_M * deepest
 
 
-def test_a_touch_and_a_refused_touch_tell_how_deep_they_are(simulation):
+def test_a_touch_and_a_refused_touch_report_how_deep_they_are(simulation):
     move(simulation, tip_mm(simulation) - (0.0, 0.0, 1.5))
     depth_mm = MM_PER_M * simulation.state.depth
     (event,) = do(simulation, CommandName.CAPTURE).events
@@ -111,7 +111,7 @@ def test_a_touch_and_a_refused_touch_tell_how_deep_they_are(simulation):
     assert event.data["depthMm"] == depth_mm > 1.0
 
 
-def test_a_new_trial_begins_without_depth(simulation):
+def test_a_new_trial_starts_without_depth(simulation):
     simulation.step(DT, DOWN)
     simulation.step(DT, DOWN)
     assert simulation.state.depth > 0.0
@@ -147,7 +147,7 @@ def written(entries, path):
     return read_journal(path)
 
 
-def test_every_touch_of_a_journal_tells_the_depth_that_the_sample_after_it_has(pressed):
+def test_every_touch_of_a_journal_reports_the_depth_that_the_sample_after_it_has(pressed):
     touches = [entry for entry in pressed.entries if entry["kind"] == "touch"]
     assert [touch["depthMm"] for touch in touches] == pytest.approx([2.0] * 15, abs=0.1)
     samples = {e["tick"]: e["depthMm"] for e in pressed.entries if e["kind"] == "sample"}

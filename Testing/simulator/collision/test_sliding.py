@@ -1,10 +1,74 @@
-"""How far the tip may go along a surface."""
+"""Half-spaces that limit a motion, and how far the tip slides along a surface."""
 
+import numpy as np
 import pytest
+from scipy.optimize import minimize
 
 from rastrainer_simulator.collision.clearance import Nearest
-from rastrainer_simulator.collision.sliding import LONGEST_STEP, REST, slide
+from rastrainer_simulator.collision.sliding import (
+    LONGEST_STEP,
+    REST,
+    HalfSpace,
+    nearest_inside,
+    slide,
+)
 from rastrainer_simulator.vectors import add
+
+
+def half_space(normal, bound):
+    return HalfSpace(tuple(np.asarray(normal, dtype=float) / np.linalg.norm(normal)), bound)
+
+
+def random_half_spaces(random, count):
+    """Half-spaces with a point that is inside all of them."""
+    inside, normals = random.normal(size=3), random.normal(size=(count, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return [half_space(n, n @ inside - random.uniform(0.0, 0.5)) for n in normals]
+
+
+def test_a_goal_inside_stays_where_it_is():
+    assert nearest_inside((1.0, 2.0, 3.0), [half_space((0, 0, 1), 3.0)]) == (1.0, 2.0, 3.0)
+    assert nearest_inside((1.0, 2.0, 3.0), []) == (1.0, 2.0, 3.0)
+
+
+def test_one_two_and_three_planes_hold_a_goal():
+    floor, wall, front = (half_space(np.eye(3)[axis], 0.0) for axis in (2, 0, 1))
+    goal = (-1.0, -2.0, -3.0)
+    assert nearest_inside(goal, [floor]) == pytest.approx((-1.0, -2.0, 0.0))
+    assert nearest_inside(goal, [floor, wall]) == pytest.approx((0.0, -2.0, 0.0))
+    assert nearest_inside(goal, [floor, wall, front]) == pytest.approx((0.0, 0.0, 0.0))
+
+
+def test_the_same_plane_twice_holds_like_one():
+    floor = half_space((0, 0, 1), 0.5)
+    assert nearest_inside((1.0, 1.0, -1.0), [floor, floor]) == pytest.approx((1.0, 1.0, 0.5))
+
+
+def test_planes_that_leave_no_room_have_no_point():
+    gap = [half_space((0, 0, 1), 1.0), half_space((0, 0, -1), 0.0)]
+    assert nearest_inside((0.0, 0.0, 0.0), gap) is None
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 6])
+def test_the_point_is_the_one_that_scipy_finds(count):
+    random = np.random.default_rng(count)
+    for _ in range(40):
+        goal, planes = random.normal(size=3), random_half_spaces(random, count)
+        found = nearest_inside(tuple(goal), planes)
+        assert found is not None
+        limits = [
+            {"type": "ineq", "fun": lambda x, plane=plane: plane.normal @ x - plane.bound}
+            for plane in planes
+        ]
+        expected = minimize(
+            lambda x, goal=goal: ((x - goal) ** 2).sum(),
+            found,
+            constraints=limits,
+            tol=1e-12,
+        )
+        np.testing.assert_allclose(found, expected.x, atol=1e-5)
+        assert all(np.dot(plane.normal, found) >= plane.bound - 1e-9 for plane in planes)
+
 
 UP = (0.0, 0.0, 1.0)
 

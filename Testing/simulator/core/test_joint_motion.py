@@ -41,7 +41,7 @@ def go(motion, kinematics, q, target, direction=None):
     return q
 
 
-def test_the_tip_goes_exactly_where_it_shall(motion, kinematics, rest):
+def test_the_tip_goes_exactly_to_its_target(motion, kinematics, rest):
     q, is_within_reach = motion.toward(
         rest, tip(kinematics, rest), (0.0003, -0.0002, 0.0001), None, DT
     )
@@ -50,13 +50,13 @@ def test_the_tip_goes_exactly_where_it_shall(motion, kinematics, rest):
     assert moved == pytest.approx((0.0003, -0.0002, 0.0001), abs=1e-9)
 
 
-def test_a_tip_that_stands_still_moves_no_joint(motion, kinematics, rest):
+def test_a_tip_that_does_not_move_moves_no_joint(motion, kinematics, rest):
     away = go(motion, kinematics, rest, np.add(tip(kinematics, rest), (0.1, 0.1, 0)))
     q, _ = motion.toward(away, tip(kinematics, away), (0.0, 0.0, 0.0), None, DT)
     assert q == pytest.approx(away, abs=1e-9)
 
 
-def test_the_elbow_does_not_wander_on_closed_ways(motion, kinematics, rest):
+def test_the_elbow_does_not_wander_on_closed_paths(motion, kinematics, rest):
     start = np.array(tip(kinematics, rest))
     q = rest
     for _ in range(3):

@@ -173,7 +173,7 @@ def test_the_tip_moves_right_when_the_stick_is_pushed_right(trial, scenario):
     assert trial.state.motion is Motion.STICK
 
 
-def test_the_arm_stands_still_to_the_last_bit_once_the_stick_is_released(trial):
+def test_the_arm_does_not_move_to_the_last_bit_once_the_stick_is_released(trial):
     for _ in range(50):
         trial.step(DOWN)
     stopped = trial.step().state
@@ -243,7 +243,7 @@ def test_a_jog_moves_along_the_axes_of_its_frame(trial, scenario, frame):
     assert np.linalg.norm(way) == pytest.approx(0.04 * 0.5, rel=0.05)
 
 
-def test_while_the_trial_is_paused_the_arm_stands_still_and_motions_are_refused(trial):
+def test_while_the_trial_is_paused_the_arm_does_not_move_and_motions_are_refused(trial):
     trial.do(CommandName.MOVE_TIP_TO, positionMm=list(MM_PER_M * trial.tip + (0.0, 0.0, 50.0)))
     trial.step()
     trial.do(CommandName.PAUSE)
@@ -324,9 +324,9 @@ def test_several_commands_of_one_tick_are_answered_each_in_their_order(trial):
     assert [(a.ticket, a.ok) for a in answers] == [(0, True), (1, False), (2, True)]
 
 
-def test_a_simulation_goes_on_from_anothers_tick_time_revision_and_camera(setup):
+def test_a_simulation_continues_from_anothers_tick_time_revision_and_camera(setup):
     simulation = Simulation(setup, 1)
-    simulation.continue_from(StartingPoint(tick=1000, sim_time=4.0, revision=7, camera="far"))
+    simulation.restart_from(StartingPoint(tick=1000, sim_time=4.0, revision=7, camera="far"))
     state = simulation.step(DT, HANDS_OFF).state
     assert (state.tick, state.sim_time, state.camera) == (1001, 4.0 + DT, "far")
     assert state.training.revision == 7

@@ -26,7 +26,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import StepResult
 
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ class Client:
         self.loop = loop
 
     def do(self, command, **arguments):
-        return self.submit(command, **arguments).result(PATIENCE_S)
+        return self.submit(command, **arguments).result(TIMEOUT_S)
 
     def submit(self, command, **arguments):
         return self.loop.submit(command, check_arguments(command, arguments), "tester")
@@ -75,7 +75,7 @@ class Client:
 
 
 def wait_for(condition):
-    give_up = time.monotonic() + PATIENCE_S
+    give_up = time.monotonic() + TIMEOUT_S
     while not condition():
         assert time.monotonic() < give_up, "it never came true"
         time.sleep(0.001)
@@ -155,7 +155,7 @@ def test_an_answered_touch_is_on_the_disk(running, tmp_path):
         assert labels(read_journal(journals(tmp_path)[0])) == [str(i + 1) for i in range(number)]
 
 
-def test_nobody_sees_a_touch_before_it_is_on_the_disk_and_the_arm_goes_on_meanwhile(
+def test_nobody_sees_a_touch_before_it_is_on_the_disk_and_the_arm_continues_meanwhile(
     running, monkeypatch
 ):
     running.start()
@@ -173,7 +173,7 @@ def test_nobody_sees_a_touch_before_it_is_on_the_disk_and_the_arm_goes_on_meanwh
     assert len({result.state.q for result in seen}) > 30
     assert not any(event.kind == "touch" for result in seen for event in result.events)
     may_sync.set()
-    assert answer.result(PATIENCE_S).ok
+    assert answer.result(TIMEOUT_S).ok
     wait_for(lambda: len(running.loop.latest.training.touches) == 1)
     assert sum(event.kind == "touch" for result in seen for event in result.events) == 1
 
@@ -182,7 +182,7 @@ def test_commands_that_come_meanwhile_are_carried_out_in_their_order(running):
     running.start()
     futures = [running.submit(CommandName.CAPTURE) for _ in range(15)]
     futures.append(running.submit(CommandName.REGISTER))
-    assert [future.result(PATIENCE_S).ok for future in futures] == [True] * 16
+    assert [future.result(TIMEOUT_S).ok for future in futures] == [True] * 16
     kept = [touch.label for touch in running.loop.latest.training.touches]
     assert kept == [str(i) for i in range(1, 16)]
 
@@ -200,7 +200,7 @@ def test_a_trial_whose_journal_cannot_be_made_does_not_start(running, tmp_path):
     assert len(journals(tmp_path)) == 1
 
 
-def test_on_a_full_disk_the_trial_pauses_and_goes_on_once_there_is_room(
+def test_on_a_full_disk_the_trial_pauses_and_continues_once_there_is_room(
     running, tmp_path, anywhere, monkeypatch
 ):
     running.start()
@@ -271,7 +271,7 @@ def test_a_question_about_an_older_trial_that_fails_unforeseen_is_answered(runni
     for _ in range(100_000):
         deep = [deep]
     asked = {"trialId": trial_id, "details": deep}
-    answer = running.loop.submit(CommandName.TRIAL_SCORED, asked).result(PATIENCE_S)
+    answer = running.loop.submit(CommandName.TRIAL_SCORED, asked).result(TIMEOUT_S)
     assert not answer.ok
     assert "log says why" in answer.message
     assert "TrialScored of an older trial has failed" in caplog.text
@@ -303,16 +303,16 @@ def test_stopping_in_the_middle_of_a_trial_marks_it_and_refuses_what_comes_too_l
 def test_another_simulation_takes_over_between_two_trials_only(running, anywhere):
     other = Simulation(anywhere, 4)
     running.start()
-    assert not running.loop.replace_simulation(other).result(PATIENCE_S).ok
+    assert not running.loop.replace_simulation(other).result(TIMEOUT_S).ok
     running.do(CommandName.ABORT)
     tick = running.loop.latest.tick
-    assert running.loop.replace_simulation(other).result(PATIENCE_S).ok
+    assert running.loop.replace_simulation(other).result(TIMEOUT_S).ok
     running.ticks(3)
     assert running.loop.latest.tick > tick
     running.start()
 
 
-def test_trials_that_are_begun_too_often_are_refused_and_make_no_journal(anywhere, tmp_path):
+def test_trials_that_are_started_too_often_are_refused_and_make_no_journal(anywhere, tmp_path):
     places = (Simulation(anywhere, 1), tmp_path / "records")
     with ControlLoop(*places, speed=None, trial_limits=TrialLimits(1e-6, 2)) as loop:
         client = Client(loop)
@@ -326,7 +326,7 @@ def test_trials_that_are_begun_too_often_are_refused_and_make_no_journal(anywher
     assert len(journals(tmp_path)) == 2
 
 
-def test_a_trial_may_be_begun_again_after_a_while(anywhere, tmp_path):
+def test_a_trial_may_be_started_again_after_a_while(anywhere, tmp_path):
     limits = TrialLimits(1.0, 1)
     with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None, trial_limits=limits) as loop:
         client = Client(loop)

@@ -82,7 +82,7 @@ def test_the_simulator_turns_away_one_client_more_than_the_file_allows(tmp_path)
         assert client.send_command("Hello", HELLO, timeout=20).ok
 
 
-def test_the_simulator_begins_no_more_trials_than_the_file_allows(tmp_path):
+def test_the_simulator_starts_no_more_trials_than_the_file_allows(tmp_path):
     write(tmp_path / "records-config", {"trials": {"starts_per_s": 1e-6, "starts_at_once": 1}})
     task = {"task": "task-1", "trainee": "P01"}
     with (

@@ -6,12 +6,14 @@ import errno
 import io
 import json
 import logging
+import threading
+import time
 
 import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.ops import log_files
-from rastrainer_simulator.ops.log_files import keep_logs
+from rastrainer_simulator.ops.log_files import MOST_WAITING, BackgroundHandler, keep_logs
 from Testing.forked_child import in_child
 
 OURS = logging.getLogger("rastrainer_simulator.some_part")
@@ -79,7 +81,9 @@ def test_a_crash_is_logged_with_its_traceback_and_a_refusal_with_its_sentence(tm
     assert [line["message"] for line in lines(tmp_path / "refused.log")] == ["The port is taken."]
 
 
-def test_a_folder_that_cannot_be_written_to_is_told_once_and_nothing_else_changes(tmp_path, capsys):
+def test_a_folder_that_cannot_be_written_to_is_reported_once_and_nothing_else_changes(
+    tmp_path, capsys
+):
     (tmp_path / "file").write_text("notes")
     with keep_logs(tmp_path / "file" / "logs", "simulator"):
         OURS.info("to nobody")
@@ -110,3 +114,65 @@ def test_afterwards_logging_is_as_it_was(tmp_path):
     with keep_logs(tmp_path, "simulator"):
         assert logging.getLogger().handlers != before
     assert logging.getLogger().handlers == before
+
+
+class Blocked(logging.Handler):
+    """Takes nothing until it is let go."""
+
+    def __init__(self):
+        super().__init__()
+        self.reached = threading.Event()
+        self.go = threading.Event()
+        self.taken = []
+
+    def emit(self, record):
+        self.reached.set()
+        self.go.wait()
+        self.taken.append(record.getMessage())
+
+
+def record(text):
+    return logging.LogRecord("rastrainer", logging.WARNING, __file__, 1, text, None, None)
+
+
+def test_a_log_that_nobody_reads_holds_nobody_up_keeps_what_came_first_and_counts_the_rest():
+    blocked = Blocked()
+    aside = BackgroundHandler(blocked)
+    aside.handle(record("0"))
+    blocked.reached.wait()
+    for number in range(1, 3 * MOST_WAITING):
+        aside.handle(record(str(number)))
+    blocked.go.set()
+    aside.close()
+    *kept, gap = blocked.taken
+    assert kept == [str(number) for number in range(len(kept))]
+    assert len(kept) == MOST_WAITING + 1
+    assert (
+        gap == f"{2 * MOST_WAITING - 1} lines are missing here: they could not be written in time."
+    )
+
+
+def test_lost_lines_are_reported_where_they_would_have_stood():
+    blocked = Blocked()
+    aside = BackgroundHandler(blocked)
+    aside.handle(record("kept or lost"))
+    blocked.reached.wait()
+    for _ in range(2 * MOST_WAITING):
+        aside.handle(record("kept or lost"))
+    blocked.go.set()
+    while len(blocked.taken) < MOST_WAITING + 1:
+        time.sleep(0.001)
+    aside.handle(record("later"))
+    aside.close()
+    assert "lines are missing here" in blocked.taken[-2]
+    assert blocked.taken[-1] == "later"
+    assert set(blocked.taken[:-2]) == {"kept or lost"}
+
+
+def test_what_is_logged_last_is_written_when_the_log_ends():
+    blocked = Blocked()
+    blocked.go.set()
+    aside = BackgroundHandler(blocked)
+    aside.handle(record("the end"))
+    aside.close()
+    assert blocked.taken == ["the end"]

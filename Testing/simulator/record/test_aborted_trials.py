@@ -16,7 +16,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.record.aborted_archive import left_trial
+from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.record.test_interrupted_trial import Server, cut
@@ -72,7 +72,7 @@ def test_it_is_offered_with_its_touches_until_it_is_acknowledged_also_after_a_re
     assert replay(read_journal(server.path), anywhere).difference is None
 
 
-def test_after_all_touches_it_says_so_and_tells_the_time_of_the_last_one(simulation, tmp_path):
+def test_after_all_touches_it_says_so_and_reports_the_time_of_the_last_one(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         server.move(ticks=50)
@@ -154,7 +154,7 @@ def test_a_finished_trial_after_it_is_offered_beside_it(simulation, tmp_path):
     ]
 
 
-def test_the_truth_about_it_is_told_to_nobody(simulation, tmp_path):
+def test_the_truth_about_it_is_revealed_to_nobody(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         trial_id = server.start()
         touch(server, 15)
@@ -178,9 +178,7 @@ def test_the_truth_about_it_is_told_to_nobody(simulation, tmp_path):
     assert json.loads(text.splitlines()[-1])["kind"] == "acknowledged"
 
 
-def test_who_ends_the_simulator_and_begins_another_trial_has_aborted_the_first(
-    simulation, tmp_path
-):
+def test_ending_the_simulator_and_starting_another_trial_aborts_the_first(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         trial_id = server.start()
         touch(server, 4)
@@ -205,9 +203,7 @@ def test_who_ends_the_simulator_and_begins_another_trial_has_aborted_the_first(
     assert trial_id not in {record.trial_id for record in TrialArchive(tmp_path).unacknowledged()}
 
 
-def test_an_interrupted_trial_is_not_aborted_as_long_as_it_can_be_gone_on_with(
-    simulation, tmp_path
-):
+def test_an_interrupted_trial_is_not_aborted_as_long_as_it_can_be_resumed(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         touch(server, 4)
@@ -221,7 +217,7 @@ def test_an_interrupted_trial_is_not_aborted_as_long_as_it_can_be_gone_on_with(
     assert (record.phase, record.reason, len(record.points)) == ("paused", "trainee", touches)
 
 
-def test_a_journal_left_at_any_byte_tells_every_touch_that_is_whole(simulation, tmp_path):
+def test_a_journal_left_at_any_byte_reports_every_touch_that_is_whole(simulation, tmp_path):
     original = tmp_path / "original"
     with Server(simulation, original) as server:
         server.start()
@@ -239,14 +235,14 @@ def test_a_journal_left_at_any_byte_tells_every_touch_that_is_whole(simulation, 
         shutil.copy(server.path, path)
         cut(path, rng.randrange(len(data)))
         found = find_interrupted(folder)
-        record = left_trial(read_journal(path))
+        record = interrupted_attempt(read_journal(path))
         assert (record is None) == (found is None)
         if found is not None:
             simulation.resume_trial(found[1])
             touches = simulation.state.training.touches
             assert [point.label for point in record.points] == [each.label for each in touches]
             archive = TrialArchive(folder)
-            archive.add_left(path)
+            archive.add_interrupted(path)
             assert not archive.problems
             assert archive.unacknowledged() == ((record,) if record.is_kept else ())
             assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
@@ -272,7 +268,7 @@ def test_an_altered_journal_that_was_left_is_named_and_not_offered(simulation, t
         touch(server, 2)
     server.path.write_bytes(server.path.read_bytes().replace(b'"P01"', b'"P02"', 1))
     archive = TrialArchive(tmp_path)
-    archive.add_left(server.path)
+    archive.add_interrupted(server.path)
     assert archive.unacknowledged() == ()
     assert "altered" in archive.problems[0]
 
@@ -295,4 +291,4 @@ def test_a_forged_journal_that_was_left_is_refused_with_a_sentence(simulation, t
         if entry["kind"] == change["kind"]:
             entry.update(change)
     with pytest.raises(InputError):
-        left_trial(reading)
+        interrupted_attempt(reading)

@@ -36,7 +36,7 @@ class Meanwhile:
 
     def __call__(self, simulation, before, operator_input, result):
         if self._entries is None:
-            self._entries = TrialEntries.begun(simulation, before, result, DT)
+            self._entries = TrialEntries.started(simulation, before, result, DT)
         self._take(simulation, operator_input, result)
         while self._inputs and len(simulation.state.training.touches) == 3:
             given = self._inputs.pop(0)
@@ -68,7 +68,7 @@ def test_waiting_in_a_trial_costs_points(played):
     assert idle.record.motion["idle_time_s"] > WAIT_S - 1.0
 
 
-def test_a_pause_changes_no_score_and_is_told_beside_it_with_its_length(played):
+def test_a_pause_changes_no_score_and_is_reported_beside_it_with_its_length(played):
     at_once, _, paused, _ = played
     assert paused.record.completion_time_s == pytest.approx(
         at_once.record.completion_time_s, abs=2.0

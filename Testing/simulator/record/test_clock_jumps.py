@@ -18,7 +18,7 @@ from rastrainer_simulator.ops import stamps
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_a_clock_that_jumps_in_a_trial_changes_no_duration(
 
         def do(command, **arguments):
             checked = check_arguments(command, arguments)
-            answer = loop.submit(command, checked).result(PATIENCE_S)
+            answer = loop.submit(command, checked).result(TIMEOUT_S)
             assert answer.ok or command == CommandName.ABORT, answer.message
 
         do(CommandName.ABORT)
@@ -75,16 +75,16 @@ def play(loop, trainee, is_ended):
     for command in (CommandName.ABORT, CommandName.START_TASK, *[CommandName.CAPTURE] * 2):
         words = {"task": "task-1", "trainee": trainee}
         arguments = words if command == CommandName.START_TASK else {}
-        answer = loop.submit(command, check_arguments(command, arguments)).result(PATIENCE_S)
+        answer = loop.submit(command, check_arguments(command, arguments)).result(TIMEOUT_S)
         assert answer.ok or command == CommandName.ABORT, answer.message
     if is_ended:
-        assert loop.submit(CommandName.ABORT).result(PATIENCE_S).ok
+        assert loop.submit(CommandName.ABORT).result(TIMEOUT_S).ok
     return loop.latest.training.trial_id
 
 
 @pytest.mark.parametrize("minutes", [-5, -600_000])
 @pytest.mark.parametrize("restarts", [False, True], ids=["in one server", "with a restart between"])
-def test_the_trial_begun_last_is_gone_on_with_however_the_clock_was_set_back_before_it(
+def test_the_trial_started_last_is_resumed_however_the_clock_was_set_back_before_it(
     simulation, tmp_path, jumping, minutes, restarts
 ):
     with ControlLoop(simulation, tmp_path, speed=None) as first:

@@ -22,7 +22,7 @@ from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 
 class Server:
@@ -56,7 +56,7 @@ class Server:
 
     def do(self, command, **arguments):
         checked = check_arguments(command, arguments)
-        return self.loop.submit(command, checked, "tester").result(PATIENCE_S)
+        return self.loop.submit(command, checked, "tester").result(TIMEOUT_S)
 
     def start(self):
         self.do(CommandName.ABORT)
@@ -81,7 +81,7 @@ def cut(path, size):
         file.truncate(size)
 
 
-def test_the_trial_goes_on_from_the_next_fiducial_and_its_one_journal_replays_bit_by_bit(
+def test_the_trial_continues_from_the_next_fiducial_and_its_one_journal_replays_bit_by_bit(
     simulation, anywhere, tmp_path
 ):
     with Server(simulation, tmp_path) as server:
@@ -127,7 +127,7 @@ def test_the_trial_goes_on_from_the_next_fiducial_and_its_one_journal_replays_bi
     ]
 
 
-def test_a_journal_cut_at_any_byte_is_taken_up_with_every_touch_that_is_whole(simulation, tmp_path):
+def test_a_journal_cut_at_any_byte_is_resumed_with_every_touch_that_is_whole(simulation, tmp_path):
     original = tmp_path / "original"
     with Server(simulation, original) as server:
         server.start()
@@ -190,7 +190,7 @@ def test_ten_ends_in_one_trial_leave_one_intact_journal(simulation, anywhere, tm
     assert replay(reading, anywhere).difference is None
 
 
-def test_the_time_of_the_trial_stands_still_until_it_is_gone_on_with(simulation, tmp_path):
+def test_the_time_of_the_trial_is_stopped_until_it_is_resumed(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         assert server.do(CommandName.CAPTURE).ok
@@ -211,7 +211,7 @@ def test_the_time_of_the_trial_stands_still_until_it_is_gone_on_with(simulation,
     assert np.all(np.diff(times) > 0.0)
 
 
-def test_a_trial_interrupted_while_the_tool_is_pressed_in_goes_on_unpressed_and_replays(
+def test_a_trial_interrupted_while_the_tool_is_pressed_in_continues_unpressed_and_replays(
     simulation, anywhere, tmp_path
 ):
     with Server(simulation, tmp_path) as server:
@@ -248,7 +248,7 @@ def test_a_trial_that_waits_leaves_its_journal_as_it_is(simulation, tmp_path):
     assert server.path.read_bytes() == before
 
 
-def test_an_interrupted_trial_can_be_aborted_and_another_begun(simulation, tmp_path):
+def test_an_interrupted_trial_can_be_aborted_and_another_started(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
     with Server(simulation, tmp_path) as server:
@@ -259,7 +259,7 @@ def test_an_interrupted_trial_can_be_aborted_and_another_begun(simulation, tmp_p
         assert server.do(CommandName.START_TASK, task="task-2", trainee="P02").ok
 
 
-def test_only_the_newest_trial_is_gone_on_with(simulation, tmp_path):
+def test_only_the_newest_trial_is_resumed(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
     older = tmp_path / "older"
@@ -271,7 +271,7 @@ def test_only_the_newest_trial_is_gone_on_with(simulation, tmp_path):
     assert find_interrupted(older) is None
 
 
-def test_a_full_disk_when_the_trial_is_gone_on_with_pauses_it_again(
+def test_a_full_disk_when_the_trial_is_resumed_pauses_it_again(
     simulation, tmp_path, monkeypatch, anywhere
 ):
     with Server(simulation, tmp_path) as server:
@@ -298,7 +298,7 @@ def test_a_full_disk_when_the_trial_is_gone_on_with_pauses_it_again(
     assert record.labels == tuple(str(i) for i in range(1, 16))
 
 
-def test_an_altered_journal_is_not_gone_on_with_and_named(simulation, tmp_path):
+def test_an_altered_journal_is_not_resumed_but_named(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         server.do(CommandName.CAPTURE)

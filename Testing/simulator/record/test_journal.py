@@ -153,7 +153,7 @@ def test_an_existing_file_is_never_overwritten(written):
 def test_a_half_line_is_cut_off_before_more_is_appended(written):
     with written.open("ab") as file:
         file.write(b'{"n":5,"prev')
-    journal = Journal.continuing(read_journal(written))
+    journal = Journal.reopened(read_journal(written))
     journal.write([{"kind": "acknowledged"}], sync=True)
     reading = read_journal(written)
     assert reading.integrity is Integrity.INTACT
@@ -161,8 +161,8 @@ def test_a_half_line_is_cut_off_before_more_is_appended(written):
 
 
 def test_what_another_program_appended_meanwhile_is_kept(written):
-    ours = Journal.continuing(read_journal(written))
-    theirs = Journal.continuing(read_journal(written))
+    ours = Journal.reopened(read_journal(written))
+    theirs = Journal.reopened(read_journal(written))
     theirs.write([{"kind": "scored"}], sync=True)
     theirs.close()
     ours.write([{"kind": "acknowledged"}], sync=True)
@@ -171,9 +171,9 @@ def test_what_another_program_appended_meanwhile_is_kept(written):
 
 
 def test_two_programs_cannot_write_to_one_journal_at_once(written):
-    ours = Journal.continuing(read_journal(written))
+    ours = Journal.reopened(read_journal(written))
     ours.write([{"kind": "scored"}], sync=True)
-    theirs = Journal.continuing(read_journal(written))
+    theirs = Journal.reopened(read_journal(written))
     with pytest.raises(RecordError):
         theirs.write([{"kind": "acknowledged"}], sync=True)
 

@@ -19,7 +19,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.server import server
 from Testing.forked_child import in_child
 
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 
 def take(folder):
@@ -61,7 +61,7 @@ def take_without_rights(folder):
     return take(folder)
 
 
-def test_a_read_only_folder_is_told_before_anyone_plays():
+def test_a_read_only_folder_is_reported_before_anyone_plays():
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o555)
         said = in_child(take_without_rights, Path(folder))
@@ -74,7 +74,7 @@ def test_a_read_only_folder_is_told_before_anyone_plays():
     assert "Permission denied" in missing
 
 
-def test_a_file_in_the_place_of_the_folder_is_told(tmp_path):
+def test_a_file_in_the_place_of_the_folder_is_reported(tmp_path):
     (tmp_path / "trials").write_text("my notes")
     with pytest.raises(InputError, match=r"cannot be recorded in .*trials: File exists"):
         RecordsFolder(tmp_path / "trials")
@@ -83,13 +83,13 @@ def test_a_file_in_the_place_of_the_folder_is_told(tmp_path):
 def journal_of_two_touches(simulation, folder):
     """Return the path of an interrupted trial's journal, and where its second touch begins."""
     with ControlLoop(simulation, folder, speed=None) as loop:
-        loop.submit(CommandName.ABORT).result(PATIENCE_S)
+        loop.submit(CommandName.ABORT).result(TIMEOUT_S)
         start = {"task": "task-1", "trainee": "P01", "mode": "desktop"}
-        assert loop.submit(CommandName.START_TASK, start).result(PATIENCE_S).ok
-        assert loop.submit(CommandName.CAPTURE).result(PATIENCE_S).ok
+        assert loop.submit(CommandName.START_TASK, start).result(TIMEOUT_S).ok
+        assert loop.submit(CommandName.CAPTURE).result(TIMEOUT_S).ok
         (path,) = folder.glob(f"*{SUFFIX}")
         size = path.stat().st_size
-        assert loop.submit(CommandName.CAPTURE).result(PATIENCE_S).ok
+        assert loop.submit(CommandName.CAPTURE).result(TIMEOUT_S).ok
     return path, path.read_bytes()[:size].rindex(b"\n") + 1
 
 
@@ -119,7 +119,9 @@ def kept_beside_a_server_that_touches_until_it_leaves(path, size, config):
     return next(words for words in said if words.startswith("resumes"))
 
 
-def test_a_simulator_goes_on_with_all_that_another_one_touched_until_it_left(simulation, tmp_path):
+def test_a_simulator_continues_with_all_that_another_one_touched_until_it_left(
+    simulation, tmp_path
+):
     path, size = journal_of_two_touches(simulation, tmp_path / "records")
     said = in_child(
         kept_beside_a_server_that_touches_until_it_leaves, path, size, tmp_path / "config"

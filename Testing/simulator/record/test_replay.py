@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.protocol import CommandName, check_arguments
+from rastrainer.protocol import CommandName, TouchRule, check_arguments
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.record.trial_archive import SUFFIX
 
 CHAIN = ("n", "previous", "sha256")
@@ -66,7 +67,7 @@ def test_an_untouched_journal_is_intact_and_replays_to_the_last_bit(recorded, ca
     assert "equal to the last bit" in capsys.readouterr().out
 
 
-def test_the_report_as_json_tells_what_was_compared_and_the_metrics_of_measure(recorded, capsys):
+def test_the_report_as_json_contains_what_was_compared_and_the_metrics_of_measure(recorded, capsys):
     assert main(["replay", str(recorded), "--verify", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["identical"] is True
@@ -78,7 +79,7 @@ def test_the_report_as_json_tells_what_was_compared_and_the_metrics_of_measure(r
     assert json.loads(capsys.readouterr().out) == report["motion"]
 
 
-def test_cut_short_altered_and_foreign_files_are_told_apart_by_sentence_and_status(
+def test_cut_short_altered_and_foreign_files_are_distinguished_by_sentence_and_status(
     recorded, tmp_path, capsys
 ):
     data = recorded.read_bytes()
@@ -169,3 +170,24 @@ def test_a_hostile_journal_ends_with_one_sentence_and_status_2(recorded, tmp_pat
     said = capsys.readouterr().err
     assert said.startswith("rastrainer: ")
     assert "Traceback" not in said
+
+
+def header(setup):
+    return {**setup.description(), "robot": setup.robot.name}
+
+
+def test_the_rule_for_touches_is_the_recorded_one(setup):
+    told = setup_of(header(setup)).settings.training
+    assert told.touch_rule is TouchRule.ON_SKIN
+
+
+def test_a_journal_older_than_the_rule_is_replayed_by_that_of_the_paper(setup):
+    older = header(setup)
+    del older["settings"]["training"]["touch_rule"]
+    assert setup_of(older).settings.training.touch_rule is TouchRule.WITHIN_RADIUS
+
+
+def test_a_journal_recorded_before_the_default_head_had_its_volume_is_still_of_it(setup):
+    before = "8ea38ba4bfc46979ba0138ec6bce0c89536b8d9f4066b18be7c9018ccf2420aa"
+    assert setup.scenario.volume is not None
+    assert setup.scenario_sha256 == before

@@ -91,7 +91,7 @@ def test_an_acknowledgment_that_arrives_twice_is_written_once(tmp_path):
     assert len(read_journal(path).of_kind("acknowledged")) == 1
 
 
-def test_the_truth_of_an_older_trial_is_told_only_for_a_registration(tmp_path):
+def test_the_truth_of_an_older_trial_is_revealed_only_for_a_registration(tmp_path):
     write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
     before = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
@@ -106,7 +106,7 @@ def test_the_truth_of_an_older_trial_is_told_only_for_a_registration(tmp_path):
     assert after["seed"] == 7
 
 
-def test_once_the_truth_of_an_older_trial_is_told_nobody_registers_it_again(tmp_path):
+def test_once_the_truth_of_an_older_trial_is_revealed_nobody_registers_it_again(tmp_path):
     write_trial(tmp_path)
     for archive in (TrialArchive(tmp_path), TrialArchive(tmp_path)):
         told = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
@@ -158,7 +158,7 @@ def test_a_trial_is_found_behind_any_number_of_later_lines(tmp_path):
     assert find_unacknowledged(tmp_path) == [path]
 
 
-def test_a_trial_that_was_acknowledged_can_still_be_asked_for_and_scored(tmp_path):
+def test_a_trial_that_was_acknowledged_can_still_be_requested_and_scored(tmp_path):
     write_trial(tmp_path, {"kind": "acknowledged"})
     archive = TrialArchive(tmp_path)
     assert archive.unacknowledged() == ()
@@ -229,14 +229,14 @@ def test_a_journal_of_right_hashes_and_odd_content_is_named_and_holds_up_no_othe
     assert "not delivered" in problem
 
 
-def test_a_registration_that_is_none_is_named(tmp_path):
+def test_an_invalid_registration_is_reported(tmp_path):
     path = write_trial(tmp_path, {"kind": "registration", "arguments": {"matrix": [1.0]}})
     archive = TrialArchive(tmp_path)
     assert archive.unacknowledged() == ()
     assert path.name in archive.problems[0]
 
 
-def test_a_trial_that_is_not_there_gets_a_sentence(tmp_path):
+def test_a_trial_that_is_missing_gets_a_sentence(tmp_path):
     archive = TrialArchive(tmp_path)
     with pytest.raises(InputError, match="no registered trial"):
         archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)

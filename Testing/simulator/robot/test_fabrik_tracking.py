@@ -137,7 +137,7 @@ def test_hardly_any_step_of_a_wide_path_needs_the_limiter(fabrik, robot):
     assert (steps.max(axis=1) > 2.0).mean() <= 0.002
 
 
-def test_a_joint_at_its_limit_stops_there_and_the_others_go_on(fabrik, robot):
+def test_a_joint_at_its_limit_stops_there_and_the_others_continue(fabrik, robot):
     start = fabrik.solve([0.5, 0.0, 0.4], DOWN, q_start=robot.home)
     q = (*start.q[:5], robot.upper[5], start.q[6])
     tip = make_kinematics(robot).tip(q)[:3, 3]

@@ -3,6 +3,8 @@ import pinocchio as pin
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.slicer.scene.urdf import readArmChain
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
@@ -59,3 +61,33 @@ def test_the_environment_variable_chooses_the_backend(robot, monkeypatch):
     monkeypatch.setenv("RASTRAINER_KINEMATICS", "orocos")
     with pytest.raises(InputError, match="should be one of pinocchio, numpy"):
         make_kinematics(robot)
+
+
+URDF = asset_path("robots", "iiwa7", "iiwa7.urdf")
+
+
+def test_the_tool_is_where_the_simulators_kinematics_have_it():
+    robot = load_robot()
+    kinematics, chain = make_kinematics(robot, "numpy"), readArmChain(URDF)
+    postures = np.random.default_rng(5).uniform(robot.lower, robot.upper, (200, 7))
+    assert chain.moving == 7
+    for q, pose in zip(postures, chain.toolToWorld(postures), strict=True):
+        expected = kinematics.tip(q)
+        np.testing.assert_allclose(pose[:3, :3], expected[:3, :3], atol=1e-9)
+        np.testing.assert_allclose(pose[:3, 3], MM_PER_M * expected[:3, 3], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('type="revolute"', 'type="prismatic"'),
+        ('<parent link="iiwa_link_1" />', '<parent link="iiwa_link_0" />'),
+        ('<child link="iiwa_link_1" />', ""),
+        ('<axis xyz="0 0 1" />', '<axis xyz="up" />'),
+        ("<robot", "<!DOCTYPE x><robot"),
+    ],
+)
+def test_what_is_no_chain_is_one_sentence(old, new, tmp_path):
+    (tmp_path / "arm.urdf").write_text(URDF.read_text().replace(old, new))
+    with pytest.raises(InputError, match="URDF"):
+        readArmChain(tmp_path / "arm.urdf")

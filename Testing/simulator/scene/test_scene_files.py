@@ -52,7 +52,7 @@ def test_what_was_built_once_is_there_the_next_time(built, setup):
     assert files.find("0" * 64) is None
 
 
-def test_a_broken_file_in_the_cache_is_built_anew(built, setup):
+def test_a_broken_file_in_the_cache_is_built_again(built, setup):
     folder, file = built
     file.path.write_bytes(read_scene(file)[:-1])
     assert read_scene(file) is None
@@ -70,7 +70,7 @@ def test_who_does_not_wait_any_more_ends_the_building(setup, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_scene_that_cannot_be_built_is_told_in_one_sentence(setup, tmp_path):
+def test_a_scene_that_cannot_be_built_is_reported_in_one_sentence(setup, tmp_path):
     scenario = replace(setup.scenario, folder=tmp_path / "gone")
     with pytest.raises(InputError, match=r"could not be built: .*gone does not exist"):
         asyncio.run(SceneFiles(tmp_path).scene(replace(setup, scenario=scenario), ""))

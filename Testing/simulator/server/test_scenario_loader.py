@@ -139,7 +139,7 @@ def test_refusal_of_the_control_loop_is_passed_on(make):
     assert make(loop, may_be_anywhere=True).load("colin27").result(10) == loop.answer
 
 
-def test_the_present_scenario_is_made_anew_wherever_it_came_from(make, tmp_path):
+def test_the_present_scenario_is_made_again_wherever_it_came_from(make, tmp_path):
     loop = Loop()
     loop.setup = SimpleNamespace(scenario=SimpleNamespace(folder=tmp_path))
     assert make(loop, may_be_anywhere=False).reload().result(10).ok

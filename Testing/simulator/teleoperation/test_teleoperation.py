@@ -152,7 +152,7 @@ def test_a_jog_moves_for_its_duration_and_then_stops():
     assert hand.step().motion is Motion.NONE
 
 
-def test_a_jog_replaced_by_another_goes_on_without_a_stop():
+def test_a_jog_replaced_by_another_continues_without_a_stop():
     hand = Hand()
     for _ in range(20):
         hand.teleoperation.start(JogCommand(velocity=(0.1, 0.0, 0.0), duration=0.1))
@@ -174,7 +174,7 @@ def test_a_move_ends_on_its_target_and_never_exceeds_its_speed():
     assert fastest <= 0.1 * (1 + 1e-9)
 
 
-def test_a_move_turns_the_tool_as_told_even_where_its_direction_is_free():
+def test_a_move_turns_the_tool_as_commanded_even_where_its_direction_is_free():
     hand = Hand()
     goal = unit((0.0, 1.0, -1.0))
     hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.45), speed=0.1, direction=goal))

@@ -161,7 +161,7 @@ def test_a_touch_counts_on_the_skin(scenario, above_mm, counts):
     assert trial.do(CommandName.CAPTURE, trial.fiducial("1"), above_mm).ok is counts
 
 
-def test_a_touch_above_the_skin_is_refused_with_its_height_and_the_way_to_go(scenario):
+def test_a_touch_above_the_skin_is_refused_with_its_height_and_the_direction_to_go(scenario):
     trial = Trial(scenario)
     trial.start()
     reply = trial.do(CommandName.CAPTURE, trial.fiducial("1"), above_mm=3.2)
@@ -229,7 +229,7 @@ def test_completion_time_runs_from_the_start_to_the_last_kept_touch_without_paus
     assert trial.do(CommandName.REGISTER).data["completionTimeS"] == pytest.approx(7.0)
 
 
-def test_after_undoing_the_fifteenth_touch_the_time_has_gone_on(scenario):
+def test_after_undoing_the_fifteenth_touch_the_time_has_continued(scenario):
     trial = in_phase(scenario, Phase.COMPLETE)
     trial.now += 5.0
     trial.do(CommandName.UNDO)
@@ -277,7 +277,7 @@ def test_a_registration_that_arrives_twice_is_answered_twice_and_kept_once(scena
 
 
 @pytest.mark.parametrize("phase", [Phase.REGISTERED, Phase.SCORED])
-def test_nobody_registers_again_once_the_truth_is_told(scenario, phase):
+def test_nobody_registers_again_once_the_truth_is_revealed(scenario, phase):
     trial = in_phase(scenario, phase)
     told = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION).data
     truth = tuple(np.linalg.inv(trial.training.truth.head_to_world).ravel())
@@ -324,7 +324,7 @@ def test_an_unknown_task_is_refused_with_the_tasks_there_are(scenario):
     assert "task-1" in reply.message
 
 
-def test_the_head_stands_elsewhere_in_every_trial_and_equally_with_the_same_seed(scenario):
+def test_the_head_is_elsewhere_in_every_trial_and_equally_with_the_same_seed(scenario):
     poses = []
     for seed in (1, 2, 1):
         trial = Trial(scenario)
@@ -370,7 +370,7 @@ def test_every_change_that_must_last_raises_the_revision_and_nothing_else_does(s
     assert trial.state.revision == revisions[-1]
 
 
-def test_a_touch_that_could_not_be_written_is_taken_back_and_the_trial_pauses(scenario):
+def test_a_touch_that_could_not_be_written_is_undone_and_the_trial_pauses(scenario):
     trial = Trial(scenario)
     trial.start()
     trial.touch(3)

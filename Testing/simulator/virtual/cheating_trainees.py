@@ -154,7 +154,7 @@ class _Notes:
 
     def take(self, simulation, before, operator_input, result) -> None:
         if self._entries is None:
-            self._entries = TrialEntries.begun(simulation, before, result, DT)
+            self._entries = TrialEntries.started(simulation, before, result, DT)
         self._unmeasured = self._entries.add(simulation, operator_input, result)
 
     def played(self, simulation: Simulation) -> PlayedTrial:

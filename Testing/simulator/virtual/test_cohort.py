@@ -79,7 +79,7 @@ def test_no_trainee_is_held_up_at_a_fiducial(played):
     assert np.max(waits) < 0.5 * STUCK_AFTER_S
 
 
-def test_the_truth_stands_beside_the_study(played):
+def test_the_truth_is_stored_beside_the_study(played):
     truth = json.loads((played / TRUTH).read_text())
     assert truth["seed"] == 7
     assert truth["population"]["modes"]["hmd"]["aim"] == AIM_FACTOR
@@ -110,7 +110,7 @@ def test_dask_plays_the_same_trial_as_this_process(protocol, population):
     assert numbers(there) == numbers(play(job))
 
 
-def test_a_scheduler_that_is_not_there_is_told():
+def test_a_scheduler_that_is_missing_is_reported():
     with pytest.raises(InputError, match="no Dask scheduler at tcp"):
         list(run_jobs(squared, [1], "dask", address="tcp://127.0.0.1:1"))
 
@@ -122,7 +122,7 @@ def test_a_folder_that_holds_something_is_not_touched(protocol, population, tmp_
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
-def test_the_command_tells_power_without_playing(capsys):
+def test_the_command_reports_power_without_playing(capsys):
     words = ["simulate-cohort", "--trainees", "12", "--power", "50", "--hmd-aim", "1.3"]
     assert main(words) == 0
     text = capsys.readouterr().out

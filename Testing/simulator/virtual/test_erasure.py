@@ -77,10 +77,10 @@ def test_journals_that_would_be_left_elsewhere_are_named(copied, tmp_path, capsy
     assert all(f"*_{trial_id}.journal" in printed for trial_id in ids)
 
 
-def test_a_journal_that_is_being_written_stops_the_deletion_before_it_begins(copied):
+def test_a_journal_that_is_being_written_stops_the_deletion_before_it_starts(copied):
     folder = copied / RECORDS
     path = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
-    journal = Journal.continuing(read_journal(path))
+    journal = Journal.reopened(read_journal(path))
     journal.write([{"kind": "acknowledged", "simTime": 0.0}], sync=False)
     with Study.open(copied / DATABASE) as study:
         with pytest.raises(InputError, match="if the trial is still running, end it first"):
@@ -90,7 +90,7 @@ def test_a_journal_that_is_being_written_stops_the_deletion_before_it_begins(cop
         assert erase_trainee(study, "V0001", folder).trials == 2
 
 
-def test_an_unknown_trainee_or_folder_is_told(copied):
+def test_an_unknown_trainee_or_folder_is_reported(copied):
     with Study.open(copied / DATABASE) as study:
         with pytest.raises(InputError, match="no trainee"):
             erase_trainee(study, "nobody", copied / RECORDS)

@@ -229,14 +229,14 @@ def test_an_incomplete_cohort_is_reported_when_asked_for_and_the_page_says_so(co
     assert "3 of 4 trials are there. What follows is about these trials alone." in page
 
 
-def test_a_cohort_without_any_trial_yet_tells_that_too(tmp_path):
+def test_a_cohort_without_any_trial_yet_is_reported_too(tmp_path):
     with Study.open(tmp_path / DATABASE) as study:
         CohortStore(study).begin({"seed": 1}, 40)
     with pytest.raises(IncompleteStudyError, match="0 of 40 trials"):
         read_study_data(tmp_path / DATABASE)
 
 
-def test_trials_that_got_stuck_are_told_and_not_played_again(tmp_path):
+def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):
     with Study.open(tmp_path / DATABASE) as study:
         store = CohortStore(study)
         store.begin({"seed": 1}, 40)

@@ -109,7 +109,7 @@ def test_orders_that_no_rank_test_can_compare_are_never_rejected_by_one():
         assert rates.ranks == 0.0
 
 
-def test_practice_that_goes_on_over_the_modes_biases_a_fixed_order_and_not_a_balanced_one():
+def test_practice_that_continues_over_the_modes_biases_a_fixed_order_and_not_a_balanced_one():
     truth = model(mode_time={"hmd": 1.05}, learning=0.2, carries_practice=True)
     fixed = rejection_rates(truth, 16, MODES, 300, seed=4)[0]
     balanced = rejection_rates(truth, 16, MODES, 300, seed=4, orders=[MODES, MODES[::-1]] * 8)[0]

@@ -1,4 +1,4 @@
-"""What one check has found."""
+"""The result of one check."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import Enum
 
 
 class CheckStatus(str, Enum):
-    """How it stands: a warning leaves something out, with a problem nobody can train."""
+    """The verdict: with a warning a feature is missing, with a problem training is impossible."""
 
     OK = "ok"
     WARNING = "warning"
@@ -20,7 +20,7 @@ class CheckResult:
 
     Attributes:
         check: what was looked at, such as "ports".
-        verdict: how it stands.
+        verdict: ok, warning or problem.
         sentence: what was found.
         remedy: what to do; "" where nothing is.
     """

@@ -24,7 +24,7 @@ WARNING_MB = 1000.0
 
 
 def check_folders(folders: Mapping[str, Path]) -> Iterator[CheckResult]:
-    """Write to each folder, by what it is for; what is missing is judged by what it will lie in."""
+    """Check writing to each folder, by purpose; a missing one is checked by its parent."""
     for purpose, folder in folders.items():
         yield _check(purpose, folder)
 
@@ -46,11 +46,11 @@ def _check(purpose: str, folder: Path) -> CheckResult:
         )
     room = f"The folder of the {purpose}, {folder}, can be written to; {free_mb:,.0f} MB are free"
     if free_mb < PROBLEM_MB:
-        return CheckResult("folders", CheckStatus.PROBLEM, f"{room}: too little.", "Make room.")
+        return CheckResult("folders", CheckStatus.PROBLEM, f"{room}: too few.", "Free some space.")
     if free_mb < WARNING_MB:
         trials = int(free_mb / TRIAL_MB)
         sentence = f"{room}, enough for about {trials} trials."
-        return CheckResult("folders", CheckStatus.WARNING, sentence, "Make room.")
+        return CheckResult("folders", CheckStatus.WARNING, sentence, "Free some space.")
     return CheckResult("folders", CheckStatus.OK, f"{room}.")
 
 
@@ -64,7 +64,7 @@ def _existing(folder: Path) -> Path:
 
 
 def check_settings(config: Path) -> Iterator[CheckResult]:
-    """Read each file of the settings that is there."""
+    """Read each existing file of the settings."""
     try:
         read_limits(config)
     except InputError as error:
@@ -85,7 +85,7 @@ def check_settings(config: Path) -> Iterator[CheckResult]:
             )
 
 
-KEEP_IT = "Keep the file as it is; `rastrainer verify` and its path says how far it can be read."
+KEEP_IT = "Keep the file unchanged; `rastrainer verify` and its path show how far it can be read."
 
 
 def check_journals(records: Path) -> Iterator[CheckResult]:

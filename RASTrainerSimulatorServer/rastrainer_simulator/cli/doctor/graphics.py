@@ -16,7 +16,7 @@ KEYBOARD = "The keyboard does everything a gamepad does."
 
 
 class _Names:
-    """Keeps the names of what SDL finds."""
+    """Collects the names of the gamepads that SDL finds."""
 
     def __init__(self) -> None:
         self.known: list[str] = []
@@ -26,10 +26,10 @@ class _Names:
         self.known.append(name)
 
     def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
-        """Where the sticks stand does not matter."""
+        """Ignore the sticks."""
 
     def gamepad_went(self, number: int, name: str) -> None:
-        """One that leaves in this moment is still named."""
+        """Keep the name of a gamepad that is just unplugged."""
 
     def gamepad_unknown(self, name: str) -> None:
         self.unknown.append(name)
@@ -125,7 +125,7 @@ def check_graphics(probe: Sequence[str] = ()) -> Iterator[CheckResult]:
             "graphics",
             CheckStatus.WARNING,
             f"OpenGL works, but the processor draws: {renderer}.",
-            "Install the graphics card's driver: pictures come slowly without.",
+            "Install the graphics card's driver: rendering is slow without it.",
         )
     else:
         yield CheckResult("graphics", CheckStatus.OK, f"OpenGL works: {renderer}.")
@@ -137,7 +137,7 @@ def _failure(sentence: str) -> CheckResult:
 
 
 def main() -> int:
-    """Print the name of OpenGL's renderer; return 2, with one sentence, where there is none."""
+    """Print the name of OpenGL's renderer; if there is none, print one sentence and return 2."""
     from rastrainer_simulator.desktop.gl_window import GlWindow
 
     try:

@@ -27,9 +27,9 @@ MODULES = {
     "vtk": "vtkmodules.vtkCommonCore",
     "yourdfpy": "yourdfpy",
 }
-"""Package → a module of it that is loaded to see whether it can be."""
+"""Package → a module of it that is imported to check it."""
 FASTER = {"fastcrc": "fastcrc", "pin": "pinocchio"}
-"""What everything works without, only slower."""
+"""Optional packages, which only make it faster."""
 
 
 def check_python() -> Iterator[CheckResult]:
@@ -106,7 +106,7 @@ GET_EXTENSION = f"Install {EXTENSION} in Slicer's Extensions Manager and restart
 
 
 def check_slicer(places: tuple[Path, ...] | None = None) -> Iterator[CheckResult]:
-    """Look for Slicer in `places`, by default where it is usually put."""
+    """Look for Slicer in `places`, by default its usual folders."""
     homes = list(_homes(_usual_places() if places is None else places))
     if not homes:
         yield CheckResult(
@@ -125,7 +125,7 @@ def check_slicer(places: tuple[Path, ...] | None = None) -> Iterator[CheckResult
 
 
 def _judged(home: Path) -> CheckResult:
-    """Judge a Slicer by its version, where its folder's name has it."""
+    """Check the version of a Slicer, if its folder's name has one."""
     version = re.search(r"Slicer[- ](\d+)\.(\d+)", str(home))
     if version is None or tuple(map(int, version.groups())) >= LEAST_VERSION:
         return CheckResult("slicer", CheckStatus.OK, f"3D Slicer is in {home}.")
@@ -163,7 +163,7 @@ def _homes(places: tuple[Path, ...]) -> Iterator[Path]:
 
 
 def _extension(home: Path) -> Iterator[Path]:
-    """Yield where the extension lies: beside Slicer, or in the user's folder."""
+    """Yield the folders of the extension: beside Slicer, or in the user's folder."""
     users = Path.home() / ".config" / "slicer.org"
     if sys.platform == "win32":
         users = Path(os.environ.get("APPDATA", Path.home())) / "slicer.org"

@@ -26,7 +26,7 @@ _STAMP = "%Y%m%dT%H%M%SZ"
 
 
 def check_clock(records: Path, now: datetime | None = None) -> Iterator[CheckResult]:
-    """Judge both clocks; the journals in `records` tell whether the date was set back."""
+    """Check both clocks; the journals in `records` show whether the date was set back."""
     now = now or datetime.now(timezone.utc)
     resolution = time.get_clock_info("monotonic").resolution
     if resolution > COARSEST_S and time.get_clock_info("perf_counter").resolution > COARSEST_S:
@@ -56,7 +56,7 @@ def _stamp(path: Path) -> datetime | None:
 def check_real_time() -> Iterator[CheckResult]:
     """Try real-time priority, as the control loop will."""
     if not hasattr(os, "SCHED_FIFO"):
-        answer = "is given to everyone" if sys.platform == "win32" else "is not asked for"
+        answer = "is given to everyone" if sys.platform == "win32" else "is not used"
         yield CheckResult(
             "real time", CheckStatus.OK, f"Real-time priority {answer} on this system."
         )
@@ -103,7 +103,7 @@ def _views(port: int) -> CheckResult:
         "ports",
         CheckStatus.WARNING,
         f"Port {port} for the views cannot be used: {reason}.",
-        "The simulator takes another one and says which; end that program to have this one.",
+        "The simulator uses another one and prints it; end that program to free this one.",
     )
 
 
@@ -120,7 +120,7 @@ def _refusal(port: int) -> str | None:
 
 
 def _holder(port: int) -> str:
-    """Return the program that listens on a port, "" where that is not known (only Linux says)."""
+    """Return the program that listens on a port, "" if unknown (as on all systems but Linux)."""
     inodes = {f"socket:[{inode}]" for inode in _listening(port)}
     if not inodes:
         return ""

@@ -1,4 +1,4 @@
-"""Commands of clients: checked, handed to the simulation in turn, answered when it has."""
+"""Commands of clients: checked, submitted to the simulation in turn, then answered."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class _Turn:
 class CommandHandler:
     """Answers every COMMAND with an RTS_COMMAND, and never waits for one itself.
 
-    A client's commands are carried out in their order. Only a few of them are given to the
-    simulation at once, so that no client can crowd the others out of a tick.
+    A client's commands are carried out in order. Only a few of them are submitted at a time, so
+    that no client can crowd the others out of a tick.
     """
 
     def __init__(self, submit: Submit, limits: LinkLimits):
-        """`submit` takes checked arguments and returns the answer's future at once."""
+        """`submit` takes checked arguments and returns the answer's future immediately."""
         self._submit = submit
         self._limits = limits
         self._loop = asyncio.get_running_loop()
@@ -60,13 +60,13 @@ class CommandHandler:
             return
         turn.waiting.append((command, arguments))
         turn.waiting_bytes += len(command.body)
-        self._go_on(connection, turn)
+        self._submit_waiting(connection, turn)
 
     def forget(self, connection: ClientConnection) -> None:
-        """Drop what a client that left still wanted."""
+        """Drop the waiting commands of a client that has left."""
         self._turns.pop(connection, None)
 
-    def _go_on(self, connection: ClientConnection, turn: _Turn) -> None:
+    def _submit_waiting(self, connection: ClientConnection, turn: _Turn) -> None:
         while turn.waiting and turn.at_work < self._limits.commands_at_once:
             command, arguments = turn.waiting.popleft()
             turn.waiting_bytes -= len(command.body)
@@ -87,7 +87,7 @@ class CommandHandler:
         else:
             answer = done.result()
             self._reply(connection, command, answer.ok, answer.message, answer.data)
-        self._go_on(connection, turn)
+        self._submit_waiting(connection, turn)
 
     def _refuse(self, connection: ClientConnection, command: Command, sentence: str) -> None:
         self._reply(connection, command, False, sentence, {})

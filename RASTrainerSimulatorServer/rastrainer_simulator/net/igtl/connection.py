@@ -32,7 +32,7 @@ class ConnectionOwner(Protocol):
         """Accept a new connection, or drop it."""
 
     def opened(self, connection: ClientConnection) -> None:
-        """Begin to send to a connection whose header version is known."""
+        """Start sending to a connection whose header version is known."""
 
     def received(self, connection: ClientConnection, message: Message) -> None:
         """Take one valid message."""
@@ -46,13 +46,13 @@ class ConnectionOwner(Protocol):
 
 @dataclass
 class _HalfMessage:
-    """A message that has begun to arrive.
+    """A message that has partly arrived.
 
     Attributes:
-        number: of the messages before it; None while none has begun.
-        since: when it began, s.
+        number: of the messages before it; None while there is none.
+        since: when its first bytes arrived, s.
         excused_s: time in which we did not read.
-        received: bytes since then, with those among which it began.
+        received: bytes since then, including the first ones.
     """
 
     number: int | None = None
@@ -113,7 +113,7 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._flush_soon()
 
     def drop(self, reason: str = "") -> None:
-        """End the connection at once, whatever still waits; no reason is no trouble."""
+        """End the connection immediately; without a reason nothing is logged."""
         if self._transport is not None:
             self._reason = self._reason or reason
             self._transport.abort()
@@ -141,7 +141,7 @@ class ClientConnection(asyncio.BufferedProtocol):
         return self._piece
 
     def buffer_updated(self, nbytes: int) -> None:
-        """Read what arrived, and continue at once or after a while."""
+        """Read what arrived, and continue immediately or after a pause."""
         begin = time.thread_time()
         self._read(nbytes)
         spent = time.thread_time() - begin
@@ -216,7 +216,7 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._open_transport.write(self._queue.take(self._limits.buffer_bytes))
 
     def _watch_half_message(self, nbytes: int) -> None:
-        """See to it that a message that has begun comes to its end."""
+        """Check that a message that has partly arrived is completed."""
         number = None if self._reader.is_between_messages else self._reader.taken
         if number is not None and number == self._half.number:
             self._half.received += nbytes

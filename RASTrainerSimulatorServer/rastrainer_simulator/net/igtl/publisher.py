@@ -54,7 +54,7 @@ def captured_points(training: TrainingState) -> Message:
 
 
 def what_changes(state: SimulationState) -> dict[str, Any]:
-    """Return what `SimState` says beside its number and time; sent again when it changes."""
+    """Return `SimState` without its number and time; it is sent when this changes."""
     training = state.training
     return {
         "phase": training.phase.value,
@@ -73,7 +73,7 @@ def what_changes(state: SimulationState) -> dict[str, Any]:
 
 
 def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> Message:
-    """Return the text that says where the trial and the robot stand: ASCII JSON.
+    """Return the state of trial and robot as text: ASCII JSON.
 
     `changing` is what `what_changes` gives; the times go along and are no reason to send it.
     """
@@ -100,7 +100,7 @@ def _rounded(value: float, digits: int) -> float | None:
 
 
 class PoseSubscription:
-    """One client's wishes; a new one knows of no pose that was sent before.
+    """One client's subscription; a new one has received no pose.
 
     Attributes:
         tool_tip: when the tip's pose is due.
@@ -127,7 +127,7 @@ class PoseSubscription:
     def is_news(self, device: str, content: bytes) -> bool:
         """Return whether a pose is to be sent, which then counts as sent.
 
-        Poses are compared as they travel: what 32 bits do not tell apart has not changed.
+        Poses are compared as they are sent, with 32 bits.
         """
         if self._sent.get(device) == content and not self._is_steady:
             return False
@@ -146,7 +146,7 @@ class Publisher:
     """
 
     def __init__(self, latest: Callable[[], SimulationState]):
-        """`latest` gives the newest state, for those who subscribe between two publications."""
+        """`latest` returns the newest state, for clients that subscribe between publications."""
         self._latest = latest
         self._poses: dict[ClientConnection, PoseSubscription] = {}
         self._state = Pacer(Rate.STATE_HZ)
@@ -169,22 +169,22 @@ class Publisher:
         self._poses.pop(connection, None)
 
     def is_due(self, state: SimulationState) -> bool:
-        """Return whether `publish` would have something to look at."""
+        """Return whether `publish` would have anything to do."""
         is_news = state.training is not self._sent_training
         return bool(self._poses) and (is_news or state.sim_time >= self._next)
 
     def publish(self, state: SimulationState) -> None:
-        """Send whatever is due, and new, to whom it is due."""
+        """Send each client what is due and new."""
         now = state.sim_time
         everyone = tuple(self._poses)
         if state.training is not self._sent_training:
             self._publish_training(everyone, state.training)
         if self._state.is_due(now):
             self._publish_state(everyone, state)
-        tip_due = [who for who, poses in self._poses.items() if poses.tool_tip.is_due(now)]
+        tip_due = [client for client, poses in self._poses.items() if poses.tool_tip.is_due(now)]
         if tip_due:
             self._publish_poses(tip_due, (tool_tip(state, self._number + 1),))
-        links_due = [who for who, poses in self._poses.items() if poses.links.is_due(now)]
+        links_due = [client for client, poses in self._poses.items() if poses.links.is_due(now)]
         if links_due:
             self._publish_poses(links_due, links(state, self._number + 1))
         self._next = min([self._state.next, *(poses.next for poses in self._poses.values())])
@@ -210,7 +210,9 @@ class Publisher:
         is_sent = False
         for message in messages:
             content = message.content.pack()
-            receivers = [who for who in due if self._poses[who].is_news(message.device, content)]
+            receivers = [
+                client for client in due if self._poses[client].is_news(message.device, content)
+            ]
             self._send(receivers, message)
             is_sent = is_sent or bool(receivers)
         if is_sent:

@@ -117,7 +117,7 @@ class IgtlServer:
                 connection.drop(f"There are {self.limits.clients} clients already.")
                 return
             del self._connections[silent]
-            silent.drop("It has said nothing, and its place was needed.")
+            silent.drop("It has sent nothing, and its place was needed.")
         self._connections[connection] = None
 
     def opened(self, connection: ClientConnection) -> None:
@@ -145,7 +145,7 @@ class IgtlServer:
 
 
 class LinkLog:
-    """Logs the first trouble at once and gathers what follows within a second into one line."""
+    """Logs the first problem immediately and those of the following second in one line."""
 
     def __init__(self):
         self._counts: Counter[str] = Counter()
@@ -159,7 +159,7 @@ class LinkLog:
             self._write_in_turn()
 
     def close(self) -> None:
-        """Write what is left."""
+        """Write the remaining lines."""
         if self._timer is not None:
             self._timer.cancel()
         self._write()

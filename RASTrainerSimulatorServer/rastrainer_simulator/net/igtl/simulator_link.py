@@ -38,9 +38,9 @@ _NUMBERS = 2**32
 class SimulatorLink:
     """Answers commands, echoes foreign transforms and publishes the simulation's state.
 
-    A TRANSFORM whose device is none of ours is sent back to its sender, unchanged: the test of
+    A TRANSFORM with a foreign device name is echoed to its sender, unchanged: the test of
     the link and the measure of its delay. All else that is valid is taken and ignored, such as
-    the STATUS with which Slicer begins every connection.
+    the STATUS with which Slicer starts every connection.
 
     Attributes:
         server: listens or connects, and owns the clients.
@@ -62,7 +62,7 @@ class SimulatorLink:
         Args:
             latest: gives the newest state.
             submit: takes a command's name, checked arguments and sender, and returns the
-                answer's future at once.
+                answer's future immediately.
             unacknowledged: gives the records of the trials that no client has acknowledged.
             health: gives what the heartbeat reports about the simulator, ready for JSON.
             limits: what clients may cost.
@@ -83,7 +83,7 @@ class SimulatorLink:
         self.publisher.subscribe(connection, PoseSubscription())
 
     def received(self, connection: ClientConnection, message: Message) -> None:
-        """Do what a message asks for."""
+        """Handle a message."""
         content = message.content
         if type(content) is Command:
             self._commands.handle(connection, content)
@@ -97,8 +97,8 @@ class SimulatorLink:
         self.publisher.unsubscribe(connection)
         self._commands.forget(connection)
 
-    def tell(self, state: SimulationState) -> None:
-        """Publish what is due, and offer a trial as soon as it is registered."""
+    def publish(self, state: SimulationState) -> None:
+        """Publish what is due, and offer a newly registered trial."""
         self.publisher.publish(state)
         phase = state.training.phase
         if phase is Phase.REGISTERED and self._last_phase is not phase:
@@ -151,13 +151,13 @@ class SimulatorLink:
             )
             return Answer(0, False, sentence, spoken)
         connection.name = arguments["client"]
-        wishes = {wish: arguments[wish] for wish in ("toolTipHz", "linksHz", "steady")}
-        self.publisher.subscribe(connection, PoseSubscription(*wishes.values()))
-        return Answer(0, True, data={**spoken, **wishes})
+        requested = {name: arguments[name] for name in ("toolTipHz", "linksHz", "steady")}
+        self.publisher.subscribe(connection, PoseSubscription(*requested.values()))
+        return Answer(0, True, data={**spoken, **requested})
 
 
 class TrialOffers:
-    """Offers the trials that nobody has acknowledged.
+    """Offers the trials that no client has acknowledged.
 
     Clients keep trials by their UUID, so an offer that arrives twice does no harm.
     """
@@ -167,7 +167,7 @@ class TrialOffers:
         unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
         clients: Callable[[], Iterable[ClientConnection]],
     ):
-        """`unacknowledged` gives the records that wait, oldest first; `clients` who is there."""
+        """`unacknowledged` returns the waiting records, oldest first; `clients` the connections."""
         self._unacknowledged = unacknowledged
         self._clients = clients
         self._numbers = itertools.count(1)

@@ -123,7 +123,7 @@ class LinkServer:
 
     def publish(self, state: SimulationState) -> None:
         self.simulated.latest = state
-        self.thread.call(self.link.tell, state)
+        self.thread.call(self.link.publish, state)
 
 
 def at_rest(**changes) -> SimulationState:

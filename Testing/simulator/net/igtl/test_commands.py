@@ -137,7 +137,7 @@ def test_simulation_is_given_few_commands_of_one_client_at_once(start):
         assert given == []
 
 
-def test_client_with_too_many_commands_is_told_so(start):
+def test_client_with_too_many_commands_is_refused(start):
     server = start(LinkServer, commands_at_once=1, waiting_commands=2)
     server.link._submit_command = lambda *_: Future()
     with Client(port=server.port) as client:
@@ -146,7 +146,7 @@ def test_client_with_too_many_commands_is_told_so(start):
         assert "Too many commands wait" in client.send_command("Capture").error
 
 
-def test_simulation_that_fails_is_reported_and_the_link_goes_on(client, link_server):
+def test_simulation_that_fails_is_reported_and_the_link_continues(client, link_server):
     def fail(*_):
         future = Future()
         future.set_exception(RuntimeError("broken"))

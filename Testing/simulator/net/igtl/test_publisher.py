@@ -100,7 +100,7 @@ def test_a_link_that_stands_is_not_sent_with_one_that_moves(publisher, receiver)
     assert not any(receiver.of(f"Link{link}ToWorld") for link in range(7))
 
 
-def test_what_32_bits_do_not_tell_apart_has_not_changed(publisher, receiver):
+def test_poses_that_are_equal_in_32_bits_have_not_changed(publisher, receiver):
     pose = np.eye(4) * (1 + 1e-12)
     run(publisher, 1, lambda t: at_rest(sim_time=t, link_to_world=(pose,) * 8))
     assert receiver.messages == []
@@ -187,7 +187,7 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
     }
 
 
-def test_clearance_without_a_head_is_told_as_null(publisher, receiver):
+def test_clearance_without_a_head_is_reported_as_null(publisher, receiver):
     publisher.publish(at_rest(sim_time=1.0, clearance=math.inf))
     assert json.loads(receiver.of("SimState")[0].content.text)["clearanceMm"] is None
 
@@ -213,7 +213,7 @@ def test_empty_list_carries_the_metadata_with_which_slicer_clears_its_own(publis
     assert last.metadata == {"count": "0", "trialId": "id-2"}
 
 
-def test_late_client_is_told_how_things_stand(publisher):
+def test_late_client_gets_the_present_state(publisher):
     state = at_rest(training=replace(RUNNING, touches=(FIRST, SECOND)))
     late = Receiver()
     publisher = Publisher(lambda: state)

@@ -231,13 +231,13 @@ def test_trouble_is_logged_once_a_second_at_most(plain_server, caplog):
         assert len(others) <= 1
 
 
-def test_port_in_use_is_said_in_one_sentence(plain_server, start):
+def test_port_in_use_is_reported_in_one_sentence(plain_server, start):
     other = start(LinkServer)
     with pytest.raises(InputError, match=f"Cannot listen on 127.0.0.1:{plain_server.port}"):
         other.thread.run(other.server.listen(HOST, plain_server.port))
 
 
-def test_host_that_is_none_is_said_in_one_sentence(link_server):
+def test_invalid_host_is_reported_in_one_sentence(link_server):
     with pytest.raises(InputError, match="Cannot listen on"):
         link_server.thread.run(link_server.server.listen("256.1.1.1", 0))
 
@@ -256,7 +256,7 @@ def test_server_connects_to_a_listening_slicer_and_comes_back(start, loop_thread
         task.cancel()
 
 
-def test_slicer_that_does_not_listen_is_told_once(start, loop_thread: LoopThread, caplog):
+def test_slicer_that_does_not_listen_is_reported_once(start, loop_thread: LoopThread, caplog):
     server = start(LinkServer, reconnect_s=0.01)
     with socket.create_server((HOST, 0)) as probe:
         port = probe.getsockname()[1]

@@ -57,8 +57,8 @@ def collector(link_server):
 def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
     link_server.simulated.unacknowledged = (record("old"), record("new"))
     registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="new"))
-    assert collector.after(lambda: link_server.link.tell(registered)) == ["new"]
-    assert collector.after(lambda: link_server.link.tell(registered)) == []
+    assert collector.after(lambda: link_server.link.publish(registered)) == ["new"]
+    assert collector.after(lambda: link_server.link.publish(registered)) == []
 
 
 def test_trial_is_offered_again_until_it_is_acknowledged(collector, link_server):
@@ -78,7 +78,7 @@ def test_every_client_is_offered_the_trial(collector, link_server):
     assert collector.after(lambda: None) == ["a"]
 
 
-def test_trials_that_nobody_takes_do_not_hold_up_the_others(collector, link_server):
+def test_trials_that_nobody_acknowledges_do_not_hold_up_the_others(collector, link_server):
     names = [str(i) for i in range(OFFERS_AT_ONCE * 2 + 3)]
     link_server.simulated.unacknowledged = tuple(record(name) for name in names)
     offered = [collector.after(link_server.link.offers.repeat) for _ in range(3)]

@@ -1,5 +1,6 @@
-"""The robot that comes with RASTrainer starts from what its files come to, written beside them."""
+"""The built-in robot is loaded from its prepared JSON; a scenario's volume is ignored."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -9,8 +10,10 @@ import numpy as np
 import pytest
 
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.core.setup import PREPARED_NAME, load_setup, read_prepared
+from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.robot.model import DEFAULT_URDF, load_robot
 
 URDF = asset_path(*DEFAULT_URDF)
@@ -66,3 +69,30 @@ def test_a_robot_is_read_from_its_files_where_nothing_usable_is_prepared(copied,
         prepared.write_text(text)
     setup = load_setup(urdf_path=copied)
     assert same(setup.shape, load_setup().shape)
+
+
+def missing(path):
+    path.unlink()
+
+
+def not_an_image(path):
+    path.write_bytes(b"no image")
+
+
+def endless(path):
+    path.unlink()
+    os.mkfifo(path)
+
+
+KINDS = [missing, not_an_image, *([endless] if hasattr(os, "mkfifo") else [])]
+
+
+@pytest.mark.parametrize("broken", KINDS)
+def test_a_simulation_starts_without_the_volume_and_the_check_names_it(tmp_path, capsys, broken):
+    folder = tmp_path / "scenario"
+    shutil.copytree(asset_path("scenarios", "colin27"), folder)
+    broken(folder / "volume.nrrd")
+    simulation = Simulation(load_setup(folder), seed=1)
+    assert simulation.setup.scenario.volume.path == (folder / "volume.nrrd").resolve()
+    assert main(["scenario", "check", str(folder)]) == 2
+    assert "volume.nrrd" in capsys.readouterr().err

@@ -1,10 +1,31 @@
-"""What a process costs, as Linux tells it."""
+"""The speed of this machine at the moment, and what a process costs (Linux)."""
 
 from __future__ import annotations
 
 import os
 import time
 from pathlib import Path
+
+from Testing.benchmarks.row import row
+
+LOOPS, STEPS = 50, 200_000
+
+
+def host_row(name: str) -> dict:
+    """Return the row `host.NAME`: how long plain Python takes for a fixed sum, before a benchmark.
+
+    A virtual machine whose host is busy runs at half speed for minutes; absolute figures of two
+    runs can be compared only where this row is the same.
+    """
+    return row(f"host.{name}", [1e3 * _sum_time() for _ in range(LOOPS)], "ms")
+
+
+def _sum_time() -> float:
+    begin = time.perf_counter()
+    total = 0
+    for number in range(STEPS):
+        total += number * number % 7
+    return time.perf_counter() - begin
 
 
 def cpu_share(pid: int, seconds: float) -> float:

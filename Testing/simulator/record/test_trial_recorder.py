@@ -1,5 +1,10 @@
-"""The tick of Register: what else happens in it is in the record, as it is in the journal."""
+"""What the first trial needs is there before it begins: a tick has no time to load anything."""
 
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
 from dataclasses import replace
 
 from rastrainer.journal.recording import Recording
@@ -9,6 +14,35 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.state import Event, EventKind
+
+PLAY_THE_FIRST_TRIAL = """
+import json, sys, tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.record.trial_recorder import TrialRecorder
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
+
+BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=3)
+with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(1) as writer:
+    simulation = Simulation(load_setup(), 1)
+    recorder = TrialRecorder(Path(folder), TrialArchive(Path(folder)), writer, 0.05)
+    before = set(sys.modules)
+    play_virtual_trial(simulation, "task-1", 1, BRISK, 0.05, recorder.record)
+    writer.submit(int).result()
+    print(json.dumps(sorted(set(sys.modules) - before)))
+"""
+
+
+def test_no_module_is_loaded_while_the_first_trial_is_played_and_recorded():
+    played = subprocess.run(
+        [sys.executable, "-c", PLAY_THE_FIRST_TRIAL], capture_output=True, text=True, check=True
+    )
+    assert json.loads(played.stdout) == []
+
 
 DT = 0.004
 CONTACT = {"from": "proximity", "to": "contact", "clearanceMm": 0.0}
@@ -24,7 +58,7 @@ def test_a_contact_in_the_tick_of_register_counts_in_the_record_as_in_the_journa
         return before, given, simulation.step(DT, given)
 
     before, given, begun = step(CommandName.START_TASK, task="task-1", trainee="P01")
-    entries = TrialEntries.begun(simulation, before, begun, DT)
+    entries = TrialEntries.started(simulation, before, begun, DT)
     entries.add(simulation, given, begun)
     for _ in range(15):
         _, given, touched = step(CommandName.CAPTURE)
