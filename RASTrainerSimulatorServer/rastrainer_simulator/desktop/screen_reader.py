@@ -11,6 +11,7 @@ from rastrainer_simulator.net.views.screen import (
     ItemKind,
     Menu,
     MenuItem,
+    ScoreTrend,
     Screen,
     ScreenMessage,
     Tone,
@@ -48,6 +49,15 @@ def _menu(value: Json) -> Menu:
         items=tuple(_item(item) for item in value["items"]),
         focus=str(value["focus"]),
         picture=str(value["picture"]),
+        trend=None if value["trend"] is None else _trend(value["trend"]),
+    )
+
+
+def _trend(value: Json) -> ScoreTrend:
+    return ScoreTrend(
+        text=str(value["text"]),
+        scores=tuple(min(max(float(score), 0.0), 100.0) for score in value["scores"]),
+        mark=float(value["mark"]),
     )
 
 

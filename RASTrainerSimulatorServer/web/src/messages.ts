@@ -21,6 +21,13 @@ export interface Fact {
   readonly tone: Tone;
 }
 
+/** Scores of 0 to 100, oldest first; `mark` is the one that passes, 0 for none. */
+export interface ScoreTrend {
+  readonly text: string;
+  readonly scores: readonly number[];
+  readonly mark: number;
+}
+
 export interface Menu {
   readonly name: string;
   readonly title: string;
@@ -29,6 +36,7 @@ export interface Menu {
   readonly items: readonly Item[];
   readonly focus: string;
   readonly picture: string;
+  readonly trend: ScoreTrend | null;
 }
 
 export interface Message {

@@ -4,6 +4,7 @@ import { BESIDE } from "./flat_view";
 import type { Connection } from "./connection";
 import type { ControlNews, Item, Menu, Message, PairingNews, Screen } from "./messages";
 import { controlsPicture, inputsOf } from "./panels/controls_picture";
+import { trendPlot } from "./panels/trend_plot";
 import { say, sayHolder } from "./texts";
 
 export class Overlay {
@@ -102,15 +103,16 @@ export class Overlay {
 
   private showMenu(): void {
     const { menu } = this;
-    const controls = menu?.picture === "controls" ? controlsPicture(this.holder, inputsOf(menu)) : "";
-    this.part("menu", [menu, controls], (parent) => this.fillMenu(parent, menu, controls));
+    let drawn = menu?.picture === "controls" ? controlsPicture(this.holder, inputsOf(menu)) : "";
+    if (menu?.trend) drawn = trendPlot(menu.trend);
+    this.part("menu", [menu, drawn], (parent) => this.fillMenu(parent, menu, drawn));
   }
 
-  private fillMenu(parent: HTMLElement, menu: Menu | null, controls: string): void {
+  private fillMenu(parent: HTMLElement, menu: Menu | null, drawn: string): void {
     parent.hidden = menu === null;
     if (menu === null) return;
-    parent.className = controls !== "" ? "pictured" : menu.facts.length > 0 ? "wide" : "";
-    if (controls !== "") parent.append(drawing(controls));
+    parent.className = drawn !== "" ? "pictured" : menu.facts.length > 0 ? "wide" : "";
+    if (drawn !== "") parent.append(drawing(drawn, menu.trend?.text ?? say("picture")));
     parent.append(element("h1", menu.title));
     parent.append(...menu.paragraphs.map((text) => element("p", text)));
     if (menu.facts.length > 0) parent.append(factsOf(menu));
@@ -154,10 +156,10 @@ function element(tag: string, text: string): HTMLElement {
   return made;
 }
 
-function drawing(source: string): HTMLImageElement {
+function drawing(source: string, name: string): HTMLImageElement {
   const image = new Image();
   image.src = source;
-  image.alt = say("picture");
+  image.alt = name;
   return image;
 }
 

@@ -9,7 +9,15 @@ from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.panels.target_arrow import target_arrow
 from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
-from rastrainer_simulator.net.views.screen import Fact, Hint, Menu, MenuItem, ScreenMessage, Tone
+from rastrainer_simulator.net.views.screen import (
+    Fact,
+    Hint,
+    Menu,
+    MenuItem,
+    ScoreTrend,
+    ScreenMessage,
+    Tone,
+)
 from Testing.domain.scenario.made_up_scenario import png
 from Testing.simulator.desktop.conftest import MENU
 
@@ -169,3 +177,21 @@ def test_the_picture_of_the_item_in_focus_is_shown_beside_the_list(size):
 def test_what_is_no_picture_is_refused_with_a_sentence():
     with pytest.raises(InputError, match="cannot be read"):
         Thumbnail.from_png(b"no picture")
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_trend_has_a_bar_for_each_score_as_high_as_it_is_and_hides_no_task(size):
+    scores = (20.0, 40.0, 80.0)
+    menu = replace(MENU, trend=ScoreTrend("Scores: 20, 40, 80.", scores, 70.0))
+    picture = paint(menu, size)
+    assert len(picture.rows) == len(menu.items)
+    aside = picture.pixels[:, : picture.rows["mode"].left, :3].astype(int)
+
+    def height_of(tone):
+        color = np.round(255 * np.array(theme.TONES[tone][:3]))
+        return np.count_nonzero((np.abs(aside - color) <= 2).all(axis=2), axis=0)
+
+    plain, good = height_of(Tone.PLAIN), height_of(Tone.GOOD)
+    # The two below the pass mark, then the one that reaches it.
+    heights = np.array([*np.unique(plain[plain > 0.5 * plain.max() - 3])[[0, -1]], good.max()])
+    assert heights / good.max() == pytest.approx([0.25, 0.5, 1.0], abs=0.04)

@@ -11,6 +11,7 @@ from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad
 from rastrainer_simulator.desktop.panels.item_row import Look, draw_item
+from rastrainer_simulator.desktop.panels.score_trend import draw_trend, trend_height
 from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
 from rastrainer_simulator.net.views.screen import Menu
 
@@ -70,22 +71,32 @@ class _Layout:
     """Where everything of a menu comes, at one scale.
 
     A picture needs a width of its own; without one, the widest panel has its text in two columns.
+    A trend has the text under it.
     """
 
     def __init__(self, menu: Menu, brush: Brush, room: tuple[int, int], width: int):
         self._menu = menu
         self._brush = brush
         self._pad = brush.px(theme.PANEL_PAD)
-        has_picture = menu.picture == "controls" or any(item.picture for item in menu.items)
+        has_picture = (
+            menu.picture == "controls"
+            or menu.trend is not None
+            or any(item.picture for item in menu.items)
+        )
         self._width = min(brush.px(theme.WIDE_PANEL_WIDTH if has_picture else width), room[0])
         inside = self._width - 2 * self._pad
         self._picture_width = round(0.42 * inside) if has_picture else 0
-        self._is_split = not has_picture and width >= theme.WIDE_PANEL_WIDTH
-        aside = (inside - self._pad) // 2 if self._is_split else self._picture_width
+        is_in_columns = not has_picture and width >= theme.WIDE_PANEL_WIDTH
+        self._is_split = is_in_columns or menu.trend is not None
+        aside = (inside - self._pad) // 2 if is_in_columns else self._picture_width
         self._left = self._pad + aside + (self._pad if aside else 0)
         self._text_width = self._width - self._pad - self._left
         self._title = brush.wrap(menu.title, theme.TITLE, inside)
-        self._lines = [brush.wrap(text, theme.BODY, self._text_width) for text in menu.paragraphs]
+        room_of_text = aside if self._is_split else self._text_width
+        self._lines = [brush.wrap(text, theme.BODY, room_of_text) for text in menu.paragraphs]
+        self._plot = 0
+        if menu.trend is not None:
+            self._plot = trend_height(brush, self._picture_width) + brush.px(theme.GAP)
         self._help = max(
             (
                 len(brush.wrap(item.help, theme.SMALL, self._text_width))
@@ -99,7 +110,7 @@ class _Layout:
         if any(item.picture for item in menu.items):
             least = self._height_beside(round(_PICTURE_HEIGHT * self._picture_width))
         elif self._is_split:
-            least = self._height_beside(self._lines_height())
+            least = self._height_beside(self._plot + self._lines_height())
         self.height = max(above + self._rows_height(len(menu.items)) + below, least)
         fitting = max(1, (room[1] - above - below) // (self._row + self._gap))
         self._shown = self._rows_in_sight(min(len(menu.items), fitting))
@@ -162,6 +173,8 @@ class _Layout:
             place = Box(self._pad, top, self._picture_width, self._height - top - self._pad)
             if self._menu.picture == "controls":
                 draw_gamepad(canvas, place, brush)
+            elif self._menu.trend is not None:
+                draw_trend(canvas, place, self._menu.trend, brush)
             elif thumbnail is not None:
                 pixels = thumbnail.fitted(place.width, place.height)
                 canvas.picture(place.left, place.top, pixels)
@@ -173,6 +186,7 @@ class _Layout:
     def _paint_text(self, canvas: Canvas, top: int) -> int:
         brush, begin = self._brush, top
         left = self._pad if self._is_split else self._left
+        top += self._plot
         for lines in self._lines:
             for line in lines:
                 brush.write(canvas, line, theme.BODY, theme.TEXT_SOFT, left, top)

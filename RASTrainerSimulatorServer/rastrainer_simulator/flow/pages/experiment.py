@@ -11,11 +11,12 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, CommandName, Mode, StepKind
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem
+from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem, ScoreTrend
 
 LONGEST_ID = 32
 
@@ -50,11 +51,17 @@ class ExperimentPage(SessionPage):
         step = self._step()
         is_asked = step is not None and step.kind == StepKind.QUESTIONNAIRE
         answer = (self.button("answer"),) if is_asked else ()
+        said = () if step is None else (session.step_sentence(step),)
+        trend = self._trend()
+        if trend is not None:
+            key = "experiment.trend" if trend.mark else "experiment.trend in study"
+            said = (*said, self.say(key, mark=trend.mark))
         return Menu(
             self.name,
             self.say("experiment.title"),
-            () if step is None else (session.step_sentence(step),),
+            said,
             items=(*answer, trainee, mode, scenario, *tasks, self.button("back")),
+            trend=trend,
         )
 
     def accept(self, item: str) -> None:
@@ -84,6 +91,16 @@ class ExperimentPage(SessionPage):
         """Take the trainee's ID."""
         if item == "trainee":
             self.session.trainee = value.lstrip()[:LONGEST_ID]
+
+    def _trend(self) -> ScoreTrend | None:
+        """Return the trainee's scores in the chosen mode; a study may have a mark of its own."""
+        session = self.session
+        scores = session.history.trend(session.trainee.strip(), session.mode)
+        if not scores:
+            return None
+        told = ", ".join(f"{score:.0f}" for score in scores)
+        mark = PASS_MARK if self._step() is None else 0.0
+        return ScoreTrend(self.say("experiment.scores", scores=told), scores, mark)
 
     def _task(self, name: str) -> MenuItem:
         """Return a task's button: a disabled one says why."""

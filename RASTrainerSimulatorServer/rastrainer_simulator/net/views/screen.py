@@ -63,6 +63,21 @@ class Fact:
 
 
 @dataclasses.dataclass(frozen=True)
+class ScoreTrend:
+    """A trainee's scores as a small plot of bars.
+
+    Attributes:
+        text: every score in words, for who cannot see the plot.
+        scores: 0 to 100, oldest first, at least one.
+        mark: score that passes, drawn as a line; 0 for none.
+    """
+
+    text: str
+    scores: tuple[float, ...]
+    mark: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True)
 class Menu:
     """A panel over the picture.
 
@@ -74,6 +89,7 @@ class Menu:
         items: the lines that can be chosen, in order.
         focus: name of the item that has the focus; "" when there is none.
         picture: which drawing a view puts beside the text: "" or "controls".
+        trend: plot that a view puts there instead; None for none.
     """
 
     name: str
@@ -83,6 +99,7 @@ class Menu:
     items: tuple[MenuItem, ...] = ()
     focus: str = ""
     picture: str = ""
+    trend: ScoreTrend | None = None
 
 
 @dataclasses.dataclass(frozen=True)

@@ -243,6 +243,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "study.played": "{task} ist erledigt. 3D Slicer wird sagen, was als Nächstes kommt.",
         "study.desktop": "am Bildschirm",
         "study.hmd": "mit dem Headset",
+        "experiment.trend": "Deine Punktzahlen in diesem Modus; die Linie ist die Marke zum "
+        "Bestehen, {mark:.0f}.",
+        "experiment.trend in study": "Deine Punktzahlen in diesem Modus.",
+        "experiment.scores": "Punktzahlen, die älteste zuerst: {scores}.",
         "experiment.scenario": "Kopf",
         "experiment.answer": "Den Fragebogen beantworten",
         "questionnaire.text": "{trainee}, beantworte jede Zeile: {lowest} bedeutet {low}, "

@@ -16,7 +16,7 @@ const LABEL = { size: 34, color: COLORS.text };
 const PALE = { size: 34, color: COLORS.pale };
 const HELP = { size: 29, color: COLORS.soft };
 
-/** `image` is the picture of the item that has the focus; null where it has none. */
+/** `image` is the plot of the menu, or the picture of the item that has the focus; null where there is none. */
 export function paintMenu(
   pen: Pen,
   menu: Menu,
@@ -37,7 +37,7 @@ export function paintMenu(
     y += FACT;
   }
   y += 10;
-  if (menu.items.some((item) => item.picture !== "")) {
+  if (menu.trend !== null || menu.items.some((item) => item.picture !== "")) {
     if (image !== null) pen.picture(image, PAD, y, room, PICTURE);
     y += PICTURE + GAP;
   }

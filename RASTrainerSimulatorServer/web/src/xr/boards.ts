@@ -9,6 +9,7 @@ import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../pan
 import { BANNERS, COLORS, type Pen } from "../panels/pen";
 import { paintWork } from "../panels/work_painter";
 import { say, sayHolder, type TextName } from "../texts";
+import { trendPlot } from "../panels/trend_plot";
 import { thumbnail } from "../thumbnails";
 import { CloseUp } from "./close_up";
 import type { Placement } from "./placement";
@@ -134,7 +135,7 @@ export class Boards {
     this.paintPicture(menu);
     if (menu !== null) {
       const focused = menu.items.find((item) => item.name === menu.focus);
-      const image = thumbnail(focused?.picture ?? "", () => this.paint());
+      const image = thumbnail(menu.trend ? trendPlot(menu.trend) : (focused?.picture ?? ""), () => this.paint());
       this.menu.show(JSON.stringify([menu, this.hovered, image !== null]), (pen) =>
         paintMenu(pen, menu, this.menu.width, this.menu.height, this.hovered, image),
       );

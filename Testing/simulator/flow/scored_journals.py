@@ -1,0 +1,64 @@
+"""Journals of scored and aborted trials, and the task menu of who has played them."""
+
+from __future__ import annotations
+
+import uuid
+from pathlib import Path
+
+from rastrainer.journal.journal_file import NO_LINE, encode_line
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.net.views.screen import Screen
+from Testing.domain.trial.trial_records import make_aborted, make_record
+
+TRAINEE = "P07"
+SCORES = (38.0, 52.4, 47.0, 66.6, 71.0, 69.0, 88.0)
+
+
+def write_scored(folder, number, *scores, version="2", **changes) -> Path:
+    """Write the journal of a trial that was scored as often as there are scores."""
+    trial_id = str(uuid.UUID(int=number))
+    record = TrialRecord.from_json(make_record(trialId=trial_id, trainee=TRAINEE, **changes))
+    details = {"isAccurate": True, "isSafe": True}
+    details |= {"scoreVersion": version} if version else {}
+    told = [{"trialId": trial_id, "score": score, "details": details} for score in scores]
+    registered = {"kind": "registered", "record": record.to_json()}
+    scored = ({"kind": "scored", "arguments": arguments} for arguments in told)
+    return _write(folder, number, record, registered, *scored)
+
+
+def write_aborted(folder, number, **changes) -> Path:
+    """Write the journal of a trial that was aborted."""
+    record = AbortedTrial.from_json(make_aborted(number, trainee=TRAINEE, **changes))
+    return _write(folder, number, record, {"kind": "attempt", "record": record.to_json()})
+
+
+def _write(folder, number, record, *entries) -> Path:
+    names = {"trialId": record.trial_id, "trainee": record.trainee, "task": record.task}
+    header = {"kind": "header", **names, "scenario": {"name": record.scenario}}
+    lines, previous = [], NO_LINE
+    for n, entry in enumerate((header, *entries), 1):
+        line, previous = encode_line(n, previous, entry)
+        lines.append(line)
+    folder.mkdir(exist_ok=True)
+    path = folder / f"20240517T{number:06d}Z_{record.trial_id}.journal"
+    path.write_bytes(b"".join(lines))
+    return path
+
+
+def task_menu(loop, services, scores=SCORES, language="en") -> Screen:
+    """Return the task menu of a trainee with these scores."""
+    for number, score in enumerate(scores):
+        write_scored(services.records, number, score)
+    preferences = Preferences(language=language)
+    presenter = FlowPresenter(loop, services, DEFAULT_BINDINGS, preferences)
+    session = presenter._session
+    session.trainee = TRAINEE
+    session.pages.show(ExperimentPage(session))
+    screen = presenter._flow.screen()
+    presenter.close()
+    return screen

@@ -1,0 +1,82 @@
+"""The task menu shows the trainee's own scores, of the journals, by trial."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.flow.session.progress import DoneTasks
+from rastrainer_simulator.flow.session.score_history import ScoreHistory
+from Testing.simulator.flow.scored_journals import (
+    SCORES,
+    TRAINEE,
+    task_menu,
+    write_aborted,
+    write_scored,
+)
+
+
+@pytest.fixture
+def history_of(tmp_path):
+    """Return what reads a folder's history as a session does."""
+    return lambda: ScoreHistory(tmp_path, DoneTasks(tmp_path).journals)
+
+
+def test_only_scores_of_the_mode_and_of_the_present_version_are_compared(tmp_path, history_of):
+    write_scored(tmp_path, 1, 40.0, 45.0)
+    write_scored(tmp_path, 2, 99.0, task="trial-run")
+    write_scored(tmp_path, 3, 98.0, version="1")
+    write_scored(tmp_path, 4, 97.0, version="")
+    write_scored(tmp_path, 5, 60.0, mode="hmd")
+    write_scored(tmp_path, 6)
+    write_scored(tmp_path, 7, 55.0, task="task-2")
+    write_aborted(tmp_path, 8)
+    history = history_of()
+    # Of a trial that was scored again the last score counts.
+    assert history.trend(TRAINEE, "desktop") == (45.0, 55.0)
+    assert history.trend(TRAINEE, "hmd") == (60.0,)
+    assert history.trend("P08", "desktop") == ()
+
+
+def test_a_failure_by_aborting_counts_for_the_competence_though_it_has_no_score(
+    tmp_path, history_of
+):
+    write_scored(tmp_path, 1, 40.0)
+    write_aborted(tmp_path, 2)
+    write_aborted(tmp_path, 3, touches=0)
+    assert [trial.is_aborted for trial in history_of().of(TRAINEE)] == [False, True]
+
+
+def test_a_score_whose_journal_was_altered_is_left_out(tmp_path, history_of):
+    path = write_scored(tmp_path, 1, 41.25)
+    write_scored(tmp_path, 2, 50.0)
+    path.write_bytes(path.read_bytes().replace(b"41.25", b"91.25"))
+    assert history_of().trend(TRAINEE, "desktop") == (50.0,)
+
+
+def test_what_a_trial_adds_is_in_the_trend_at_once_and_only_the_newest_are_shown(
+    tmp_path, history_of
+):
+    history = history_of()
+    for number in range(1, 26):
+        path = write_scored(tmp_path, number, float(number))
+        history.changed(TRAINEE, path.stem.rpartition("_")[2])
+    assert history.trend(TRAINEE, "desktop") == tuple(map(float, range(6, 26)))
+    write_scored(tmp_path, 25, 25.0, 30.0)
+    history.changed(TRAINEE, path.stem.rpartition("_")[2])
+    assert history.trend(TRAINEE, "desktop")[-1] == 30.0
+
+
+@pytest.mark.parametrize(
+    ("language", "sentence"),
+    [("en", "the line is the pass mark, 70."), ("de", "die Linie ist die Marke zum Bestehen, 70.")],
+)
+def test_the_task_menu_shows_the_trend_and_says_it_in_words(loop, outside, language, sentence):
+    menu = task_menu(loop, outside.services, language=language).menu
+    assert (menu.trend.scores, menu.trend.mark) == (SCORES, 70.0)
+    assert menu.paragraphs[0].endswith(sentence)
+    assert "38, 52, 47, 67, 71, 69, 88" in menu.trend.text
+
+
+def test_who_has_no_score_is_shown_no_plot(loop, outside):
+    menu = task_menu(loop, outside.services, scores=()).menu
+    assert (menu.trend, menu.paragraphs) == (None, ())
