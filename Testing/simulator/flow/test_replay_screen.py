@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import threading
 
+import numpy as np
 import pytest
 
 from rastrainer.journal.replay_track import read_track
 from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
@@ -122,6 +124,26 @@ def test_the_trial_is_shown_again_to_the_views_while_the_arm_stands(result):
     result.until_menu("result")
     assert result.replay is result.loop.latest
     assert result.journal.read_bytes() == before
+
+
+def test_the_worst_touch_is_looked_at_from_where_it_is_seen_best(result):
+    view = result.presenter._session.view
+    view.control.reset()
+    result.show_again("worst")
+    label = result.presenter.shown._playback.trial.worst[0]
+    truth = result.loop.truth
+    fiducial = truth.in_world(truth.fiducials[label]) / MM_PER_M
+    cameras = result.loop.setup.scenario.cameras
+
+    def sees_it():
+        main = view.pictures(result.replay, cameras).main
+        eye, middle = np.array(main.position), np.array(main.focal_point)
+        line = (middle - eye) / np.linalg.norm(middle - eye)
+        return np.linalg.norm(np.cross(fiducial - eye, line)) < 0.001
+
+    assert not sees_it()
+    # The best views are looked for in a thread beside, one after the other.
+    result.until(sees_it, "the best view")
 
 
 def test_what_was_heard_and_felt_is_heard_and_felt_again(result):

@@ -64,7 +64,7 @@ class ReplayPage(SessionPage):
         if self._player is None:
             return False
         if control in ACTIONS:
-            self._player.do(ACTIONS[control])
+            self._do(self._player, ACTIONS[control])
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
@@ -74,7 +74,7 @@ class ReplayPage(SessionPage):
             return False
         is_camera = name in bindings.table(device)[ControlName.CAMERA]
         if is_camera or name == _WORST[device]:
-            self._player.do(PlayerAction.CAMERA if is_camera else PlayerAction.WORST)
+            self._do(self._player, PlayerAction.CAMERA if is_camera else PlayerAction.WORST)
         return True
 
     def _begin(self) -> None:
@@ -91,7 +91,13 @@ class ReplayPage(SessionPage):
         if self._begins_at_worst and trial.worst is None:
             session.complain(self.say("replay.no worst"))
         elif self._begins_at_worst:
-            self._player.do(PlayerAction.WORST)
+            self._do(self._player, PlayerAction.WORST)
+
+    def _do(self, player: Player, action: PlayerAction) -> None:
+        """Carry out an action; the worst touch is looked at from where it is seen best."""
+        player.do(action)
+        if action is PlayerAction.WORST and player.playback.trial.worst is not None:
+            self.session.view.want_best()
 
     def _feel(self, result: StepResult) -> None:
         """Play the sounds and vibrations of what happened again."""
