@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer.statistics.trainee_clusters import (
     ALPHA,
-    FEWEST_TRAINEES,
+    MIN_TRAINEES,
     NoClustersError,
     cluster_trainees,
     one_peak_p,
@@ -67,7 +67,7 @@ def several_populations(sets: int, seed: int = 4) -> list[Measured]:
 
 def _is_parted(values: np.ndarray) -> bool:
     """Return whether (n, m) values pass the test that stands before all groups."""
-    if len(values) < FEWEST_TRAINEES:
+    if len(values) < MIN_TRAINEES:
         return False
     return one_peak_p((values - values.mean(axis=0)) / values.std(axis=0, ddof=1)) <= ALPHA
 

@@ -18,7 +18,7 @@ import trimesh
 from rastrainer.errors import InputError
 from rastrainer.files.markups import read_markups, read_points
 from rastrainer.files.nrrd import read_nrrd, write_nrrd
-from rastrainer.files.reading import DEEPEST, MOST_ELEMENTS
+from rastrainer.files.reading import MAX_DEPTH, MAX_ELEMENTS
 from rastrainer.scenario.package import checked_scenario, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import read_setup
@@ -154,8 +154,8 @@ def test_xml_that_is_made_to_do_harm_is_refused(tmp_path):
         path.write_bytes(content)
         sentence = refused(OTHER_FAMILIES["URDF"], path)
         wanted = {
-            "deep": f"more than {DEEPEST} deep",
-            "many": f"more than {MOST_ELEMENTS} elements",
+            "deep": f"more than {MAX_DEPTH} deep",
+            "many": f"more than {MAX_ELEMENTS} elements",
             "entities that expand": "document type",
             "an entity of a file": "document type",
             "a document type elsewhere": "document type",

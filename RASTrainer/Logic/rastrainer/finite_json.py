@@ -8,13 +8,13 @@ from typing import Any
 
 from rastrainer.errors import InputError
 
-DEEPEST = 64
+MAX_DEPTH = 64
 """Lists and objects in one another; how many the interpreter takes differs with its version."""
-MESSAGE_VALUES = 1000
+MAX_MESSAGE_VALUES = 1000
 """Values of a message; none of ours has half as many."""
 
 
-def decode_finite_json(text: str, deepest: int = DEEPEST) -> Any:
+def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
     """Return the decoded JSON; its numbers are finite.
 
     Raises:
@@ -41,9 +41,9 @@ def decode_message(text: str) -> Any:
     would miss a tick for them.
 
     Raises:
-        ValueError: as there, or more than `MESSAGE_VALUES` values.
+        ValueError: as there, or more than `MAX_MESSAGE_VALUES` values.
     """
-    if text.count(",") >= MESSAGE_VALUES:
+    if text.count(",") >= MAX_MESSAGE_VALUES:
         raise ValueError("too many values")
     return decode_finite_json(text)
 
@@ -61,7 +61,7 @@ def decode_message_object(text: str, what: str) -> dict[str, Any]:
         value = None
     if not isinstance(value, dict):
         raise InputError(
-            f"{what} must be one JSON object with finite numbers, of at most {MESSAGE_VALUES} "
+            f"{what} must be one JSON object with finite numbers, of at most {MAX_MESSAGE_VALUES} "
             "values."
         )
     return value

@@ -86,7 +86,7 @@ class AbortReason(str, Enum):
 COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTICE_OVER)
 """In the simulator's menu, by a client's command, or since the time of a trial run was over. The
 other one is a trial that the simulator's end has cut short and after which another was begun."""
-KEPT_AFTER_S = 10.0
+MIN_ABORTED_S = 10.0
 """An aborted trial without any touch is kept where it took longer than this."""
 
 

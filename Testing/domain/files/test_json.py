@@ -9,7 +9,7 @@ import pytest
 from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import read_fields
-from rastrainer.finite_json import DEEPEST, MESSAGE_VALUES, decode_finite_json, decode_message
+from rastrainer.finite_json import MAX_DEPTH, MAX_MESSAGE_VALUES, decode_finite_json, decode_message
 from rastrainer.json_checks import Argument, accepted, checked_keys, is_number
 
 
@@ -19,7 +19,7 @@ def nested(levels: int, opening: str, closing: str) -> str:
 
 @pytest.mark.parametrize(("opening", "closing"), [("[", "]"), ('{"a":', "}"), ('[{"a":[', "]}]")])
 def test_json_of_64_levels_is_accepted_and_of_65_refused(opening, closing):
-    times, rest = divmod(DEEPEST, len(closing))
+    times, rest = divmod(MAX_DEPTH, len(closing))
     text = "[" * rest + nested(times, opening, closing) + "]" * rest
     assert decode_finite_json(text) is not None
     with pytest.raises(ValueError, match="too deeply nested"):
@@ -38,8 +38,8 @@ def test_wide_json_and_text_of_brackets_are_not_deep():
 
 
 def test_a_message_of_very_many_values_is_refused_before_it_is_decoded():
-    most = f"[{','.join('1' * MESSAGE_VALUES)}]"
-    assert len(decode_message(most)) == MESSAGE_VALUES
+    most = f"[{','.join('1' * MAX_MESSAGE_VALUES)}]"
+    assert len(decode_message(most)) == MAX_MESSAGE_VALUES
     with pytest.raises(ValueError, match="too many values"):
         decode_message(most.replace("1", "1,1", 1))
 

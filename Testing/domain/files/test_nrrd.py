@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.nrrd import MOST_FILE_BYTES, read_nrrd, write_nrrd
+from rastrainer.files.nrrd import MAX_FILE_BYTES, read_nrrd, write_nrrd
 
 OBLIQUE = np.array([[0.6, -0.8, 0, -50], [0.8, 0.6, 0, 10], [0, 0, -1.5, 70], [0, 0, 0, 1.0]])
 
@@ -163,7 +163,7 @@ def test_a_header_that_claims_gigabytes_is_refused_before_allocation(tmp_path):
         for path in (many, few):
             with pytest.raises(InputError):
                 read_nrrd(path)
-        assert tracemalloc.get_traced_memory()[1] < MOST_FILE_BYTES + 1_000_000
+        assert tracemalloc.get_traced_memory()[1] < MAX_FILE_BYTES + 1_000_000
     finally:
         tracemalloc.stop()
 
@@ -194,6 +194,6 @@ def test_a_missing_or_too_large_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"There is no file .*none\.nrrd"):
         read_nrrd(tmp_path / "none.nrrd")
     with (tmp_path / "large.nrrd").open("wb") as file:
-        file.truncate(MOST_FILE_BYTES + 1)
+        file.truncate(MAX_FILE_BYTES + 1)
     with pytest.raises(InputError, match=r"large\.nrrd is larger than"):
         read_nrrd(tmp_path / "large.nrrd")

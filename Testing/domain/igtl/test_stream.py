@@ -8,9 +8,9 @@ import struct
 import pytest
 
 from rastrainer.igtl.content import Command, Status, String, Transform
-from rastrainer.igtl.message import LARGEST_BODY, Message, pack
+from rastrainer.igtl.message import MAX_BODY_BYTES, Message, pack
 from rastrainer.igtl.points import Point, Points
-from rastrainer.igtl.stream import LARGEST_KEPT, MOST_GARBAGE, MessageReader, StreamError
+from rastrainer.igtl.stream import MAX_GARBAGE_BYTES, MAX_KEPT_BYTES, MessageReader, StreamError
 from rastrainer.igtl.wire import crc64
 
 TIP = Message("Tip", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 6, 7)), {"seq": "1"}, timestamp=1)
@@ -61,12 +61,12 @@ def test_unsupported_type_is_counted_and_skipped_without_buffering(reader):
 
 
 def test_too_long_message_of_a_known_type_is_skipped_without_buffering(reader):
-    size = LARGEST_KEPT + 1
+    size = MAX_KEPT_BYTES + 1
     assert reader.feed(header(b"STRING", size) + bytes(size) + pack(TIP)) == [TIP]
     assert reader.errors == {StreamError.SIZE: 1}
 
 
-@pytest.mark.parametrize("size", [LARGEST_BODY + 1, 2**31, 2**64 - 1])
+@pytest.mark.parametrize("size", [MAX_BODY_BYTES + 1, 2**31, 2**64 - 1])
 def test_claimed_body_above_16_mib_ends_the_stream(reader, size):
     assert reader.feed(header(b"TRANSFORM", size) + pack(TIP)) == []
     assert reader.refusal == "A message claims more than 16777216 bytes."
@@ -106,7 +106,7 @@ def test_a_stream_that_does_not_begin_with_a_message_is_not_searched_for_one(rea
 def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):
     generator = random.Random(2)
     assert reader.feed(pack(TIP)) == [TIP]
-    for _ in range(MOST_GARBAGE // 1000 + 2):
+    for _ in range(MAX_GARBAGE_BYTES // 1000 + 2):
         reader.feed(bytes(generator.choices(range(65, 91), k=1000)))
         assert len(reader._buffer) < 2000
     assert reader.refusal

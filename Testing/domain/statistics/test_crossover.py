@@ -125,7 +125,6 @@ def test_the_rank_sum_test_is_scipys_exact_one_and_stays_exact_with_ties():
     expected = scipy.stats.mannwhitneyu(one, other, method="exact")
     found = rank_sum_test(one, other)
     assert found.p == pytest.approx(expected.pvalue, rel=1e-9)
-    assert found.rank_sum - 21 == pytest.approx(expected.statistic)
     tied = np.array([1.0, 1.0, 2.0, 3.0, 3.0, 3.0, 4.0])
     ranks = scipy.stats.rankdata(tied)
     sums = np.array([sum(ranks[list(rows)]) for rows in itertools.combinations(range(7), 3)])

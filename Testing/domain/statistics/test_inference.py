@@ -54,8 +54,6 @@ def test_the_signed_rank_test_agrees_with_scipys_exact_one(values):
     result = signed_rank_test(values)
     expected = scipy.stats.wilcoxon(values, method="exact")
     assert result.p == pytest.approx(expected.pvalue, rel=1e-9)
-    total = len(values) * (len(values) + 1) / 2
-    assert min(result.positive_ranks, total - result.positive_ranks) == expected.statistic
 
 
 def test_ties_and_zeros_keep_the_signed_rank_test_exact():
@@ -67,16 +65,6 @@ def test_ties_and_zeros_keep_the_signed_rank_test_exact():
     expected = 2 * min(np.mean(sums <= observed), np.mean(sums >= observed))
     result = signed_rank_test(values)
     assert (result.n, result.p) == (8, pytest.approx(min(1.0, expected)))
-
-
-def test_the_interval_of_the_shift_covers_what_it_says():
-    generator = np.random.default_rng(0)
-    for n in (4, 6, 12):
-        results = [signed_rank_test(generator.normal(0.5, 1, n)) for _ in range(400)]
-        covered = np.mean([r.interval[0] <= 0.5 <= r.interval[1] for r in results])
-        assert covered == pytest.approx(results[0].coverage, abs=0.035)
-    assert signed_rank_test(SAMPLES[1]).coverage == pytest.approx(0.875)
-    assert signed_rank_test(SAMPLES[4]).coverage >= 0.95
 
 
 def test_hedges_factor_is_the_tabulated_one():

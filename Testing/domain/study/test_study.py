@@ -264,7 +264,7 @@ def test_everything_is_stored_across_reopening(path, results):
     with Study.open(path) as study:
         assert study.trainee("a").consent
         assert study.history("a")[0].score == results[2]
-        assert study.has_trial(record()["trialId"])
+        assert study.trial(record()["trialId"])
 
 
 def test_a_deleted_trial_that_is_offered_again_is_refused(study, path):

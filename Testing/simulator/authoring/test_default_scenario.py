@@ -10,8 +10,9 @@ from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import register
-from rastrainer.registration.target_error import tre_covariances
+from rastrainer.registration.target_error import expected_tre
 from rastrainer.scenario.complexity import complexity
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
@@ -138,8 +139,9 @@ def test_the_first_tasks_are_all_in_view_and_the_last_goes_around_the_head(compu
 def test_the_fiducials_locate_the_center_of_the_head_well(name):
     fiducials = SCENARIO.task(name).fiducials
     same = register(fiducials, fiducials)
-    covariance = tre_covariances(same, SCENARIO.target_position[None])[0]
-    ratio = np.sqrt(np.trace(covariance) / 3)
+    unit = LocalizationError(np.tile(np.eye(3), (len(fiducials), 1, 1)), np.inf)
+    expected_mm = expected_tre(same, SCENARIO.target_position[None], unit, common_bias_sd_mm=0.0)
+    ratio = expected_mm[0] / np.sqrt(3)
     assert ratio < (0.7 if name == "trial-run" else 0.4)
     assert target_spread(fiducials, SCENARIO.target_position) == pytest.approx(ratio**2)
 

@@ -10,7 +10,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.protocol import KEPT_AFTER_S, CommandName, Phase
+from rastrainer.protocol import MIN_ABORTED_S, CommandName, Phase
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
@@ -123,12 +123,12 @@ def test_one_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
 def test_one_without_a_touch_is_kept_after_ten_seconds(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
-        while server.loop.latest.elapsed <= KEPT_AFTER_S:
+        while server.loop.latest.elapsed <= MIN_ABORTED_S:
             server.do(CommandName.LIST_TASKS)
         assert server.do(CommandName.ABORT).ok
         (record,) = wait_for_offer(server)
     assert record.points == ()
-    assert record.elapsed_s > KEPT_AFTER_S
+    assert record.elapsed_s > MIN_ABORTED_S
 
 
 def test_a_touch_that_was_refused_is_enough(setup, tmp_path):

@@ -15,7 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import (
     FORMAT,
     FORMAT_VERSION,
-    LINES_A_REST,
+    LINES_PER_PAUSE,
     Integrity,
     read_journal,
 )
@@ -250,6 +250,6 @@ def test_a_reader_rests_every_few_lines_and_reads_the_same(tmp_path):
     samples = [{"kind": "sample", "i": i} for i in range(1000)]
     Journal(path).write([TRIAL[0], *samples, TRIAL[-1]], sync=False)
     reading = read_journal(path, lambda: rests.append(None))
-    assert len(rests) == 1002 // LINES_A_REST
+    assert len(rests) == 1002 // LINES_PER_PAUSE
     assert reading == read_journal(path)
     assert reading.integrity is Integrity.INTACT

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import DEEPEST
+from rastrainer.finite_json import MAX_DEPTH
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, Integrity, read_journal
 from rastrainer.protocol import CommandName, check_arguments, decode_json_object
 from rastrainer.trial.record import TouchedPoint, TrialRecord
@@ -139,7 +139,7 @@ def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(
 
 def test_a_score_as_deep_as_a_message_may_be_leaves_a_journal_that_can_be_read(tmp_path):
     path = write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
-    levels = DEEPEST - 2
+    levels = MAX_DEPTH - 2
     details = '{"a":' * levels + "1" + "}" * levels
     score = json.dumps({**SCORE, "details": "here"}).replace('"here"', f'{{"b":{details}}}')
     arguments = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(score))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer.files.nrrd import MOST_FILE_BYTES, write_nrrd
+from rastrainer.files.nrrd import MAX_FILE_BYTES, write_nrrd
 from rastrainer.head.volume import KEPT_MM
 from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadSettings
@@ -86,7 +86,7 @@ def test_slicer_reads_the_file_as_it_was_written(tmp_path):
     made, _told, _head = images(phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE))
     path = tmp_path / "volume.nrrd"
     write_nrrd(path, made.values, made.ijk_to_ras)
-    assert path.stat().st_size < MOST_FILE_BYTES / 2
+    assert path.stat().st_size < MAX_FILE_BYTES / 2
     read = readVolume(path)
     assert np.array_equal(read.values, made.values)
     assert np.allclose(read.ijkToRas, made.ijk_to_ras)

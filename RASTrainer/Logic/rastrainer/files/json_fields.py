@@ -10,7 +10,7 @@ from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 
-MOST_BYTES = 2**20
+MAX_BYTES = 2**20
 T = TypeVar("T")
 
 
@@ -109,7 +109,7 @@ def read_fields(path: Path) -> Fields:
     Raises:
         InputError: missing, larger than 1 MiB, or not one JSON object with finite numbers.
     """
-    values = read_json(path, MOST_BYTES)
+    values = read_json(path, MAX_BYTES)
     if not isinstance(values, dict):
         raise InputError(f"{path} must hold one JSON object.")
     return Fields(values, path)

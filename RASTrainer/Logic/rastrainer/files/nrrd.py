@@ -22,18 +22,18 @@ from rastrainer.errors import InputError
 from rastrainer.files.reading import read_bytes
 from rastrainer.files.writing import write_bytes
 
-MOST_FILE_BYTES = 40_000_000
-MOST_VOXELS = 50_000_000
-MOST_ALONG_AXIS = 2048
-FARTHEST_MM = 2000.0
+MAX_FILE_BYTES = 40_000_000
+MAX_VOXELS = 50_000_000
+MAX_AXIS_VOXELS = 2048
+MAX_ORIGIN_MM = 2000.0
 """Of the first voxel from the origin of the patient's coordinates, along each axis."""
 
 SPACINGS_MM = (0.1, 10.0)
-LEAST_VOLUME = 0.1
+MIN_AXIS_VOLUME = 0.1
 """Of the box that unit steps along the axes span: less, and they lie almost in a plane."""
 
 _MAGIC = re.compile(r"NRRD000[1-5]")
-_LONGEST_HEADER = 16_384
+_MAX_HEADER_BYTES = 16_384
 _KINDS = {
     "uint8": ("unsigned char", "uchar", "uint8", "uint8_t"),
     "int16": ("short", "short int", "signed short", "signed short int", "int16", "int16_t"),
@@ -74,7 +74,7 @@ def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
         InputError: the file is missing, or is not as the module's description says; the sentence
             names it and what is wrong.
     """
-    content = read_bytes(path, MOST_FILE_BYTES)
+    content = read_bytes(path, MAX_FILE_BYTES)
     header, start = _read_header(path, content)
     count = math.prod(header.shape) * header.dtype.itemsize
     values = np.frombuffer(_unpacked(path, content[start:], count), header.dtype)
@@ -116,15 +116,15 @@ def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
 
 def _read_header(path: Path, content: bytes) -> tuple[_Header, int]:
     """Return the header of a file and where its voxels begin."""
-    head = content[:_LONGEST_HEADER].replace(b"\r\n", b"\n")
+    head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
     text, separator, _ = head.partition(b"\n\n")
     magic, _, rest = text.decode("latin-1").partition("\n")
     if not _MAGIC.fullmatch(magic):
         raise _wrong(path, "begin as NRRD files do")
     if not separator:
-        raise _wrong(path, f"have a header of at most {_LONGEST_HEADER // 1024} KiB")
+        raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
     fields = _fields(path, rest)
-    blank_line = re.search(rb"\r?\n\r?\n", content[:_LONGEST_HEADER])
+    blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
     assert blank_line is not None  # The separator was found above.
     return _header(path, fields), blank_line.end()
 
@@ -166,11 +166,11 @@ def _shape(path: Path, fields: dict[str, str]) -> tuple[int, int, int]:
         raise _wrong(path, "have three axes")
     i, j, k = map(int, sizes)
     shape = (i, j, k)
-    if not all(2 <= size <= MOST_ALONG_AXIS for size in shape) or math.prod(shape) > MOST_VOXELS:
+    if not all(2 <= size <= MAX_AXIS_VOXELS for size in shape) or math.prod(shape) > MAX_VOXELS:
         raise _wrong(
             path,
-            f"have 2 to {MOST_ALONG_AXIS} voxels along each axis and at most "
-            f"{MOST_VOXELS // 10**6} million in all",
+            f"have 2 to {MAX_AXIS_VOXELS} voxels along each axis and at most "
+            f"{MAX_VOXELS // 10**6} million in all",
         )
     return shape
 
@@ -184,7 +184,7 @@ def _matrix(path: Path, fields: dict[str, str]) -> np.ndarray:
     spacings = np.linalg.norm(axes, axis=1)
     if not (spacings >= SPACINGS_MM[0]).all() or not (spacings <= SPACINGS_MM[1]).all():
         raise _wrong(path, f"have voxels of {SPACINGS_MM[0]:g} to {SPACINGS_MM[1]:g} mm")
-    if abs(np.linalg.det(axes / spacings[:, None])) < LEAST_VOLUME:
+    if abs(np.linalg.det(axes / spacings[:, None])) < MIN_AXIS_VOLUME:
         raise _wrong(path, "have axes that span a space")
     matrix = np.eye(4)
     matrix[:3, :3] = axes.T
@@ -200,8 +200,8 @@ def _vectors(path: Path, fields: dict[str, str], name: str, count: int) -> np.nd
         vectors = np.array(found, dtype=float)
     except ValueError:
         vectors = np.empty(0)
-    if vectors.shape != (count, 3) or not (np.abs(vectors) <= FARTHEST_MM).all():
-        numbers = f"{3 * count} numbers within ±{FARTHEST_MM:g}"
+    if vectors.shape != (count, 3) or not (np.abs(vectors) <= MAX_ORIGIN_MM).all():
+        numbers = f"{3 * count} numbers within ±{MAX_ORIGIN_MM:g}"
         raise _wrong(path, f"have the field “{name}” with {numbers}")
     return vectors
 

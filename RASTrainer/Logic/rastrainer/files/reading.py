@@ -109,8 +109,8 @@ def printable_name(path: object) -> str:
     return ascii(str(path)) if not str(path).isprintable() else str(path)
 
 
-MOST_ELEMENTS = 20_000
-DEEPEST = 64
+MAX_ELEMENTS = 20_000
+MAX_DEPTH = 64
 
 _DECLARATION = re.compile(r"\s*<\?xml\s[^>]*\?>")
 
@@ -153,10 +153,10 @@ class _Check:
     def _begin(self, _name: str, _attributes: Any) -> None:
         self._elements += 1
         self._depth += 1
-        if self._elements > MOST_ELEMENTS:
-            raise InputError(f"{self._what} has more than {MOST_ELEMENTS} elements.")
-        if self._depth > DEEPEST:
-            raise InputError(f"{self._what} nests its elements more than {DEEPEST} deep.")
+        if self._elements > MAX_ELEMENTS:
+            raise InputError(f"{self._what} has more than {MAX_ELEMENTS} elements.")
+        if self._depth > MAX_DEPTH:
+            raise InputError(f"{self._what} nests its elements more than {MAX_DEPTH} deep.")
 
     def _end(self, _name: str) -> None:
         self._depth -= 1

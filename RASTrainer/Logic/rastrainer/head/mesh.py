@@ -10,8 +10,8 @@ import numpy as np
 
 from rastrainer.errors import InputError
 
-MOST_BYTES = 64_000_000
-MOST_TRIANGLES = 1_000_000
+MAX_BYTES = 64_000_000
+MAX_TRIANGLES = 1_000_000
 RAS_LIMIT_MM = 2000.0
 """Of every place in a patient: scanners may count from far away."""
 
@@ -134,8 +134,8 @@ def read_head_mesh(path: Path) -> HeadMesh:
     path = Path(path)
     if not path.is_file():
         raise InputError(f"The head mesh {path} does not exist.")
-    if path.stat().st_size > MOST_BYTES:
-        raise InputError(f"The head mesh {path} is larger than {MOST_BYTES // 1_000_000} MB.")
+    if path.stat().st_size > MAX_BYTES:
+        raise InputError(f"The head mesh {path} is larger than {MAX_BYTES // 1_000_000} MB.")
     content = path.read_bytes()
     head, end, body = content.partition(b"end_header\n")
     vertex_count, triangle_count = (_count(head, element) for element in (b"vertex", b"face"))
@@ -157,8 +157,8 @@ def _count(head: bytes, element: bytes) -> int:
 
 
 def _checked(path: Path, vertex_count: int, triangle_count: int, body: bytes) -> HeadMesh:
-    if not 4 <= triangle_count <= MOST_TRIANGLES or vertex_count < 4:
-        raise InputError(f"The head mesh {path} must have 4 to {MOST_TRIANGLES} triangles.")
+    if not 4 <= triangle_count <= MAX_TRIANGLES or vertex_count < 4:
+        raise InputError(f"The head mesh {path} must have 4 to {MAX_TRIANGLES} triangles.")
     if len(body) != 12 * vertex_count + _FACE.itemsize * triangle_count:
         raise InputError(f"The head mesh {path} is cut short or has bytes left over.")
     vertices = np.frombuffer(body, "<f4", 3 * vertex_count).reshape(-1, 3)

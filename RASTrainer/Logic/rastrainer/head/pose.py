@@ -25,7 +25,7 @@ class Perturbation:
     tilt_deg: float
 
 
-WIDEST = Perturbation(200.0, 180.0, 45.0)
+MAX_PERTURBATION = Perturbation(200.0, 180.0, 45.0)
 """What a scenario or a set-up may ask for at most."""
 
 

@@ -13,13 +13,13 @@ from rastrainer.files.json_fields import Fields
 from rastrainer.files.nrrd import read_nrrd, write_nrrd
 from rastrainer.head.mesh import HeadMesh
 
-GRAY_LIMIT = 32768.0
+MAX_GRAY_LEVEL = 32768.0
 """Of window and level: as far as the values of a volume go."""
 
 KEPT_MM = 6.0
 """Around the head; what lies farther away may be noise, a frame, a text or a wrapped nose."""
 
-LEAST_COVERED = 0.5
+MIN_COVERED_SHARE = 0.5
 """Share of the head's vertices that lie in the images: scans often lack the nose and the ears."""
 
 
@@ -58,8 +58,10 @@ def read_volume_file(fields: Fields) -> VolumeFile | None:
     if "volume" not in fields.names():
         return None
     volume = fields.fields("volume")
-    window = volume.number("window", 1, 2 * GRAY_LIMIT)
-    return VolumeFile(volume.file("file"), window, volume.number("level", -GRAY_LIMIT, GRAY_LIMIT))
+    window = volume.number("window", 1, 2 * MAX_GRAY_LEVEL)
+    return VolumeFile(
+        volume.file("file"), window, volume.number("level", -MAX_GRAY_LEVEL, MAX_GRAY_LEVEL)
+    )
 
 
 def read_head_volume(file: VolumeFile) -> HeadVolume:
@@ -88,5 +90,5 @@ def check_place(volume: HeadVolume, head: HeadMesh, path: Path) -> None:
     """
     indices = transforms.apply(transforms.inverse(volume.ijk_to_ras), head.vertices.astype(float))
     is_within = (indices >= -0.5) & (indices <= np.array(volume.values.shape) - 0.5)
-    if is_within.all(axis=1).mean() < LEAST_COVERED:
+    if is_within.all(axis=1).mean() < MIN_COVERED_SHARE:
         raise InputError(f"The volume {path} must lie where the head is.")

@@ -14,7 +14,7 @@ _TRANSFORM = struct.Struct(">12f")
 _STRING = struct.Struct(">HH")
 _STATUS = struct.Struct(">HQ20s")
 
-LONGEST_STRING = 65_535
+MAX_STRING_BYTES = 65_535
 """Bytes that a STRING holds: its length is a 16-bit number."""
 
 
@@ -74,8 +74,10 @@ class String:
             InputError: more than 65,535 bytes, or a NUL in the text.
         """
         encoding, data = encode_text(self.text)
-        if len(data) > LONGEST_STRING:
-            raise InputError(f"A STRING must have at most {LONGEST_STRING} bytes, not {len(data)}.")
+        if len(data) > MAX_STRING_BYTES:
+            raise InputError(
+                f"A STRING must have at most {MAX_STRING_BYTES} bytes, not {len(data)}."
+            )
         return _STRING.pack(encoding, len(data)) + data
 
     @classmethod

@@ -25,10 +25,10 @@ CONTENTS: Mapping[str, type[Content]] = {
 }
 """Every type that is sent or understood."""
 
-LARGEST_BODY = 16 * 2**20
+MAX_BODY_BYTES = 16 * 2**20
 """Bytes; a message that claims more is refused."""
 
-MOST_METADATA = 256
+MAX_METADATA = 256
 """Entries in the metadata of one message."""
 
 _HEADER = struct.Struct(">H12s20sIIQQ")
@@ -92,8 +92,8 @@ def pack(message: Message) -> bytes:
     if not (0 <= timestamp < 2**32 and 0 <= message.message_id < 2**32):
         raise InputError("The time and the number of a message must fit 32 bits.")
     body = _pack_body(message)
-    if len(body) > LARGEST_BODY:
-        raise InputError(f"The body of a message must have at most {LARGEST_BODY} bytes.")
+    if len(body) > MAX_BODY_BYTES:
+        raise InputError(f"The body of a message must have at most {MAX_BODY_BYTES} bytes.")
     seconds = int(timestamp)
     fraction = int((timestamp - seconds) * 2**32)
     kind = message.content.TYPE.encode("ascii")
@@ -119,8 +119,8 @@ def _pack_body(message: Message) -> bytes:
 
 
 def _pack_metadata(metadata: Mapping[str, str]) -> tuple[bytes, bytes]:
-    if len(metadata) > MOST_METADATA:
-        raise InputError(f"A message must have at most {MOST_METADATA} metadata entries.")
+    if len(metadata) > MAX_METADATA:
+        raise InputError(f"A message must have at most {MAX_METADATA} metadata entries.")
     index, entries = [_COUNT.pack(len(metadata))], list[bytes]()
     for key, value in metadata.items():
         key_bytes = pack_name(key, 255, "A metadata key")
@@ -174,8 +174,8 @@ def _unpack_metadata(index: bytes, entries: bytes, keep_bytes: bool) -> dict[str
     if len(index) < _COUNT.size:
         raise InputError("The metadata of a message must begin with their count.")
     (count,) = _COUNT.unpack_from(index)
-    if count > MOST_METADATA or len(index) < _COUNT.size + count * _ENTRY.size:
-        raise InputError(f"A message must list at most {MOST_METADATA} whole metadata entries.")
+    if count > MAX_METADATA or len(index) < _COUNT.size + count * _ENTRY.size:
+        raise InputError(f"A message must list at most {MAX_METADATA} whole metadata entries.")
     metadata, start = {}, 0
     for number in range(count):
         key_size, _encoding, value_size = _ENTRY.unpack_from(index, _COUNT.size + number * 8)

@@ -11,7 +11,7 @@ from rastrainer.igtl.wire import check_float32, pack_name, unpack_name
 
 _POINT = struct.Struct(">64s32s4B4f20s")
 
-MOST_POINTS = 1_000
+MAX_POINTS = 1_000
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ class Points:
         Raises:
             InputError: a label, group or owner that does not fit, or too many points.
         """
-        if len(self.points) > MOST_POINTS:
-            raise InputError(f"A POINT message must have at most {MOST_POINTS} points.")
+        if len(self.points) > MAX_POINTS:
+            raise InputError(f"A POINT message must have at most {MAX_POINTS} points.")
         return b"".join(_pack_point(point) for point in self.points)
 
     @classmethod

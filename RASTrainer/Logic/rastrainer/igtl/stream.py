@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.message import (
     CONTENTS,
     HEADER_BYTES,
-    LARGEST_BODY,
+    MAX_BODY_BYTES,
     Header,
     Message,
     read_header,
@@ -19,10 +19,10 @@ from rastrainer.igtl.message import (
 )
 from rastrainer.igtl.wire import crc64
 
-LARGEST_KEPT = 2**20
+MAX_KEPT_BYTES = 2**20
 """Bytes of a body that are held in memory until it is whole; longer ones are passed over."""
 
-MOST_GARBAGE = 64 * 1024
+MAX_GARBAGE_BYTES = 64 * 1024
 """Bytes in a row that belong to no message, after which the stream is given up."""
 
 # What a header begins with; `read_header` looks closer.
@@ -55,7 +55,7 @@ class MessageReader:
 
     def __init__(self, kept: Mapping[str, int] | None = None):
         """Keep only the types in `kept`, each up to so many bytes; all that we know by default."""
-        self._kept = dict.fromkeys(CONTENTS, LARGEST_KEPT) if kept is None else dict(kept)
+        self._kept = dict.fromkeys(CONTENTS, MAX_KEPT_BYTES) if kept is None else dict(kept)
         self._buffer = bytearray()
         self._to_skip = 0
         self._garbage = 0
@@ -87,8 +87,8 @@ class MessageReader:
         header = read_header(self._buffer)
         if header is None:
             return self._find_next_header()
-        if header.body_size > LARGEST_BODY:
-            self.refusal = f"A message claims more than {LARGEST_BODY} bytes."
+        if header.body_size > MAX_BODY_BYTES:
+            self.refusal = f"A message claims more than {MAX_BODY_BYTES} bytes."
             return False
         if self._is_unwanted(header):
             self._to_skip = HEADER_BYTES + header.body_size
@@ -137,7 +137,7 @@ class MessageReader:
         waste = start.start() if start else len(self._buffer) - 2
         del self._buffer[:waste]
         self._garbage += waste
-        if self._garbage > MOST_GARBAGE:
+        if self._garbage > MAX_GARBAGE_BYTES:
             self.refusal = "Nothing that arrives is an OpenIGTLink message."
             return False
         return True

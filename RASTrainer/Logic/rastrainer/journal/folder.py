@@ -11,7 +11,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
 from rastrainer.journal.folder_lock import lock
-from rastrainer.journal.journal_file import FIRST_BYTES, LONGEST_LINE, read_journal
+from rastrainer.journal.journal_file import FIRST_BYTES, MAX_LINE_BYTES, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
 
@@ -99,7 +99,7 @@ def _begins_as_journal(path: Path) -> bool:
 def _trainee_of(path: Path) -> str | None:
     """Return the trainee that the first line names, whatever became of the others."""
     with contextlib.suppress(OSError, ValueError, AttributeError), path.open("rb") as file:
-        trainee = decode_finite_json(file.readline(LONGEST_LINE).decode("ascii")).get("trainee")
+        trainee = decode_finite_json(file.readline(MAX_LINE_BYTES).decode("ascii")).get("trainee")
         return trainee if isinstance(trainee, str) else None
     return None
 
@@ -122,7 +122,7 @@ def _overwrite(descriptor: int) -> None:
     os.fsync(descriptor)
 
 
-_REACH = 512
+_HEADER_BYTES = 512
 _NUMBER = re.compile(rb'"kind":"header","format":"[a-z-]+","version":\d+,"number":(\d+),')
 
 
@@ -140,6 +140,6 @@ def newest_journal(folder: Path) -> Path | None:
 def number_of(path: Path) -> int:
     """Return the number in a journal's header; 0 where there is none."""
     with contextlib.suppress(OSError), path.open("rb") as file:
-        found = _NUMBER.search(file.read(_REACH))
+        found = _NUMBER.search(file.read(_HEADER_BYTES))
         return int(found[1]) if found else 0
     return 0

@@ -47,7 +47,7 @@ else:
 
 
 LOCK_NAME = ".simulator.lock"
-LONGEST_BYTES = 4096
+MAX_LOCK_BYTES = 4096
 STARTED_BY = "RASTRAINER_STARTED_BY"
 """Environment variable: the program that starts a simulator."""
 
@@ -105,7 +105,7 @@ def read_open_holder(descriptor: int) -> FolderHolder:
     """Return who is named in a lock that is open."""
     with contextlib.suppress(OSError, ValueError, TypeError):
         os.lseek(descriptor, 0, os.SEEK_SET)
-        said = decode_finite_json(os.read(descriptor, LONGEST_BYTES).decode("ascii"))
+        said = decode_finite_json(os.read(descriptor, MAX_LOCK_BYTES).decode("ascii"))
         nobody = FolderHolder()
         known = {
             name: type(getattr(nobody, name))(said[name])

@@ -17,14 +17,14 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import DEEPEST, decode_finite_json
+from rastrainer.finite_json import MAX_DEPTH, decode_finite_json
 
 FORMAT = "rastrainer-trial-journal"
 FORMAT_VERSION = 1
 NO_LINE = "0" * 64
 """What the first line carries in place of a hash."""
-LONGEST_LINE = 1 << 20
-DEEPEST_LINE = DEEPEST + 8
+MAX_LINE_BYTES = 1 << 20
+MAX_LINE_DEPTH = MAX_DEPTH + 8
 """Levels of a line: it holds what came in a message, which may be as deep as any."""
 
 FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT}",'.encode()
@@ -67,7 +67,7 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     if seal != _SEAL + digest.encode("ascii") + b'"}':
         raise DamagedLineError("its bytes do not match its hash")
     try:
-        entry = decode_finite_json(line.decode("ascii"), DEEPEST_LINE)
+        entry = decode_finite_json(line.decode("ascii"), MAX_LINE_DEPTH)
     except ValueError:
         raise DamagedLineError("it is not JSON") from None
     if not isinstance(entry, dict) or not isinstance(entry.get("kind"), str):
@@ -81,7 +81,7 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
 
 ENDS = frozenset({"registered", "aborted", "stopped"})
 """Kinds of entries after which nothing of the trial itself is missing."""
-LINES_A_REST = 10
+LINES_PER_PAUSE = 10
 """They take about 0.1 ms."""
 _STEPS = frozenset({"header", "phase", "continued", *ENDS})
 
@@ -157,11 +157,11 @@ def _read(path: Path, file: BinaryIO, rest: Callable[[], None]) -> JournalReadin
     file.seek(0)
     entries: list[dict[str, Any]] = []
     previous, end = NO_LINE, 0
-    while line := file.readline(LONGEST_LINE):
+    while line := file.readline(MAX_LINE_BYTES):
         n = len(entries) + 1
-        if n % LINES_A_REST == 0:
+        if n % LINES_PER_PAUSE == 0:
             rest()
-        if not line.endswith(b"\n") and len(line) < LONGEST_LINE:
+        if not line.endswith(b"\n") and len(line) < MAX_LINE_BYTES:
             break
         try:
             entry = decode_line(line[:-1], n, previous)

@@ -28,18 +28,18 @@ class MetricDefinition:
     Attributes:
         name: the key under which it is stored, with the unit at its end where it has one.
         title: what people read.
-        unit: "" where it has none.
-        definition: in one sentence, with every threshold.
+        definition: one sentence with every threshold.
+        unit: "" if it has none.
+        better: -1 if less is better, 1 if more is, 0 if neither.
         source: who defined it.
-        better: -1 where less is better, 1 where more is, 0 where neither is.
     """
 
     name: str
     title: str
-    unit: str
     definition: str
-    source: str
-    better: int
+    unit: str = ""
+    better: int = 0
+    source: str = OWN
 
 
 DEFINITIONS: dict[str, MetricDefinition] = {
@@ -48,219 +48,190 @@ DEFINITIONS: dict[str, MetricDefinition] = {
         MetricDefinition(
             "completion_time_s",
             "Completion time",
-            "s",
             "From the start of the trial to the last kept touch, pauses left out.",
-            "the paper, section V",
-            -1,
+            unit="s",
+            better=-1,
+            source="the paper, section V",
         ),
         MetricDefinition(
             "path_length_mm",
             "Path length",
-            "mm",
             f"Length of the way of the tool's tip ({FILTER}).",
-            "Cotin et al. 2002",
-            -1,
+            unit="mm",
+            better=-1,
+            source="Cotin et al. 2002",
         ),
         MetricDefinition(
             "path_between_touches_mm",
             "Path length between touches",
-            "mm",
             f"Path length from the first touch to the last ({FILTER}).",
-            "Cotin et al. 2002",
-            -1,
+            unit="mm",
+            better=-1,
+            source="Cotin et al. 2002",
         ),
         MetricDefinition(
             "path_efficiency",
             "Path efficiency",
-            "",
             "Shortest free way through all fiducials (straight, or over the skin where the head is "
             "in the way) over the path length between touches; 1 is direct.",
-            "Cotin et al. 2002; way over the skin: Dijkstra 1959 on the mesh",
-            1,
+            better=1,
+            source="Cotin et al. 2002; way over the skin: Dijkstra 1959 on the mesh",
         ),
         MetricDefinition(
-            "mean_speed_mm_s", "Mean speed", "mm/s", f"Mean speed of the tip ({FILTER}).", OWN, 0
+            "mean_speed_mm_s", "Mean speed", f"Mean speed of the tip ({FILTER}).", unit="mm/s"
         ),
         MetricDefinition(
-            "peak_speed_mm_s", "Peak speed", "mm/s", f"Highest speed of the tip ({FILTER}).", OWN, 0
+            "peak_speed_mm_s", "Peak speed", f"Highest speed of the tip ({FILTER}).", unit="mm/s"
         ),
         MetricDefinition(
             "sparc",
             "Smoothness, SPARC",
-            "",
             "Spectral arc length of the speed of each movement from touch to touch, median "
             f"(cut-off {SPARC_CUTOFF_HZ:g} Hz, threshold {SPARC_THRESHOLD:g}, "
             f"{SPARC_PAD_LEVEL} more powers of two of zero padding; {FILTER}).",
-            "Balasubramanian, Melendez-Calderon, Roby-Brami, Burdet 2015",
-            1,
+            better=1,
+            source="Balasubramanian, Melendez-Calderon, Roby-Brami, Burdet 2015",
         ),
         MetricDefinition(
             "ldlj",
             "Smoothness, log dimensionless jerk",
-            "",
             f"Negative log dimensionless jerk of the speed of each movement, median ({FILTER}).",
-            "Balasubramanian, Melendez-Calderon, Burdet 2012",
-            1,
+            better=1,
+            source="Balasubramanian, Melendez-Calderon, Burdet 2012",
         ),
         MetricDefinition(
-            "movement_time_s", "Movement time", "s", "Time from touch to touch, median.", OWN, -1
+            "movement_time_s",
+            "Movement time",
+            "Time from touch to touch, median.",
+            unit="s",
+            better=-1,
         ),
         MetricDefinition(
             "time_to_peak_speed",
             "Share of time to peak speed",
-            "",
             "When in a movement the speed is highest, as a share of its time, median; an early "
             "peak means long corrections.",
-            OWN,
-            0,
         ),
         MetricDefinition(
             "idle_time_s",
             "Idle time",
-            "s",
             f"Time with the tip slower than {IDLE_SPEED_MM_S:g} mm/s for more than "
             f"{IDLE_DURATION_S:g} s at a stretch.",
-            OWN,
-            -1,
+            unit="s",
+            better=-1,
         ),
         MetricDefinition(
             "dwell_before_touch_s",
             "Dwell before a touch",
-            "s",
             f"How long the tip had stayed within {DWELL_RADIUS_MM:g} mm of the place that was then "
             "touched, median.",
-            OWN,
-            0,
+            unit="s",
         ),
         MetricDefinition(
             "throughput_bit_s",
             "Throughput",
-            "bit/s",
             "Mean over the movements of log2(De/We + 1) over movement time, We = 4.133 times the "
             "RMS distance of the end points from their targets along the task axes (ISO: SD about "
             "their own mean, which a constant offset leaves at 0).",
-            "after ISO 9241-411; MacKenzie 1992",
-            1,
+            unit="bit/s",
+            better=1,
+            source="after ISO 9241-411; MacKenzie 1992",
         ),
         MetricDefinition(
             "effective_width_mm",
             "Effective width of the targets",
-            "mm",
             "We = 4.133 times the RMS distance of the end points from their targets along the task "
             "axes.",
-            "after ISO 9241-411",
-            -1,
+            unit="mm",
+            better=-1,
+            source="after ISO 9241-411",
         ),
         MetricDefinition(
             "proximity_time_s",
             "Time near the head",
-            "s",
             f"Time with the tip within {NEAR_MM:g} mm of the head (until {FAR_MM:g} mm) or the "
             "tool touching it.",
-            "the paper, section III B 2",
-            0,
+            unit="s",
+            source="the paper, section III B 2",
         ),
         MetricDefinition(
             "contacts",
             "Contacts",
-            "",
             f"How often the tool came to touch the head (clearance up to {TOUCHING_MM:g} mm, ended "
             f"at {RELEASED_MM:g} mm).",
-            OWN,
-            0,
         ),
         MetricDefinition(
             "unintended_contacts",
             "Contacts away from a touch",
-            "",
             f"Contacts that began farther than {ACCEPTANCE_MM:g} mm from the place that was "
             "touched next and from the one touched last.",
-            OWN,
-            -1,
+            better=-1,
         ),
         MetricDefinition(
             "unintended_contact_time_s",
             "Time of contact away from a touch",
-            "s",
             f"Time in contact with the head while the tip was farther than {INTENDED_MM:g} mm from "
             "the place that was touched next and from the one touched last (of the kept touches; "
             "where there are none, all contact).",
-            OWN,
-            -1,
+            unit="s",
+            better=-1,
         ),
         MetricDefinition(
             "unintended_contact_path_mm",
             "Path of contact away from a touch",
-            "mm",
             "Length of the way of the tip during that time (as sampled, not filtered).",
-            OWN,
-            -1,
+            unit="mm",
+            better=-1,
         ),
         MetricDefinition(
             "pressing_depth_mm",
             "Pressing depth",
-            "mm",
             "Square root of the sum over all contacts of the squared greatest depth in it (taken "
             "once for each kept touch in it, at least once) over the number of fiducials; depth is "
             "how far the commanded motion went into the head beyond where the tool could go.",
-            "after the god object of Zilles and Salisbury 1995",
-            -1,
+            unit="mm",
+            better=-1,
+            source="after the god object of Zilles and Salisbury 1995",
         ),
         MetricDefinition(
-            "contact_time_s", "Contact time", "s", "Time in contact with the head.", OWN, -1
+            "contact_time_s", "Contact time", "Time in contact with the head.", unit="s", better=-1
         ),
         MetricDefinition(
             "deepest_contact_mm",
             "Deepest contact",
-            "mm",
             "How far the tool was in the head at most; the simulator lets it slide, not sink in.",
-            OWN,
-            -1,
+            unit="mm",
+            better=-1,
         ),
         MetricDefinition(
             "least_clearance_mm",
             "Least clearance",
-            "mm",
             "Smallest signed distance of the tool to the head.",
-            OWN,
-            0,
+            unit="mm",
         ),
         MetricDefinition(
             "refused_touches",
             "Refused touches",
-            "",
             f"Touches farther than {ACCEPTANCE_MM:g} mm from the fiducial that was due, or above "
             "the skin where a touch has to be on it.",
-            OWN,
-            -1,
+            better=-1,
         ),
         MetricDefinition(
             "wrong_order_touches",
             "Touches of a wrong fiducial",
-            "",
             f"Refused touches within {ACCEPTANCE_MM:g} mm of another fiducial.",
-            OWN,
-            -1,
+            better=-1,
         ),
         MetricDefinition(
-            "undone_touches",
-            "Touches taken back",
-            "",
-            "How many touches the trainee took back.",
-            OWN,
-            0,
+            "undone_touches", "Touches taken back", "How many touches the trainee took back."
         ),
-        MetricDefinition(
-            "camera_switches", "Camera switches", "", "How often the view was changed.", OWN, 0
-        ),
-        MetricDefinition("pauses", "Pauses", "", "How often the trial was paused.", OWN, 0),
+        MetricDefinition("camera_switches", "Camera switches", "How often the view was changed."),
+        MetricDefinition("pauses", "Pauses", "How often the trial was paused."),
         MetricDefinition(
             "pause_time_s",
             "Time paused",
-            "s",
             "How long the trial was paused in all; it is left out of the completion time.",
-            OWN,
-            0,
+            unit="s",
         ),
     )
 }

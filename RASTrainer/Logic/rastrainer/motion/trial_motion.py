@@ -52,13 +52,11 @@ class Throughput:
         effective_width_mm: We = 4.133·RMS distance of the end points from their targets, along
             the task axes.
         effective_distances_mm: De of each movement, along its task axis.
-        difficulties_bits: IDe = log₂(De/We + 1) of each movement.
     """
 
     bits_per_s: float
     effective_width_mm: float
     effective_distances_mm: tuple[float, ...]
-    difficulties_bits: tuple[float, ...]
 
 
 def effective_throughput(
@@ -99,7 +97,6 @@ def effective_throughput(
         bits_per_s=float(np.mean(difficulties / durations)),
         effective_width_mm=width,
         effective_distances_mm=tuple(map(float, distances)),
-        difficulties_bits=tuple(map(float, difficulties)),
     )
 
 
@@ -109,7 +106,7 @@ DWELL_RADIUS_MM = 2.0
 ACCEPTANCE_MM = 10.0
 """A refused touch within this distance of another fiducial was at the wrong one; a contact that
 begins within this distance of a touch belongs to it."""
-SHORTEST_MOVEMENT = 10
+MIN_MOVEMENT_SAMPLES = 10
 """Movements of fewer samples (0.2 s) tell nothing about smoothness."""
 
 
@@ -196,7 +193,7 @@ def _of_movements(
     """Return the means and medians over the movements from each touch to the next."""
     first = np.searchsorted(times, trajectory.touch_times_s[:-1])
     last = np.searchsorted(times, trajectory.touch_times_s[1:], side="right")
-    parts = [slice(a, b) for a, b in zip(first, last, strict=True) if b - a >= SHORTEST_MOVEMENT]
+    parts = [slice(a, b) for a, b in zip(first, last, strict=True) if b - a >= MIN_MOVEMENT_SAMPLES]
     found: dict[str, list[float]] = {"sparc": [], "ldlj": [], "time_to_peak_speed": []}
     for part in parts:
         with contextlib.suppress(InputError):

@@ -7,7 +7,7 @@ from typing import Any
 import qt
 import slicer
 
-from rastrainer.head.pose import WIDEST, Perturbation
+from rastrainer.head.pose import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import fitThreeDViews
 from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.sample_data import downloadSample
@@ -29,11 +29,11 @@ _ROWS = (
     (
         _("Shift in a trial, ± mm:"),
         "shift",
-        (0.0, WIDEST.translation_mm),
+        (0.0, MAX_PERTURBATION.translation_mm),
         (_MOVED.translation_mm,),
     ),
-    (_("Turn in a trial, ± °:"), "turn", (0.0, WIDEST.yaw_deg), (_MOVED.yaw_deg,)),
-    (_("Tilt in a trial, ± °:"), "tilt", (0.0, WIDEST.tilt_deg), (_MOVED.tilt_deg,)),
+    (_("Turn in a trial, ± °:"), "turn", (0.0, MAX_PERTURBATION.yaw_deg), (_MOVED.yaw_deg,)),
+    (_("Tilt in a trial, ± °:"), "tilt", (0.0, MAX_PERTURBATION.tilt_deg), (_MOVED.tilt_deg,)),
     (_("Table's middle, mm:"), "table", _PLACE, _USUAL.table_center),
     (_("Table's size, mm:"), "size", _EXTENT, _USUAL.table_size),
     (_("Stand's diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),

@@ -162,23 +162,6 @@ def _quantile(probability: float, variances: np.ndarray, dof: float, added: floa
     return widened_quantile(probability, variances, dof, added)
 
 
-def tre_covariances(registration: Registration, targets: np.ndarray) -> np.ndarray:
-    """Return the covariance of TRE at each target for an isotropic FLE of variance 1 a coordinate.
-
-    Args:
-        registration: Its fixed points and kind are used.
-        targets: (m, 3) float, in the fixed space, in mm.
-
-    Returns:
-        (m, 3, 3) float, in mm² for each mm² of variance.
-
-    Raises:
-        InputError: a target is not three finite numbers.
-    """
-    unit = np.tile(np.eye(3), (len(registration.labels), 1, 1))
-    return _propagated(registration, targets, unit)
-
-
 def _propagated(
     registration: Registration, targets: np.ndarray, covariances: np.ndarray
 ) -> np.ndarray:

@@ -25,7 +25,7 @@ from rastrainer.report.sections.published_tables import paper_notes, published_t
 from rastrainer.report.sections.started_trials import started_trials
 from rastrainer.report.sections.trainees import groups, questionnaires
 from rastrainer.report.sections.variation import variation
-from rastrainer.statistics.few_subjects import FEW
+from rastrainer.statistics.few_subjects import FEW_SUBJECTS
 from rastrainer.statistics.scipy_modules import scipy_module
 from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.study_data import StudyData
@@ -112,7 +112,7 @@ def _summary(comparisons: list[ModeComparison], gap: str, versions: str) -> str:
     sentences = findings(comparisons)
     n = max((len(comparison.trainees) for comparison in comparisons), default=0)
     parts = [bullets(sentences)] if sentences else []
-    if 0 < n < FEW:
+    if 0 < n < FEW_SUBJECTS:
         few = (
             f"Only {counted(n, 'trainee')} did both modes. What is not shown here may still be "
             "there; see “What cannot be concluded”."

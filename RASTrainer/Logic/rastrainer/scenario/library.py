@@ -10,8 +10,8 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.scenario.scenario import FILE_NAME, load_scenario
 
-MOST_SCENARIOS = 200
-MOST_PICTURE_BYTES, MOST_PICTURE_PIXELS = 4_000_000, 2048
+MAX_SCENARIOS = 200
+MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS = 4_000_000, 2048
 """Of a picture in a list, along each side: what views decode at once, wherever it comes from."""
 
 _PNG_START = struct.Struct(">8s4x4sII")
@@ -55,7 +55,7 @@ def list_scenarios(
     folders = [
         path.parent
         for library in libraries
-        for path in sorted(Path(library).glob(f"*/{FILE_NAME}"))[:MOST_SCENARIOS]
+        for path in sorted(Path(library).glob(f"*/{FILE_NAME}"))[:MAX_SCENARIOS]
     ]
     return list_folders(folders, list_one)
 
@@ -85,7 +85,7 @@ def list_folder(folder: Path) -> ListedScenario:
 def _is_picture(path: Path) -> bool:
     """Return whether a file begins as a PNG of a size that every view can show."""
     try:
-        if path.stat().st_size > MOST_PICTURE_BYTES:
+        if path.stat().st_size > MAX_PICTURE_BYTES:
             return False
         with path.open("rb") as file:
             start = file.read(_PNG_START.size)
@@ -95,4 +95,4 @@ def _is_picture(path: Path) -> bool:
         return False
     signature, chunk, width, height = _PNG_START.unpack(start)
     is_png = signature == b"\x89PNG\r\n\x1a\n" and chunk == b"IHDR"
-    return is_png and 0 < width <= MOST_PICTURE_PIXELS and 0 < height <= MOST_PICTURE_PIXELS
+    return is_png and 0 < width <= MAX_PICTURE_PIXELS and 0 < height <= MAX_PICTURE_PIXELS

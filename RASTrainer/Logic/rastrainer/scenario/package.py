@@ -18,10 +18,10 @@ from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario
 
-MOST_PACKED_BYTES = 64_000_000
-MOST_BYTES = 100_000_000
-MOST_FILES = 64
-MOST_TRIANGLES = 100_000
+MAX_PACKED_BYTES = 64_000_000
+MAX_BYTES = 100_000_000
+MAX_FILES = 64
+MAX_TRIANGLES = 100_000
 """More than what is built here has (60,000); what the views and the collisions can carry."""
 
 UNPACKING, CHECKING = "Unpacking the scenario", "Checking the scenario"
@@ -102,10 +102,10 @@ def checked_scenario(folder: Path) -> Scenario:
     scenario = load_scenario(folder)
     for path in filter(None, (scenario.head_mesh, scenario.skull_mesh)):
         mesh = read_head_mesh(path)
-        if len(mesh.triangles) > MOST_TRIANGLES:
+        if len(mesh.triangles) > MAX_TRIANGLES:
             raise InputError(
                 f"The mesh {path} has {len(mesh.triangles)} triangles; a scenario's may have "
-                f"{MOST_TRIANGLES}."
+                f"{MAX_TRIANGLES}."
             )
         if path == scenario.head_mesh and not mesh.is_closed:
             raise InputError(f"The head mesh {path} is not closed: it has a hole.")
@@ -126,8 +126,8 @@ def _write_archive(path: Path, folder: Path) -> None:
 
 def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
     try:
-        if package.stat().st_size > MOST_PACKED_BYTES:
-            raise _refused(package, f"is larger than {MOST_PACKED_BYTES // 10**6} MB")
+        if package.stat().st_size > MAX_PACKED_BYTES:
+            raise _refused(package, f"is larger than {MAX_PACKED_BYTES // 10**6} MB")
         with zipfile.ZipFile(package) as archive:
             _extract(package, archive, folder, progress)
     except FileNotFoundError:
@@ -142,13 +142,13 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
 
 def _extract(package: Path, archive: zipfile.ZipFile, folder: Path, progress: Progress) -> None:
     members = [info for info in archive.infolist() if not info.is_dir()]
-    if not 1 <= len(members) <= MOST_FILES:
-        raise _refused(package, f"holds {len(members)} files; a scenario has 1 to {MOST_FILES}")
+    if not 1 <= len(members) <= MAX_FILES:
+        raise _refused(package, f"holds {len(members)} files; a scenario has 1 to {MAX_FILES}")
     for info in members:
         _check_member(package, info)
     if len({info.filename.lower() for info in members}) != len(members):
         raise _refused(package, "holds a file twice")
-    left = MOST_BYTES
+    left = MAX_BYTES
     for number, info in enumerate(members):
         progress(UNPACKING, UNPACKED_SHARE * number / len(members))
         left = _extract_member(package, archive, info, folder / info.filename, left)
@@ -176,7 +176,7 @@ def _extract_member(
         while chunk := packed.read(_CHUNK):
             left -= len(chunk)
             if left < 0:
-                raise _refused(package, f"holds more than {MOST_BYTES // 10**6} MB")
+                raise _refused(package, f"holds more than {MAX_BYTES // 10**6} MB")
             file.write(chunk)
     return left
 

@@ -16,7 +16,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.head.mesh import RAS_LIMIT_MM
-from rastrainer.head.pose import WIDEST, Perturbation, perturbed_pose
+from rastrainer.head.pose import MAX_PERTURBATION, Perturbation, perturbed_pose
 from rastrainer.head.volume import VolumeFile, read_volume_file
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.tasks import (
@@ -33,7 +33,7 @@ FILE_NAME = "scenario.json"
 PREVIEW_NAME = "preview.png"
 FORMAT_VERSION = 1
 CAMERAS = ("close-up", "far")
-MOST_TASKS = 20
+MAX_TASKS = 20
 STAND_DIAMETERS_MM = (1.0, 500.0)
 SKULL_KINDS = ("bone", "approximation")
 UNKNOWN_LICENSE = "Not to be given away: nothing is known about its license."
@@ -204,7 +204,7 @@ def _skull(fields: Fields) -> dict[str, Any]:
 
 def _tasks(fields: Fields) -> tuple[Task, ...]:
     tasks: dict[str, Task] = {}
-    for entry in fields.list_of_fields("tasks", 1, MOST_TASKS):
+    for entry in fields.list_of_fields("tasks", 1, MAX_TASKS):
         name = entry.text("name", 40)
         if not is_task_name(name) or name in tasks:
             raise entry.error("name", "lower-case letters, digits and hyphens, each name once")
@@ -217,9 +217,9 @@ def _tasks(fields: Fields) -> tuple[Task, ...]:
 
 def _perturbation(fields: Fields) -> Perturbation:
     return Perturbation(
-        fields.number("translationMm", 0, WIDEST.translation_mm),
-        fields.number("yawDeg", 0, WIDEST.yaw_deg),
-        fields.number("tiltDeg", 0, WIDEST.tilt_deg),
+        fields.number("translationMm", 0, MAX_PERTURBATION.translation_mm),
+        fields.number("yawDeg", 0, MAX_PERTURBATION.yaw_deg),
+        fields.number("tiltDeg", 0, MAX_PERTURBATION.tilt_deg),
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.files.writing import write_text
-from rastrainer.head.pose import WIDEST, Perturbation
+from rastrainer.head.pose import MAX_PERTURBATION, Perturbation
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Camera, Furniture
 
@@ -106,11 +106,11 @@ def read_setup(path: Path) -> SetUp:
                 limits,
                 "translationMm",
                 0.0,
-                WIDEST.translation_mm,
+                MAX_PERTURBATION.translation_mm,
                 usual.perturbation.translation_mm,
             ),
-            _number(limits, "yawDeg", 0.0, WIDEST.yaw_deg, usual.perturbation.yaw_deg),
-            _number(limits, "tiltDeg", 0.0, WIDEST.tilt_deg, usual.perturbation.tilt_deg),
+            _number(limits, "yawDeg", 0.0, MAX_PERTURBATION.yaw_deg, usual.perturbation.yaw_deg),
+            _number(limits, "tiltDeg", 0.0, MAX_PERTURBATION.tilt_deg, usual.perturbation.tilt_deg),
         ),
         _point(table, "centerMm", usual.table_center),
         _point(table, "sizeMm", usual.table_size),

@@ -95,8 +95,8 @@ def touch_order(labels: Sequence[str]) -> list[int]:
     return sorted(range(FIDUCIAL_COUNT), key=numbers.__getitem__)
 
 
-MOST_TARGETS = 20
-SHORTEST_TRAJECTORY_MM = 1.0
+MAX_TARGETS = 20
+MIN_TRAJECTORY_MM = 1.0
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ def read_targets(fields: Fields) -> tuple[PlannedTarget, ...]:
     """
     if "targets" not in fields.names():
         return ()
-    entries = fields.list_of_fields("targets", 0, MOST_TARGETS)
+    entries = fields.list_of_fields("targets", 0, MAX_TARGETS)
     return tuple(
         PlannedTarget(entry.text("name", 60), _point(entry, "positionRas")) for entry in entries
     )
@@ -151,8 +151,8 @@ def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
         return None
     own = fields.fields("trajectory")
     entry, target = _point(own, "entryRas"), _point(own, "targetRas")
-    if np.linalg.norm(target - entry) < SHORTEST_TRAJECTORY_MM:
-        raise own.error("entryRas", f"at least {SHORTEST_TRAJECTORY_MM:g} mm from targetRas")
+    if np.linalg.norm(target - entry) < MIN_TRAJECTORY_MM:
+        raise own.error("entryRas", f"at least {MIN_TRAJECTORY_MM:g} mm from targetRas")
     return PlannedTrajectory(own.text("name", 60), entry, target)
 
 

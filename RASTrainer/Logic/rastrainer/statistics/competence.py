@@ -147,7 +147,7 @@ def _steps(adequate: float, inadequate: float) -> tuple[float, float]:
     return math.log((1 - adequate) / (1 - inadequate)), math.log(adequate / inadequate)
 
 
-FEWEST_OF_GROUP = 5
+MIN_GROUP_SIZE = 5
 
 
 @dataclass(frozen=True)
@@ -180,9 +180,9 @@ def pass_mark(novices: Sequence[float], experts: Sequence[float]) -> PassMark:
         InputError: fewer than five in a group, no spread in one, or experts are not better.
     """
     low, high = np.asarray(novices, dtype=float), np.asarray(experts, dtype=float)
-    if min(len(low), len(high)) < FEWEST_OF_GROUP:
+    if min(len(low), len(high)) < MIN_GROUP_SIZE:
         raise InputError(
-            f"A pass mark by contrasting groups needs at least {FEWEST_OF_GROUP} novices and as "
+            f"A pass mark by contrasting groups needs at least {MIN_GROUP_SIZE} novices and as "
             f"many experts; there are {len(low)} and {len(high)}."
         )
     if low.std() == 0 or high.std() == 0:

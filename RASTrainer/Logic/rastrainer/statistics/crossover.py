@@ -16,7 +16,7 @@ import numpy as np
 from rastrainer.statistics.intervals import CONFIDENCE
 from rastrainer.statistics.scipy_modules import scipy_module
 
-FEWEST = 4
+MIN_SUBJECTS = 4
 """Two are spent on difference and period, and a variance of one degree of freedom shows nothing."""
 
 
@@ -50,7 +50,7 @@ def is_separable(order: np.ndarray | None) -> bool:
         order: (n,) float, by how many periods each subject did the second condition later than the
             first: 1 for AB, -1 for BA; None where that is unknown.
     """
-    if order is None or len(order) < FEWEST:
+    if order is None or len(order) < MIN_SUBJECTS:
         return False
     return bool(np.ptp(order) > 0 and np.min(order) <= 0 <= np.max(order))
 
@@ -83,7 +83,7 @@ def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) ->
     )
 
 
-FEWEST_OF_SEQUENCE = 2
+MIN_SEQUENCE_SIZE = 2
 """Subjects of a sequence, to estimate how much they scatter."""
 
 
@@ -132,7 +132,7 @@ def compare_sequences(
     means = (first + second) / 2
     groups = means[order < 0], means[order > 0]
     between, between_interval = None, None
-    if min(map(len, groups)) >= FEWEST_OF_SEQUENCE and np.ptp(means) > 0:
+    if min(map(len, groups)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
         between = float(groups[0].mean() - groups[1].mean())
         limits = stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
         between_interval = (float(limits.low), float(limits.high))

@@ -11,7 +11,7 @@ from rastrainer.statistics.intervals import (
 )
 from rastrainer.statistics.paired import PairedComparison
 
-FEW = 20
+FEW_SUBJECTS = 20
 """Below this many subjects the limits are said even where nobody asks."""
 
 
@@ -87,7 +87,7 @@ def what_cannot_be_concluded(
             f"Wilcoxon's {name} test cannot reach the {percent(ALPHA)} level with {n} "
             f"subjects at all: its smallest possible p is {p_text(smallest)}."
         )
-    if n < FEW:
+    if n < FEW_SUBJECTS:
         small, medium, large = (
             subjects_needed(size, with_period=with_period) for size in (0.2, 0.5, 0.8)
         )

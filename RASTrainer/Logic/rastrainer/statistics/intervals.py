@@ -57,7 +57,7 @@ def _noncentrality(t: float, dof: float, probability: float) -> float:
 
 ALPHA = 0.05
 TARGET_POWER = 0.8
-MOST_SUBJECTS = 10_000
+MAX_SUBJECTS = 10_000
 
 
 def paired_power(
@@ -96,10 +96,10 @@ def subjects_needed(
     high = low + 1
     while paired_power(effect_dz, high, alpha, with_period) < power:
         low, high = high, 2 * high
-        if high > MOST_SUBJECTS:
+        if high > MAX_SUBJECTS:
             raise InputError(
                 f"An effect of {effect_dz:g} standard deviations would need more than "
-                f"{MOST_SUBJECTS} subjects."
+                f"{MAX_SUBJECTS} subjects."
             )
     while high - low > 1:
         middle = (low + high) // 2

@@ -5,7 +5,6 @@ The curve describes; whether there is learning at all is tested in `rastrainer.s
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,7 +12,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 
-FEWEST_TRIALS = 5
+MIN_TRIALS = 5
 RATES = np.geomspace(0.02, 4.0, 200)
 
 
@@ -27,14 +26,12 @@ class LearningCurve:
         gain: a, how much the first trial is above the plateau.
         rate: b, how fast it falls.
         plateau: c, where it leads.
-        residual_sd: Standard deviation of the trials about the curve, divided by n − 3.
         r_squared: Share of the variance that the curve explains.
     """
 
     gain: float
     rate: float
     plateau: float
-    residual_sd: float
     r_squared: float
 
     def at(self, trial: float) -> float:
@@ -52,8 +49,8 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
         InputError: fewer than five trials, or they hold no finite numbers of at least 0.
     """
     y = np.asarray(values, dtype=float)
-    if len(y) < FEWEST_TRIALS:
-        raise InputError(f"A learning curve needs at least {FEWEST_TRIALS} trials.")
+    if len(y) < MIN_TRIALS:
+        raise InputError(f"A learning curve needs at least {MIN_TRIALS} trials.")
     if not np.all(np.isfinite(y) & (y >= 0)):
         raise InputError("A learning curve needs times or errors that are finite and not below 0.")
     trials = np.arange(1, len(y) + 1)
@@ -66,7 +63,6 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
         gain=gain,
         rate=rate,
         plateau=plateau,
-        residual_sd=math.sqrt(squares / (len(y) - 3)),
         r_squared=1 - squares / total if total > 0 else 0.0,
     )
 

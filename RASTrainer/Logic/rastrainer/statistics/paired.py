@@ -36,7 +36,6 @@ class PairedComparison:
         mean_difference: Mean of second minus first; free of the effect of the period where
             `sequences` is not None.
         standard_error: Of it.
-        sd_difference: Standard deviation of the differences (about the periods' effect).
         dof: Degrees of freedom of it.
         interval: 95 % interval of the mean difference (Student's t).
         t: Of the t-test.
@@ -52,7 +51,6 @@ class PairedComparison:
     n: int
     mean_difference: float
     standard_error: float
-    sd_difference: float
     dof: int
     interval: tuple[float, float]
     t: float
@@ -98,7 +96,6 @@ def compare_paired(
         n=n,
         mean_difference=mean,
         standard_error=error,
-        sd_difference=sd,
         dof=dof,
         interval=(mean - reach, mean + reach),
         t=t,

@@ -13,9 +13,9 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.number_text import p_phrase
 from rastrainer.statistics.scipy_modules import scipy_module
 
-FEWEST_TRAINEES = 12
+MIN_TRAINEES = 12
 TRAINEES_A_CLUSTER = 5
-MOST_CLUSTERS = 5
+MAX_CLUSTERS = 5
 STABLE = 0.75
 """Hennig 2007: below it, a cluster should not be trusted."""
 ALPHA = 0.05
@@ -67,9 +67,9 @@ def cluster_trainees(
         NoClustersError: too few trainees, metrics that do not vary, or no groups are shown.
     """
     names = sorted(name for name, values in trainees.items() if set(metrics) <= set(values))
-    if len(names) < FEWEST_TRAINEES:
+    if len(names) < MIN_TRAINEES:
         raise NoClustersError(
-            f"Groups of trainees are not reported for fewer than {FEWEST_TRAINEES} trainees "
+            f"Groups of trainees are not reported for fewer than {MIN_TRAINEES} trainees "
             f"with all metrics; there are {len(names)}."
         )
     values = np.array([[trainees[name][metric] for metric in metrics] for name in names])
@@ -112,7 +112,7 @@ def one_peak_p(points: np.ndarray) -> float:
 
 def _best(points: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, float]:
     """Return the labels, from 0 without gaps, and the mean silhouette of the best number."""
-    most = min(MOST_CLUSTERS, len(points) // TRAINEES_A_CLUSTER)
+    most = min(MAX_CLUSTERS, len(points) // TRAINEES_A_CLUSTER)
     found = []
     for count in range(2, max(2, most) + 1):
         labels = np.unique(k_means(points, count, random), return_inverse=True)[1]
@@ -194,7 +194,7 @@ def _hull(x: np.ndarray, y: np.ndarray, side: int) -> np.ndarray:
 
 
 STARTS, STARTS_OF_SAMPLE = 10, 3
-MOST_ROUNDS = 30
+MAX_ROUNDS = 30
 
 
 def k_means(
@@ -250,6 +250,6 @@ def _once(points: np.ndarray, count: int, random: np.random.Generator) -> tuple[
         # A start that loses a cluster is not the best one.
         warnings.simplefilter("ignore", UserWarning)
         centers, labels = scipy_module("cluster.vq").kmeans2(
-            points, count, iter=MOST_ROUNDS, minit="++", seed=random
+            points, count, iter=MAX_ROUNDS, minit="++", seed=random
         )
     return float(((points - centers[labels]) ** 2).sum()), labels

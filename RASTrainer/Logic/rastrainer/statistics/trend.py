@@ -22,11 +22,11 @@ from rastrainer.statistics.intervals import CONFIDENCE
 from rastrainer.statistics.scipy_modules import scipy_module
 
 ALPHA = 0.05
-FEWEST_TRIALS = 4
+MIN_TRIALS = 4
 """Three trials have six orders: their smallest p is 1/6."""
 STEADY = 0.1
 """A fall by less than this share of the mean is called none; our own convention."""
-MOST_ORDERS = 9999
+MAX_ORDERS = 9999
 """All orders of up to seven trials; of more, so many random ones."""
 
 
@@ -66,9 +66,9 @@ def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
         InputError: fewer than four trials, or values that are not finite.
     """
     y = np.asarray(values, dtype=float)
-    if len(y) < FEWEST_TRIALS or not np.isfinite(y).all():
+    if len(y) < MIN_TRIALS or not np.isfinite(y).all():
         raise InputError(
-            f"Whether trials improve can be tested from {FEWEST_TRIALS} finite values on."
+            f"Whether trials improve can be tested from {MIN_TRIALS} finite values on."
         )
     x, weights = np.log(np.arange(1, len(y) + 1)), change_weights(len(y))
     change = float(weights @ y)
@@ -118,7 +118,7 @@ def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
         permutation_type="pairings",
         alternative="less",
         vectorized=True,
-        n_resamples=MOST_ORDERS,
+        n_resamples=MAX_ORDERS,
         random_state=np.random.default_rng(0),
     )
     return float(found.pvalue)
@@ -168,7 +168,7 @@ def cohort_trend(series: Sequence[Sequence[float]], better: int) -> CohortTrend 
         series: Of each trainee the values of all trials, in their order.
         better: -1 where less is better, 1 where more is.
     """
-    long = [np.asarray(own, dtype=float) for own in series if len(own) >= FEWEST_TRIALS]
+    long = [np.asarray(own, dtype=float) for own in series if len(own) >= MIN_TRIALS]
     if not long:
         return None
     common = min(map(len, long))

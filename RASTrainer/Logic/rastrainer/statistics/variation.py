@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FEWEST_TRAINEES = 4
+MIN_TRAINEES = 4
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def fit_variation(trials: Trials, values: np.ndarray) -> Variation | None:
     """
     trainees, modes = int(trials.trainees.max()) + 1, int(trials.modes.max()) + 1
     cells = trials.trainees * modes + trials.modes
-    if trainees < FEWEST_TRAINEES or modes < 2 or len(np.unique(cells)) < trainees * modes:
+    if trainees < MIN_TRAINEES or modes < 2 or len(np.unique(cells)) < trainees * modes:
         return None
     columns = [np.eye(trainees * modes)[cells], np.eye(int(trials.tasks.max()) + 1)[trials.tasks]]
     columns[1] = columns[1][:, 1:]

@@ -17,7 +17,7 @@ from rastrainer.registration.registration import RIGID
 from rastrainer.statistics.intervals import Proportion, proportion
 from rastrainer.study.database.values import StoredTrial
 
-FEW = 5
+MIN_SHARE_TRIALS = 5
 """Of fewer trials a share says nothing."""
 
 
@@ -125,7 +125,7 @@ class TreCalibration:
                 f"{count - inside.count - self.above}). Root mean square: true "
                 f"{fixed(self.true_rms_mm, 2)} mm, expected {fixed(self.expected_rms_mm, 2)} mm."
             )
-        if 0 < count < FEW:
+        if 0 < count < MIN_SHARE_TRIALS:
             found.append(f"{count} trial{'s' if count > 1 else ''} can say nothing about a share.")
         old = sum(not point.allows_for_offset for point in self.points)
         if old:

@@ -11,7 +11,7 @@ from typing import Any
 
 from rastrainer import json_checks
 from rastrainer.json_checks import Argument
-from rastrainer.protocol import FIDUCIAL_COUNT, KEPT_AFTER_S, OPEN_PHASES, TRIAL_RUN, Phase
+from rastrainer.protocol import FIDUCIAL_COUNT, MIN_ABORTED_S, OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer.trial.record import (
     SHARED_CHECKS,
     TIME_LIMIT_S,
@@ -76,7 +76,7 @@ class AbortedTrial:
     def is_kept(self) -> bool:
         """Whether there is anything to keep of it: a touch, a refused one too, or some time."""
         touches = len(self.points) + self.rejected_touches + self.undone_touches
-        return touches > 0 or self.elapsed_s > KEPT_AFTER_S
+        return touches > 0 or self.elapsed_s > MIN_ABORTED_S
 
     @property
     def counts_as_failed(self) -> bool:

@@ -20,8 +20,8 @@ ATTEMPT_S = 3.0
 """What a refused touch costs at least: to notice, to move, to touch again."""
 LONG_CONTACT_S = 2.0
 """From here on a contact is described by its length, not as a bump."""
-LEAST_GAIN = 0.5
-MOST = 3
+MIN_GAIN = 0.5
+MAX_ADVICE = 3
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ def advise(
         return tuple(_contacts(motion, 0.0))
     candidates = [*_accuracy(score, findings), *_time(score, motion)]
     ranked = sorted(candidates, key=lambda advice: -advice.gain)
-    worth = [advice for advice in ranked if advice.gain >= LEAST_GAIN]
-    return (*_safety(score, motion), *worth)[:MOST]
+    worth = [advice for advice in ranked if advice.gain >= MIN_GAIN]
+    return (*_safety(score, motion), *worth)[:MAX_ADVICE]
 
 
 def _safety(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
@@ -60,7 +60,7 @@ def _safety(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
     safety = score.measures.safety
     depth = 0.0 if safety is None else safety.pressing_depth_mm
     gain = _gain(score, pressing_depth_mm=0.0)
-    if depth > DEPTH_LIMIT_MM or gain >= LEAST_GAIN:
+    if depth > DEPTH_LIMIT_MM or gain >= MIN_GAIN:
         yield Advice("pressing", say("pressing", depth=float(depth)), gain)
 
 

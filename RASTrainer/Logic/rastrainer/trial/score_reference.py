@@ -32,7 +32,7 @@ from rastrainer.registration.target_error import true_errors
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.scoring import ScoreReference
 
-MOST_RESULTS = 64
+MAX_RESULTS = 64
 
 Points = tuple[tuple[float, ...], ...]
 
@@ -62,7 +62,7 @@ def computed_once(
     return _computed(mesh, changed, compute, arguments)
 
 
-@lru_cache(maxsize=MOST_RESULTS)
+@lru_cache(maxsize=MAX_RESULTS)
 def _computed(
     mesh: Path, _changed: int, compute: Callable[..., np.ndarray], arguments: tuple[Points, ...]
 ) -> np.ndarray:

@@ -41,7 +41,7 @@ HALF_CONTACT_S, CONTACT_LIMIT_S = 4.0, 8.0
 brush of a second now and then, not the tool's way of traveling. Our own convention, as the next."""
 HALF_CONTACT_PATH_MM, CONTACT_PATH_LIMIT_MM = 80.0, 160.0
 HALF_DEPTH_MM = DEPTH_LIMIT_MM = 1.5
-LARGEST = 1e6
+MAX_MEASURE = 1e6
 """Of any measure: what is above is a mistake."""
 
 
@@ -112,7 +112,7 @@ class ScoreMeasures:
 
     def check(self) -> SafetyMeasures:
         """Return the safety measures; raise `InputError` unless all are numbers of a trial."""
-        if not 0 < self.completion_time_s <= LARGEST:
+        if not 0 < self.completion_time_s <= MAX_MEASURE:
             raise InputError("The completion time must be a number of seconds above 0.")
         for value, what in (
             (self.tre_mm, "true target error must be a number of mm"),
@@ -120,7 +120,7 @@ class ScoreMeasures:
             (self.contact_path_mm, "path of unintended contact must be a number of mm"),
             (self.pressing_depth_mm, "pressing depth must be a number of mm"),
         ):
-            if value is None or not 0 <= value <= LARGEST:
+            if value is None or not 0 <= value <= MAX_MEASURE:
                 raise InputError(f"The {what}, 0 or above.")
         assert self.safety is not None
         return self.safety

@@ -42,10 +42,7 @@ class TouchFinding:
             the skin is not known.
         aside_mm: The part along the skin; None likewise.
         share: Of the squared registration error, 1 for all of it.
-        movement_s: Time since the touch before; None for the first touch or without a recording.
         dwell_s: How long the tip had been within 2 mm; None without a recording.
-        tremor_mm: Root mean square of the tip about its mean in the last half second; None
-            without a recording.
         hurts: Whether it is one of those that made the registration worse.
         reasons: Why, the main one first; empty where nothing stands out.
         replay_s: From when to when to look at it again, in trial time; None without a recording.
@@ -56,9 +53,7 @@ class TouchFinding:
     depth_mm: float | None
     aside_mm: float | None
     share: float
-    movement_s: float | None
     dwell_s: float | None
-    tremor_mm: float | None
     hurts: bool
     reasons: tuple[Reason, ...]
     replay_s: tuple[float, float] | None
@@ -126,14 +121,13 @@ def _finding(
     trajectory: Trajectory | None,
     index: int | None,
 ) -> TouchFinding:
-    movement = dwell = tremor = replay = None
+    dwell = tremor = replay = None
     is_hurried = False
     if trajectory is not None and index is not None:
         touch = trajectory.touches[index]
         before = trajectory.touches[index - 1].time_s if index else 0.0
-        movement = touch.time_s - before if index else None
         dwell, tremor = _last_moments(trajectory, touch)
-        is_short = movement is not None and movement < HURRY_SHARE * _typical(trajectory.touches)
+        is_short = index > 0 and touch.time_s - before < HURRY_SHARE * _typical(trajectory.touches)
         is_hurried = is_short or (dwell < HURRY_DWELL_S and tremor <= TREMOR_MM)
         replay = (before, touch.time_s)
     aside = None if depth is None else float(np.sqrt(max(residual**2 - depth**2, 0.0)))
@@ -144,9 +138,7 @@ def _finding(
         reasons.append(Reason.TREMOR)
     if hurts and is_hurried:
         reasons.append(Reason.HURRY)
-    return TouchFinding(
-        label, residual, depth, aside, share, movement, dwell, tremor, hurts, tuple(reasons), replay
-    )
+    return TouchFinding(label, residual, depth, aside, share, dwell, hurts, tuple(reasons), replay)
 
 
 def _last_moments(trajectory: Trajectory, touch: Touch) -> tuple[float, float]:

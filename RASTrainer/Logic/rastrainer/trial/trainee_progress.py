@@ -9,7 +9,6 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.statistics.competence import LcCusum, lc_cusum, lc_cusum_limit
-from rastrainer.statistics.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.wording import Sentence, say
@@ -66,20 +65,14 @@ class TraineeProgress:
         scores: Of the trials of this task in this mode, in their order; like the competence without
             trials whose score is of another version.
         pass_mark: Score that passes.
-        is_best: Whether this trial is the best of them (and not the first).
-        passes: Whether this trial reached the pass mark.
         competence: LC-CUSUM over the trainee's trials of all tasks in this mode; an aborted one
             counts as not passed.
-        curve: Of the completion times of this task; None with fewer than five trials.
         sentences: The same in words.
     """
 
     scores: tuple[float, ...]
     pass_mark: float
-    is_best: bool
-    passes: bool
     competence: LcCusum
-    curve: LearningCurve | None
     sentences: tuple[Sentence, ...]
 
 
@@ -109,16 +102,13 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> T
     scores = tuple(other.score for other in played if _compares(other, trial))
     failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
     competence = competence_of(failures)
-    times = [other.completion_time_s for other in played]
-    curve = fit_learning_curve(times) if len(times) >= FEWEST_TRIALS else None
     is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
-    has_passed = passes(trial.score, trial.acceptable, pass_mark)
     sentences = (
         _about_scores(scores, is_best, len(scores) < len(played)),
         _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )
-    return TraineeProgress(scores, pass_mark, is_best, has_passed, competence, curve, sentences)
+    return TraineeProgress(scores, pass_mark, competence, sentences)
 
 
 def competence_of(failures: Sequence[bool]) -> LcCusum:

@@ -24,7 +24,7 @@ from rastrainer.trial.touch_findings import TouchFinding, touch_findings
 from rastrainer.trial.trainee_progress import TraineeProgress
 from rastrainer.trial.wording import Sentence, say
 
-MOST_SHORT = 6
+MAX_SHORT = 6
 """Sentences that fit beside the figures of a result at 1280 × 720."""
 
 
@@ -94,7 +94,7 @@ class TrialFeedback:
         """
         progress = () if self.progress is None else self.progress.sentences
         others = [*self.touch_sentences[:1], *(a.sentence for a in self.advice)]
-        return [*others, *progress[max(0, len(others) + len(progress) - MOST_SHORT) :]]
+        return [*others, *progress[max(0, len(others) + len(progress) - MAX_SHORT) :]]
 
 
 def trial_feedback(

@@ -58,7 +58,7 @@ ENGLISH: Mapping[str, str] = {
     "far: {trials}).",
 }
 
-_PAST_HALF = 1 + 1e-12
+_ROUND_UP = 1 + 1e-12
 """Rounds halves up: 0.25, stored a trifle below, becomes 0.3."""
 
 
@@ -85,7 +85,7 @@ class Sentence(str):
 def say(key: str, **values: Any) -> Sentence:
     """Return a sentence with its values filled in."""
     rounded = {
-        name: value * _PAST_HALF if isinstance(value, float) else value
+        name: value * _ROUND_UP if isinstance(value, float) else value
         for name, value in values.items()
     }
     sentence = Sentence(ENGLISH[key].format(**rounded))

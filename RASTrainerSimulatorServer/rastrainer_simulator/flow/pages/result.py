@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer.trial.trial_feedback import MOST_SHORT
+from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
@@ -216,7 +216,7 @@ def _feedback(texts: Texts, result: TrialResult) -> list[str]:
     if _beyond_limits(result) and isinstance(told, list):
         others = [e for e in told if not (isinstance(e, dict) and e.get("key") == "unacceptable")]
         result = replace(result, details={**result.details, "feedback": others})
-    return _sentences(texts, result, "feedback", MOST_SHORT)
+    return _sentences(texts, result, "feedback", MAX_SHORT)
 
 
 def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.journal.journal_file import (
-    LONGEST_LINE,
+    MAX_LINE_BYTES,
     NO_LINE,
     DamagedLineError,
     decode_line,
@@ -58,7 +58,7 @@ class DoneTasks:
         """Take note of a journal; one that cannot be read counts for nothing."""
         try:
             with path.open("rb") as file:
-                header = decode_line(file.readline(LONGEST_LINE).rstrip(b"\n"), 1, NO_LINE)
+                header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
                 file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
                 tail = file.read(_TAIL_BYTES)
             what = header["trainee"], header["scenario"]["name"], header["task"]

@@ -14,7 +14,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, Status, String, Transform
-from rastrainer.igtl.message import LARGEST_BODY, Message, pack
+from rastrainer.igtl.message import MAX_BODY_BYTES, Message, pack
 from rastrainer.igtl.points import Point, Points
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
@@ -122,7 +122,7 @@ def test_bad_message_does_not_end_the_connection(plain_server, bad):
 
 def test_claimed_body_above_16_mib_ends_the_connection(plain_server):
     with connect(plain_server.port) as peer:
-        peer.sendall(header(b"STRING", LARGEST_BODY + 1))
+        peer.sendall(header(b"STRING", MAX_BODY_BYTES + 1))
         assert read_to_end(peer) == b""
 
 

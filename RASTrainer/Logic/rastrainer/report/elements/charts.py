@@ -121,7 +121,7 @@ def _difference(sheet: Sheet, comparison: ModeComparison) -> None:
 
 EFFECTS_WIDTH, EFFECT_HEIGHT = 680, 27
 EFFECTS_LEFT, EFFECTS_RIGHT = 226, 536
-FARTHEST = 6.0
+MAX_EFFECT_SIZE = 6.0
 
 
 def effect_sizes(comparisons: Sequence[ModeComparison]) -> str:
@@ -132,7 +132,7 @@ def effect_sizes(comparisons: Sequence[ModeComparison]) -> str:
         if result.hedges_gz is not None and result.gz_interval is not None
     ]
     reach = max([1.0, *(abs(end) for _comparison, _gz, interval in shown for end in interval)])
-    reach = min(FARTHEST, reach * 1.05)
+    reach = min(MAX_EFFECT_SIZE, reach * 1.05)
     axis = Axis(-reach, reach, EFFECTS_LEFT, EFFECTS_RIGHT)
     height = 64 + EFFECT_HEIGHT * len(shown)
     sheet = Sheet(EFFECTS_WIDTH, height, "Effect sizes with their intervals")

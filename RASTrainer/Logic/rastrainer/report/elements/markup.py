@@ -6,7 +6,7 @@ import html
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MOST_KEPT_TOGETHER = 10
+MAX_KEPT_TOGETHER = 10
 """Rows of a table; longer ones on one page would leave half of the page before empty."""
 
 
@@ -42,9 +42,9 @@ def table(
 ) -> str:
     """Return a table of header lines and rows; the first cell of each row heads it.
 
-    A table of more rows than `MOST_KEPT_TOGETHER` may continue on the next page when it is printed.
+    A table of more rows than `MAX_KEPT_TOGETHER` may continue on the next page when it is printed.
     """
-    if len(rows) > MOST_KEPT_TOGETHER:
+    if len(rows) > MAX_KEPT_TOGETHER:
         kind = " ".join(filter(None, (kind, "long")))
     head = "".join(
         f"<tr>{''.join(_cell(cell).html('th') for cell in line)}</tr>" for line in headers

@@ -12,13 +12,13 @@ from rastrainer.report.elements.markup import Cell, Line, bullets, figure, parag
 from rastrainer.report.elements.scores import versions_note
 from rastrainer.report.elements.svg import mode_color
 from rastrainer.report.sections.paired_statistics import interval_text
-from rastrainer.statistics.learning_curve import FEWEST_TRIALS, LearningCurve, fit_learning_curve
+from rastrainer.statistics.learning_curve import MIN_TRIALS, LearningCurve, fit_learning_curve
 from rastrainer.statistics.trend import ALPHA, STEADY, CohortTrend, TrendVerdict, cohort_trend
 from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, mode_title
 from rastrainer.study.study_data import StudyData
 
 SHOWN = ("completion_time_s", "rmse_mm", "score")
-FEWEST_FOR_CURVE = 8
+MIN_CURVE_TRIALS = 8
 """Of fewer trials the plateau lies too far beyond them to be reported."""
 HEADER: Line = [
     *(
@@ -51,7 +51,7 @@ def learning(data: StudyData) -> str:
             charts.append(_chart(data, outcome, mode, index, points, curve))
             if data.has_order:
                 rows.append(_row(outcome, mode, trend, len(points)))
-            if curve is not None and trend is not None and len(trend.means) >= FEWEST_FOR_CURVE:
+            if curve is not None and trend is not None and len(trend.means) >= MIN_CURVE_TRIALS:
                 sentences.append(_sentence(outcome, mode, curve))
     return section(
         "Learning curves",
@@ -81,7 +81,7 @@ def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
     """Return the curve of the means where they are shown to fall."""
     if trend is None or not trend.is_shown or outcome.better > 0:
         return None
-    return fit_learning_curve(trend.means) if len(trend.means) >= FEWEST_TRIALS else None
+    return fit_learning_curve(trend.means) if len(trend.means) >= MIN_TRIALS else None
 
 
 def _chart(

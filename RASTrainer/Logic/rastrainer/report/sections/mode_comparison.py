@@ -71,7 +71,7 @@ def _chart(data: StudyData, outcome: Outcome) -> str:
 
 WIDTH, HEIGHT = 680, 222
 LEFT, RIGHT, TOP, BOTTOM = 48, 672, 42, 186
-MOST_DOTS = 40
+MAX_DOTS = 40
 
 
 @dataclass(frozen=True)
@@ -112,9 +112,7 @@ def _bar(sheet: Sheet, axis, x: float, width: float, color: str, values: Sequenc
     if len(values) > 1:
         sd = float(np.std(values, ddof=1))
         sheet.line(x, axis.at(mean - sd), x, axis.at(mean + sd), color, 1.2)
-    shown = (
-        values if len(values) <= MOST_DOTS else np.quantile(values, np.linspace(0, 1, MOST_DOTS))
-    )
+    shown = values if len(values) <= MAX_DOTS else np.quantile(values, np.linspace(0, 1, MAX_DOTS))
     for index, value in enumerate(shown):
         spread = ((index * 0.618) % 1.0 - 0.5) * width * 0.55
         sheet.dot(x + spread, axis.at(value), 2.4, color, 0.9)
@@ -122,7 +120,7 @@ def _bar(sheet: Sheet, axis, x: float, width: float, color: str, values: Sequenc
 
 LANE_WIDTH, LANE_HEIGHT = 330, 74
 LANE_LEFT, LANE_RIGHT = 66, 318
-MOST_LANE_DOTS = 300
+MAX_LANE_DOTS = 300
 STACK = 38.0
 """Height of the highest stack of dots, px."""
 
@@ -148,8 +146,8 @@ def distribution_chart(heading: str, lanes: Sequence[tuple[str, str, Sequence[fl
 def _lane(sheet: Sheet, axis: Axis, y: float, color: str, values: Sequence[float]) -> None:
     ordered = np.sort(np.asarray(values, dtype=float))
     shown = ordered
-    if len(ordered) > MOST_LANE_DOTS:
-        shown = np.quantile(ordered, np.linspace(0, 1, MOST_LANE_DOTS))
+    if len(ordered) > MAX_LANE_DOTS:
+        shown = np.quantile(ordered, np.linspace(0, 1, MAX_LANE_DOTS))
     radius = 3.2 if len(shown) <= 60 else 1.8
     for x, row in _swarm(np.array([axis.at(value) for value in shown]), 2 * radius):
         sheet.dot(x, y + 2 - row, radius, color, 0.75)

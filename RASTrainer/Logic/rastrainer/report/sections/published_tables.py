@@ -23,7 +23,7 @@ from rastrainer.study.study_data import StudyData
 from rastrainer.study.study_notes import Printed
 from rastrainer.trial.ctps import CTPS_WARNING, CohortScores
 
-MOST_COLUMNS = 6
+MAX_COLUMNS = 6
 ROMAN = ("I", "II", "III", "IV")
 RED, YELLOW, GREEN = (244, 165, 158), (252, 234, 170), (171, 219, 165)
 
@@ -38,7 +38,7 @@ def published_tables(data: StudyData) -> str:
         counts = f"{counted(len(scores.subjects), 'trainee')}, "
         counts += counted(len(scores.trials), "trial")
         parts.append(heading(f"Table {ROMAN[number % 4]}. {mode_title(mode)}: {counts}"))
-        few = len(scores.subjects) <= MOST_COLUMNS
+        few = len(scores.subjects) <= MAX_COLUMNS
         parts.append(_whole(data, mode, scores) if few else _by_task(data, mode, scores))
         parts.append(paragraph(_overall(mode, scores) + _complexity(data, mode, scores), "small"))
     if not parts:

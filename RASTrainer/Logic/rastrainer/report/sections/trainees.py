@@ -63,7 +63,7 @@ def _row(scale: Scale, when: str, scores: list[float]) -> Line:
 
 
 NAMES = "ABCDE"
-MOST_NAMED = 12
+MAX_NAMED = 12
 
 
 def groups(data: StudyData) -> str:
@@ -95,7 +95,7 @@ def _table(found: TraineeClusters) -> str:
     rows = []
     for index, members in enumerate(found.members):
         center = [o.text(v) for o, v in zip(shown, found.centers[index], strict=True)]
-        names = ", ".join(members[:MOST_NAMED]) + (", …" if len(members) > MOST_NAMED else "")
+        names = ", ".join(members[:MAX_NAMED]) + (", …" if len(members) > MAX_NAMED else "")
         stability = f"{found.stability[index]:.2f}"
         rows.append([NAMES[index], str(len(members)), *center, stability, names])
     header = ["Group", "n", *(o.heading for o in shown), "stability", "trainees"]

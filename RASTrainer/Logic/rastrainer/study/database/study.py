@@ -240,11 +240,6 @@ class Study:
         with self._database.reading() as connection:
             return study_trials.find(connection, trial_id)
 
-    def has_trial(self, trial_id: str) -> bool:
-        """Return whether a trial of this UUID is stored."""
-        with self._database.reading() as connection:
-            return study_trials.exists(connection, trial_id)
-
     def is_revealed(self, trial_id: str) -> bool:
         """Return whether the truth of a stored trial is known."""
         with self._database.reading() as connection:

@@ -14,7 +14,7 @@ from rastrainer.study.protocol.steps import Step, StepKind
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 DONE, SKIPPED = "done", "skipped"
-SHORTEST_REASON, LONGEST_REASON = 10, 500
+MIN_REASON_LENGTH, MAX_REASON_LENGTH = 10, 500
 
 
 @dataclass(frozen=True)
@@ -197,10 +197,10 @@ class Progress:
 
 def _checked_reason(reason: Any, what: str) -> str:
     is_text = isinstance(reason, str) and reason.strip().isprintable()
-    if not is_text or not SHORTEST_REASON <= len(reason.strip()) <= LONGEST_REASON:
+    if not is_text or not MIN_REASON_LENGTH <= len(reason.strip()) <= MAX_REASON_LENGTH:
         raise InputError(
-            f"{what} only with a reason of {SHORTEST_REASON} to {LONGEST_REASON} characters; it "
-            "goes into the report."
+            f"{what} only with a reason of {MIN_REASON_LENGTH} to {MAX_REASON_LENGTH} characters; "
+            "it goes into the report."
         )
     return reason.strip()
 
