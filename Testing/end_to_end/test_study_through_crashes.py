@@ -47,7 +47,7 @@ class Lab:
             study.create_trainee(TRAINEE, True)
             progress = StudyProgress(study)
             changed = json.loads(SHIPPED.read_text()) | SHORT
-            progress.begin(study_protocol_from_json(changed))
+            progress.set_protocol(study_protocol_from_json(changed))
             progress.enroll(TRAINEE)
         self.start_simulator()
         self.slicer = StudySide(folder, self.port)

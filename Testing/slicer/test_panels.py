@@ -576,7 +576,7 @@ def test_who_is_deleted_leaves_no_trace_in_database_journals_and_later_exports(
         for name in ("T-001", "other"):
             study.set_consent(name, True)
         progress = StudyProgress(study)
-        progress.begin(read_study_protocol(PROTOCOL))
+        progress.set_protocol(read_study_protocol(PROTOCOL))
         progress.enroll("T-001")
         progress.skip("T-001", "hmd/before/ssq", "a reason nobody else has")
         progress.practice("T-001", "hmd/trial-run", 9.0)

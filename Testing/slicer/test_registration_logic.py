@@ -8,8 +8,9 @@ import slicer
 
 from rastrainer import transforms
 from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.registration.fits import AFFINE, KINDS, RIGID
 from rastrainer.registration.localization_error import error_along_surface
-from rastrainer.registration.registration import AFFINE, KINDS, RIGID, register
+from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.background_work import BackgroundWork

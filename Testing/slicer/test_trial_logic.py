@@ -17,7 +17,7 @@ from rastrainer.slicer.logic.trial_delivery import MOST_WAITING
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.registration_nodes import isApplied
 from rastrainer.slicer.scene.scene import Role, findNode
-from rastrainer.study.database.database import Patience
+from rastrainer.study.database.database import LockWait
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import review
 from rastrainer.trial.analysis import analyze_trial
@@ -79,7 +79,7 @@ class Lab:
         self.threads.add(threading.get_ident())
         if self.is_study_broken:
             raise InputError("The disk is full.")
-        return Study.open(self.path, Patience(0.01))
+        return Study.open(self.path, LockWait(0.01))
 
     def stored(self, trial_id=TRIAL):
         with Study.open(self.path) as study:

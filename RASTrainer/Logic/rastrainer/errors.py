@@ -1,9 +1,9 @@
-"""The errors that a user is meant to read: each is one sentence that says what would be right."""
+"""Errors for users: each message is one sentence that says what is needed."""
 
 
 class RASTrainerError(Exception):
-    """Something that the user can understand and act on."""
+    """An error that a user can understand and act on."""
 
 
 class InputError(RASTrainerError, ValueError):
-    """A file, message or argument that cannot be used; the command line exits with status 2."""
+    """An unusable file, message or argument; the command line exits with status 2."""

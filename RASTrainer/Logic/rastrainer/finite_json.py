@@ -1,4 +1,4 @@
-"""JSON as the standard has it: Python's decoder alone would let NaN and infinity through."""
+"""Standard JSON: unlike Python's decoder, without NaN and infinity, and of limited depth."""
 
 from __future__ import annotations
 
@@ -9,39 +9,37 @@ from typing import Any
 from rastrainer.errors import InputError
 
 MAX_DEPTH = 64
-"""Lists and objects in one another; how many the interpreter takes differs with its version."""
+"""Nesting of lists and objects; the interpreter's own limit depends on its version."""
 MAX_MESSAGE_VALUES = 1000
-"""Values of a message; none of ours has half as many."""
+"""Ours have less than half as many."""
 
 
 def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
-    """Return the decoded JSON; its numbers are finite.
+    """Return decoded JSON with finite numbers.
 
     Raises:
-        ValueError: not JSON, nested more than `deepest` levels, or with a number that is not
-            finite.
+        ValueError: not JSON, nested more than `deepest` levels, or a number is not finite.
     """
     try:
         value = _DECODER.decode(text)
     except RecursionError:
         raise ValueError("too deeply nested") from None
-    # Most texts have too few brackets to be deep, and need no second look.
+    # Fast path: few brackets cannot be deep.
     if text.count("[") + text.count("{") > deepest and _is_deeper_than(deepest, value):
         raise ValueError("too deeply nested")
     if not _is_finite(value):
-        # Only this way is it known which digits they are.
+        # Decode again, to report the digits.
         json.loads(text, parse_float=_finite_float)
     return value
 
 
 def decode_message(text: str) -> Any:
-    """Return what a message's JSON holds: as `decode_finite_json`, but of few values.
+    """Return the decoded JSON of a message, which has a limited number of values.
 
-    Python's decoder lets no other thread run before it is done. With more values the control loop
-    would miss a tick for them.
+    Python's decoder blocks all other threads; with more values the control loop would miss a tick.
 
     Raises:
-        ValueError: as there, or more than `MAX_MESSAGE_VALUES` values.
+        ValueError: as `decode_finite_json`, or more than `MAX_MESSAGE_VALUES` values.
     """
     if text.count(",") >= MAX_MESSAGE_VALUES:
         raise ValueError("too many values")
@@ -49,11 +47,10 @@ def decode_message(text: str) -> Any:
 
 
 def decode_message_object(text: str, what: str) -> dict[str, Any]:
-    """Return the JSON object that a message holds; `what` names it in the sentence of the error.
+    """Return the JSON object of a message; `what` starts the error message.
 
     Raises:
-        InputError: not JSON, not an object, too deeply nested, of too many values, or with a number
-            that is not finite.
+        InputError: not a JSON object, too deep, too many values, or a number is not finite.
     """
     try:
         value = decode_message(text)
@@ -91,13 +88,12 @@ def _finite_float(digits: str) -> float:
 
 
 def _is_finite(value: Any) -> bool:
-    """Return whether a decoded value is free of infinity, as which digits like 1e999 are decoded.
+    """Return whether decoded JSON has no infinity, which digits like 1e999 become.
 
-    To look at what is decoded takes far less time than to have the decoder call a function for each
-    number.
+    Checking afterwards is much faster than a callback for each number.
     """
     values = [value]
-    # It grows while it is looked through.
+    # The list grows during iteration.
     for each in values:
         kind = each.__class__
         if kind is float:
@@ -111,4 +107,4 @@ def _is_finite(value: Any) -> bool:
 
 
 _DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
-"""One for all: `json.loads` with arguments makes another each time."""
+"""Shared, because `json.loads` with arguments makes a new one each time."""

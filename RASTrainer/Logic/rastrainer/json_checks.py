@@ -62,12 +62,13 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def text(longest: int = 64) -> Callable[[Any], str]:
-    """Accept printable text of 1 to `longest` characters."""
+def text(max_length: int = 64) -> Callable[[Any], str]:
+    """Accept printable text of 1 to `max_length` characters."""
 
     def check(value: Any) -> str:
-        if not isinstance(value, str) or not 1 <= len(value) <= longest or not value.isprintable():
-            raise ValueError(f"printable text of 1 to {longest} characters")
+        is_text = isinstance(value, str) and value.isprintable()
+        if not is_text or not 1 <= len(value) <= max_length:
+            raise ValueError(f"printable text of 1 to {max_length} characters")
         return value
 
     return check
@@ -84,23 +85,23 @@ def pseudonym() -> Callable[[Any], str]:
     return check
 
 
-def number(lowest: float, highest: float, unit: str = "") -> Callable[[Any], float]:
-    """Accept a finite number from `lowest` to `highest`."""
+def number(minimum: float, maximum: float, unit: str = "") -> Callable[[Any], float]:
+    """Accept a finite number from `minimum` to `maximum`."""
 
     def check(value: Any) -> float:
-        if not is_number(value) or not lowest <= value <= highest:
-            raise ValueError(f"a number from {lowest:g} to {highest:g} {unit}".rstrip())
+        if not is_number(value) or not minimum <= value <= maximum:
+            raise ValueError(f"a number from {minimum:g} to {maximum:g} {unit}".rstrip())
         return float(value)
 
     return check
 
 
-def whole_number(lowest: int, highest: int) -> Callable[[Any], int]:
-    """Accept an integer from `lowest` to `highest`."""
+def whole_number(minimum: int, maximum: int) -> Callable[[Any], int]:
+    """Accept an integer from `minimum` to `maximum`."""
 
     def check(value: Any) -> int:
-        if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
-            raise ValueError(f"a whole number from {lowest} to {highest}")
+        if isinstance(value, bool) or not isinstance(value, int) or not minimum <= value <= maximum:
+            raise ValueError(f"a whole number from {minimum} to {maximum}")
         return value
 
     return check
@@ -134,14 +135,14 @@ def one_of(*choices: str) -> Callable[[Any], str]:
 
 
 def texts(
-    fewest: int, most: int, choices: Collection[str] = ()
+    min_count: int, max_count: int, choices: Collection[str] = ()
 ) -> Callable[[Any], tuple[str, ...]]:
     """Accept a list of different texts of up to 64 characters, of the choices if there are any."""
     check_one = text()
 
     def check(value: Any) -> tuple[str, ...]:
-        sentence = f"a list of {fewest} to {most} texts"
-        if not isinstance(value, list) or not fewest <= len(value) <= most:
+        sentence = f"a list of {min_count} to {max_count} texts"
+        if not isinstance(value, list) or not min_count <= len(value) <= max_count:
             raise ValueError(sentence)
         try:
             found = tuple(check_one(item) for item in value)

@@ -12,6 +12,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.markups import read_point_numbers, read_points
 from rastrainer.files.point_list import pair
+from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
     LocalizationError,
     degrees_of_freedom,
@@ -19,7 +20,7 @@ from rastrainer.registration.localization_error import (
     misfit_probability,
     stated_error,
 )
-from rastrainer.registration.registration import KINDS, RIGID, Registration, register
+from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
 from rastrainer_simulator.cli.text_table import text_table
 

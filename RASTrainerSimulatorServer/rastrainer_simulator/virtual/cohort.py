@@ -88,8 +88,8 @@ def simulate_cohort(
     simulated_s = 0.0
     with Study.open(folder / DATABASE) as study:
         store = CohortStore(study)
-        store.begin(plan, planned)
-        StudyProgress(study).begin(protocol)
+        store.start(plan, planned)
+        StudyProgress(study).set_protocol(protocol)
         write_text(folder / PROTOCOL, protocol_text(protocol))
         write_text(folder / TRUTH, json.dumps(truth, indent=2) + "\n")
         if records is not None:
@@ -117,7 +117,7 @@ def _virtual(protocol: StudyProtocol) -> StudyProtocol:
         trial_run_min=0.0,
         break_between_modes_min=0.0,
         break_between_tasks_min=0.0,
-        asked=(),
+        questionnaires=(),
     )
 
 

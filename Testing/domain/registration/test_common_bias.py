@@ -9,7 +9,8 @@ from scipy import stats
 
 from rastrainer import transforms
 from rastrainer.registration.distributions import ratio_quantile, widened_quantile
-from rastrainer.registration.registration import KINDS, register
+from rastrainer.registration.fits import KINDS
+from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import (
     COMMON_BIAS_SD_MM,
     INTERVAL_NOTE,

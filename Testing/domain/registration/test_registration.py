@@ -8,8 +8,8 @@ import vtk
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.registration.fits import fit
-from rastrainer.registration.registration import KINDS, register, register_all_kinds
+from rastrainer.registration.fits import KINDS, fit
+from rastrainer.registration.registration import register, register_all_kinds
 
 VTK_MODES = {"rigid": "RigidBody", "similarity": "Similarity", "affine": "Affine"}
 

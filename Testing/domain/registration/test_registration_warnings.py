@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rastrainer.registration.registration import KINDS, register
+from rastrainer.registration.fits import KINDS
+from rastrainer.registration.registration import register
 
 SEEDS = range(60)
 

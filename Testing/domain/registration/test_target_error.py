@@ -6,9 +6,9 @@ from scipy.spatial.transform import Rotation
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.registration.fits import fit
+from rastrainer.registration.fits import KINDS, fit
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
-from rastrainer.registration.registration import KINDS, register
+from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import expected_tre, target_error, true_errors
 
 TILT = Rotation.from_euler("xyz", [25, -40, 70], degrees=True).as_matrix()

@@ -18,7 +18,7 @@ def study_with_trials(path, consent=True):
     with Study.open(path) as study:
         progress = StudyProgress(study)
         published = read_study_protocol(STUDIES / "published-protocol.json")
-        progress.begin(replace(published, tasks=("task-1",)))
+        progress.set_protocol(replace(published, tasks=("task-1",)))
         for name in ("A", "B"):
             study.create_trainee(name, consent=consent if name == "A" else True)
             progress.enroll(name)

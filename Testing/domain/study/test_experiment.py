@@ -104,7 +104,7 @@ def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(tmp_path)
     with Study.open(path) as study:
         study.create_trainee()
         progress = StudyProgress(study)
-        progress.begin(read_study_protocol(SHIPPED))
+        progress.set_protocol(read_study_protocol(SHIPPED))
         assert progress.enroll("T001") == progress.enroll("T001") == 0
         assert progress.progress("T001").sentence == ("Step 1 of 19: Answer the questionnaire SSQ.")
         progress.finish("T001", "hmd/before/ssq", {"answers": [0] * 16})
@@ -116,7 +116,7 @@ def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(tmp_path)
         progress.finish("T001", "hmd/trial-run", {"minutes": 300.5 / 60})
     with Study.open(path) as study:
         progress = StudyProgress(study)
-        progress.begin(read_study_protocol(SHIPPED))
+        progress.set_protocol(read_study_protocol(SHIPPED))
         state = progress.progress("T001")
         assert state.next_step.name == "hmd/1/task-1"
         assert state.check_start("hmd", "task-1") is state.next_step
@@ -129,7 +129,7 @@ def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(tmp_path)
 
 def test_a_completed_protocol_ends_with_thanks_and_scored_answers(study):
     progress = StudyProgress(study)
-    progress.begin(protocol(tasks=["task-1"]))
+    progress.set_protocol(protocol(tasks=["task-1"]))
     progress.enroll("T001")
     number = 0
     while (step := progress.progress("T001").next_step) is not None:
@@ -154,7 +154,7 @@ def test_a_completed_protocol_ends_with_thanks_and_scored_answers(study):
 
 def test_every_step_survives_the_study_step_command(study):
     progress = StudyProgress(study)
-    progress.begin(protocol())
+    progress.set_protocol(protocol())
     progress.enroll("T001")
     kinds = set()
     while True:
@@ -187,7 +187,7 @@ def test_a_protocol_may_set_the_pass_mark():
 
 def test_nothing_is_skipped_silently(study):
     progress = StudyProgress(study)
-    progress.begin(protocol())
+    progress.set_protocol(protocol())
     progress.enroll("T001")
     for reason in ("", "   ", "short", None, "x" * 501):
         with pytest.raises(InputError, match="only with a reason"):
@@ -203,7 +203,7 @@ def test_nothing_is_skipped_silently(study):
 
 def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
     progress = StudyProgress(study)
-    progress.begin(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
+    progress.set_protocol(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
     progress.enroll("T001")
     step = progress.progress("T001").next_step
     study.add_trial(trial_of(step, 1, trainee="T002"))
@@ -227,7 +227,7 @@ def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
 
 def test_a_questionnaire_is_done_only_with_all_answers(study):
     progress = StudyProgress(study)
-    progress.begin(protocol())
+    progress.set_protocol(protocol())
     progress.enroll("T001")
     for details, words in [({}, "only with its answers"), ({"answers": [1] * 15}, "16 answers")]:
         with pytest.raises(InputError, match=words):
@@ -236,7 +236,7 @@ def test_a_questionnaire_is_done_only_with_all_answers(study):
 
 def test_a_trial_run_or_a_break_ends_too_early_only_with_a_reason(study):
     progress = StudyProgress(study)
-    progress.begin(protocol(questionnaires=[]))
+    progress.set_protocol(protocol(questionnaires=[]))
     progress.enroll("T001")
     for minutes in (None, 4.9, float("nan"), float("inf"), True, "5"):
         with pytest.raises(InputError, match="The trial run takes 5 minutes, of which"):
@@ -248,7 +248,7 @@ def test_a_trial_run_or_a_break_ends_too_early_only_with_a_reason(study):
 
 def test_trials_are_counted_automatically_in_protocol_order_since_enrollment(study):
     progress = StudyProgress(study)
-    progress.begin(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
+    progress.set_protocol(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
     first = steps_for(progress.protocol(), 0)[0]
     study.add_trial(trial_of(first, 1))
     progress.enroll("T001")
@@ -277,16 +277,16 @@ def test_the_protocol_of_a_running_study_cannot_change(study):
     assert progress.protocol() is None
     with pytest.raises(InputError, match="no protocol yet"):
         progress.enroll("T001")
-    progress.begin(protocol())
+    progress.set_protocol(protocol())
     with pytest.raises(InputError, match="started with another protocol"):
-        progress.begin(protocol(repetitions=2))
+        progress.set_protocol(protocol(repetitions=2))
     with pytest.raises(InputError, match="not enrolled"):
         progress.progress("T002")
 
 
 def test_the_place_of_a_deleted_trainee_is_reused(study):
     progress = StudyProgress(study)
-    progress.begin(protocol())
+    progress.set_protocol(protocol())
     assert (progress.enroll("T001"), progress.enroll("T002")) == (0, 1)
     progress.skip("T001", "hmd/before/ssq", "left before it began")
     study.delete_trainee("T001")

@@ -25,14 +25,14 @@ def study(tmp_path):
     with Study.open(tmp_path / "study.db") as study:
         study.create_trainee("A")
         progress = StudyProgress(study)
-        progress.begin(
+        progress.set_protocol(
             replace(
                 read_study_protocol(SHIPPED),
                 tasks=("task-1",),
                 modes=("desktop",),
                 repetitions=2,
                 trial_run_min=0.0,
-                asked=(),
+                questionnaires=(),
                 break_between_tasks_min=0.0,
             )
         )

@@ -16,9 +16,9 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.database import Patience
+from rastrainer.study.database.database import LockWait, StudyBusyError
 from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
-from rastrainer.study.database.study import Study, StudyBusyError
+from rastrainer.study.database.study import Study
 from Testing.domain.trial.trial_records import make_record
 from Testing.forked_child import in_child
 
@@ -280,10 +280,10 @@ def locked(tmp_path):
 
 def test_a_study_locked_by_another_program_is_reported(locked):
     with pytest.raises(StudyBusyError, match=r"Another program has the study .* locked; try again"):
-        Study.open(locked, Patience(0.01))
+        Study.open(locked, LockWait(0.01))
 
 
-class CountedPatience(Patience):
+class CountedLockWait(LockWait):
     """Notes how long SQLite is allowed to wait each time."""
 
     def __init__(self):
@@ -298,27 +298,27 @@ class CountedPatience(Patience):
 
 
 def test_a_window_waits_only_once_for_a_lock(locked):
-    patience = CountedPatience()
+    lock_wait = CountedLockWait()
     for _ in range(5):
         with pytest.raises(StudyBusyError):
-            Study.open(locked, patience)
-    assert sum(patience.allowed) == 0.05
-    patience.now = 1.5
+            Study.open(locked, lock_wait)
+    assert sum(lock_wait.allowed) == 0.05
+    lock_wait.now = 1.5
     with pytest.raises(StudyBusyError):
-        Study.open(locked, patience)
-    assert sum(patience.allowed) == 0.1
+        Study.open(locked, lock_wait)
+    assert sum(lock_wait.allowed) == 0.1
 
 
 def test_an_open_study_reports_a_lock_and_is_usable_afterwards(tmp_path):
-    path, patience = tmp_path / "study.db", CountedPatience()
-    with Study.open(path, patience) as study:
+    path, lock_wait = tmp_path / "study.db", CountedLockWait()
+    with Study.open(path, lock_wait) as study:
         other = sqlite3.connect(path, isolation_level=None)
         other.execute("BEGIN EXCLUSIVE")
-        patience.allowed.clear()
+        lock_wait.allowed.clear()
         for _ in range(5):
             with pytest.raises(StudyBusyError):
                 study.trainees()
-        assert sum(patience.allowed) == 0.05
+        assert sum(lock_wait.allowed) == 0.05
         other.execute("ROLLBACK")
         other.close()
         assert study.create_trainee("a").pseudonym == "a"

@@ -55,7 +55,7 @@ def test_errors_in_depth_and_along_the_skin_are_distinguished():
     errors[3] = 4.0 * NORMALS[3]
     errors[9] = 4.0 * TANGENTS[9]
     findings = {f.label: f for f in touch_findings(registered(errors), NORMALS)}
-    assert {label for label, f in findings.items() if f.hurts} == {"4", "10"}
+    assert {label for label, f in findings.items() if f.is_outlier} == {"4", "10"}
     assert findings["4"].reasons == (Reason.DEPTH,)
     assert findings["10"].reasons == (Reason.ASIDE,)
     assert "mm above the skin" in findings["4"].sentence

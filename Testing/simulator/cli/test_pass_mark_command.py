@@ -92,7 +92,7 @@ def test_the_mark_is_written_into_the_protocol_of_the_next_study(study, tmp_path
     mark = float(capsys.readouterr().out.split()[2])
     after = read_study_protocol(protocol)
     assert after.pass_mark == round(mark)
-    assert (after.tasks, after.asked) == (before.tasks, before.asked)
+    assert (after.tasks, after.questionnaires) == (before.tasks, before.questionnaires)
 
 
 @pytest.mark.parametrize(

@@ -231,7 +231,7 @@ def test_an_incomplete_cohort_is_reported_when_asked_for_and_the_page_says_so(co
 
 def test_a_cohort_without_any_trial_yet_is_reported_too(tmp_path):
     with Study.open(tmp_path / DATABASE) as study:
-        CohortStore(study).begin({"seed": 1}, 40)
+        CohortStore(study).start({"seed": 1}, 40)
     with pytest.raises(IncompleteStudyError, match="0 of 40 trials"):
         read_study_data(tmp_path / DATABASE)
 
@@ -239,7 +239,7 @@ def test_a_cohort_without_any_trial_yet_is_reported_too(tmp_path):
 def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):
     with Study.open(tmp_path / DATABASE) as study:
         store = CohortStore(study)
-        store.begin({"seed": 1}, 40)
+        store.start({"seed": 1}, 40)
         store.add_stuck("00000000-0000-0000-0000-000000000001")
         assert store.has_played("00000000-0000-0000-0000-000000000001")
         assert "0 of 40 trials are there, and 1 got stuck" in store.state().gap

@@ -1,12 +1,11 @@
 """Trajectories as a Motion-BIDS dataset (BIDS specification 1.10, motion).
 
-Every trial whose journal is there becomes `motion/` files of its trainee: the tip's position and
-the clearance at 50 Hz in the trial's own time, and its touches as events. No dates are written.
+Each trial with a journal becomes `motion/` files of its trainee: the tip's position and the
+clearance at 50 Hz in trial time, and the touches as events. Dates are not exported.
 """
 
 from __future__ import annotations
 
-import json
 import re
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
@@ -17,7 +16,7 @@ import numpy as np
 
 import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.files.writing import make_empty_folder, write_text
+from rastrainer.files.writing import make_empty_folder, write_json, write_text
 from rastrainer.motion.path_metrics import resample
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import RATE_HZ
@@ -40,11 +39,11 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
 
     Args:
         data: The study.
-        folder: Where to; it must be empty or not there, so that nothing old is mixed in.
-        find_trajectory: From a trial's UUID to its trajectory; None where there is none.
+        folder: Target; must be empty or missing.
+        find_trajectory: Returns the trajectory of a trial's UUID, or None.
 
     Raises:
-        InputError: the folder holds something, cannot be written, or no trial has a trajectory.
+        InputError: the folder is not empty or cannot be written, or no trial has a trajectory.
     """
     make_empty_folder(folder)
     labels = participant_labels(data.trainees)
@@ -66,7 +65,7 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
 
 
 def participant_labels(trainees: tuple[str, ...]) -> dict[str, str]:
-    """Return for each pseudonym a label of letters and digits, all different."""
+    """Return a unique alphanumeric label for each pseudonym."""
     labels: dict[str, str] = {}
     for index, trainee in enumerate(trainees, start=1):
         label = re.sub(r"[^A-Za-z0-9]", "", trainee) or f"P{index:03d}"
@@ -89,11 +88,11 @@ def _write_trial(
     )
     lines = ["\t".join(f"{value:.4f}" for value in row) for row in values]
     write_text(place / f"{whole}_motion.tsv", "\n".join(lines) + "\n")
-    write_text(place / f"{whole}_motion.json", _json(_motion_json(trial, trajectory)))
+    write_json(place / f"{whole}_motion.json", _motion_json(trial, trajectory))
     rows = [("name", "component", "type", "tracked_point", "units"), *CHANNELS]
     write_text(place / f"{whole}_channels.tsv", _tsv(rows))
     write_text(place / f"{start}_{end}_events.tsv", _tsv(_events(trajectory)))
-    write_text(place / f"{start}_{end}_events.json", _json(_EVENTS_JSON))
+    write_json(place / f"{start}_{end}_events.json", _EVENTS_JSON)
 
 
 def _task_label(task: str) -> str:
@@ -165,7 +164,7 @@ def _write_dataset(folder: Path, data: StudyData, labels: Mapping[str, str]) -> 
         "Authors": ["The laboratory that ran the study"],
         "GeneratedBy": [{"Name": "RASTrainer", "Version": rastrainer.__version__}],
     }
-    write_text(folder / "dataset_description.json", _json(description))
+    write_json(folder / "dataset_description.json", description)
     write_text(
         folder / "README.md",
         f"# {data.title}\n\nMovements of a simulated surgical robot, teleoperated by trainees who "
@@ -176,15 +175,11 @@ def _write_dataset(folder: Path, data: StudyData, labels: Mapping[str, str]) -> 
     rows = [("participant_id", "species", "pseudonym")]
     rows += [(f"sub-{label}", "homo sapiens", name) for name, label in labels.items()]
     write_text(folder / "participants.tsv", _tsv(rows))
-    write_text(
+    write_json(
         folder / "participants.json",
-        _json({"pseudonym": {"Description": "The trainee's name in the study."}}),
+        {"pseudonym": {"Description": "The trainee's name in the study."}},
     )
 
 
 def _tsv(rows: Sequence[tuple[str, ...]]) -> str:
     return "".join("\t".join(cell.replace("\t", " ") for cell in row) + "\n" for row in rows)
-
-
-def _json(value: Any) -> str:
-    return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

@@ -1,4 +1,4 @@
-"""A trial as files that 3D Slicer opens: points as markups, the transform, residuals as a table."""
+"""A trial as files for 3D Slicer: points as markups, the transform, residuals as a table."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import csv_text
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.files.writing import write_text
-from rastrainer.registration.registration import RIGID
+from rastrainer.files.writing import make_folder, write_text
+from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.values import StoredTrial
 
 _TO_LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
@@ -21,16 +20,13 @@ _TO_LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
 def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     """Write a trial's files and return their paths.
 
-    `touched-world.mrk.json` are the touches in the robot's frame, `touched-ras.mrk.json` the same
-    after the rigid registration, `WorldToRas.tfm` that registration, `residuals.csv` its table.
+    `touched-world.mrk.json` has the touches in the robot's frame, `touched-ras.mrk.json` the same
+    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+    make_folder(folder)
     record, rigid = trial.record, trial.registrations.get(RIGID)
     world = folder / "touched-world.mrk.json"
     write_markups(world, PointList(record.labels, record.positions_mm))
@@ -51,7 +47,7 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
 
 
 def transform_text(to_parent: np.ndarray) -> str:
-    """Return a linear transform, (4, 4) float in RAS mm, as ITK's text, which Slicer opens.
+    """Return a linear transform, (4, 4) float in RAS mm, as an ITK text file for Slicer.
 
     ITK's files are in LPS and map from the parent.
     """

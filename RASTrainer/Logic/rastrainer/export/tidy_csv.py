@@ -1,4 +1,4 @@
-"""One trial, touch, score or answer a row: what R, Python and spreadsheets read at once."""
+"""Tidy tables for R, Python and spreadsheets: one trial, touch, score or answer per row."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
-from rastrainer.registration.registration import RIGID
+from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
@@ -38,12 +38,12 @@ QUESTIONNAIRE_COLUMNS = ("trainee", "mode", "step", "questionnaire")
 
 
 def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> int:
-    """Write all trials of trainees, trial runs too, as a CSV file; return their number.
+    """Write all trials of trainees, including trial runs, as CSV; return their number.
 
-    Where trials were aborted they go into a second file beside it, `NAME-aborted.csv`.
+    Aborted trials go into a second file, `NAME-aborted.csv`.
 
     Raises:
-        InputError: the study has no such trainee, or the file cannot be written.
+        InputError: an unknown trainee, or the file cannot be written.
     """
     pseudonyms = tuple(pseudonyms)
     rows = [row for pseudonym in pseudonyms for row in trial_rows(study.history(pseudonym))]
@@ -56,13 +56,13 @@ def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> 
 
 
 def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
-    """Write all trials, trial runs too, of those who agreed to research as a CSV file.
+    """Write all trials of consenting trainees, including trial runs, as CSV.
 
     Returns:
-        The number of trials, and of the trainees who did not agree and are left out.
+        The number of trials, and the number of trainees without consent, who are left out.
 
     Raises:
-        InputError: nobody agreed, or the file cannot be written.
+        InputError: nobody consented, or the file cannot be written.
     """
     everyone = (*study.trainees(), *study.trainees(archived=True))
     agreed = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
@@ -73,7 +73,7 @@ def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
 
 
 def trials_csv(trials: Sequence[TrialRow]) -> str:
-    """Return trials as CSV text; an empty cell is not known. Units end the columns' names."""
+    """Return trials as CSV; unknown values are empty, column names end with the unit."""
     names = sorted({name for trial in trials for name in trial.values})
     rows = [
         [
@@ -91,7 +91,7 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
 
 
 def aborted_csv(trials: Iterable[StoredAborted]) -> str:
-    """Return aborted trials as CSV text, with why a study's step was then played again."""
+    """Return aborted trials as CSV, with the reasons of repeated steps."""
     rows = []
     for stored in trials:
         record = stored.record
@@ -118,7 +118,7 @@ def aborted_csv(trials: Iterable[StoredAborted]) -> str:
 
 
 def aborted_touches_csv(trials: Iterable[StoredAborted]) -> str:
-    """Return the touches of aborted trials that were kept until then, as `touches_csv`."""
+    """Return the kept touches of aborted trials, like `touches_csv`."""
     rows = [
         [
             *(plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)),
@@ -133,10 +133,10 @@ def aborted_touches_csv(trials: Iterable[StoredAborted]) -> str:
 
 
 def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
-    """Return the kept touches of trials as CSV text, in the order they were made.
+    """Return the kept touches of trials as CSV, in order.
 
-    Positions are the tip's in `World`; simulated time tells the time from one touch to the next,
-    pauses included. A residual is that of the rigid fit, empty for a touch that it left out.
+    Positions are those of the tip in `World`; simulated times include pauses. Residuals are of the
+    rigid fit, empty for points left out of it.
     """
     rows = []
     for trial, stored in trials:
@@ -158,9 +158,9 @@ def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
 
 
 def scores_csv(data: StudyData) -> str:
-    """Return the questionnaires as CSV text, one score a row."""
+    """Return questionnaire scores as CSV, one per row."""
     rows = [
-        [*_asked(answered), scale, _number(score)]
+        [*_step_cells(answered), scale, _number(score)]
         for answered in data.answers
         for scale, score in answered.scores.items()
     ]
@@ -168,9 +168,9 @@ def scores_csv(data: StudyData) -> str:
 
 
 def answers_csv(data: StudyData) -> str:
-    """Return the questionnaires as CSV text, one answered item a row."""
+    """Return questionnaire answers as CSV, one item per row."""
     rows = [
-        [*_asked(answered), item.name, answer]
+        [*_step_cells(answered), item.name, answer]
         for answered in data.answers
         for item, answer in zip(
             find_questionnaire(answered.step.questionnaire).items, answered.answers, strict=True
@@ -179,7 +179,7 @@ def answers_csv(data: StudyData) -> str:
     return csv_text([*QUESTIONNAIRE_COLUMNS, "item", "answer"], rows)
 
 
-def _asked(answered: QuestionnaireAnswers) -> list[str]:
+def _step_cells(answered: QuestionnaireAnswers) -> list[str]:
     step = answered.step
     return [plain_cell(answered.trainee), step.mode, step.name, step.questionnaire]
 
@@ -194,7 +194,7 @@ def csv_text(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 
 
 def plain_cell(text: str) -> str:
-    """Return a text that a spreadsheet does not take for a formula."""
+    """Return text that a spreadsheet does not interpret as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
 
 

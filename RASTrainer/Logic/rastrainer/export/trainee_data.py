@@ -1,13 +1,12 @@
-"""What a trainee may ask for: a copy of everything about them, and its complete deletion."""
+"""A trainee's right to their data: a complete copy, and complete deletion."""
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from rastrainer.files.writing import write_text
+from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
@@ -18,13 +17,10 @@ FORMAT = "RASTrainer trainee 3"
 
 
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
-    """Write everything that a study holds about a trainee as one JSON file.
-
-    Returns:
-        The number of finished trials in it.
+    """Write all data of a trainee as one JSON file and return the number of finished trials.
 
     Raises:
-        InputError: the study has no such trainee, or the file cannot be written.
+        InputError: an unknown trainee, or the file cannot be written.
     """
     trainee, trials = study.trainee(pseudonym), study.history(pseudonym)
     document = {
@@ -41,7 +37,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
             for stored in AbortedTrials(study).of(pseudonym)
         ],
     }
-    write_text(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
+    write_json(path, document)
     return len(trials)
 
 
@@ -65,13 +61,13 @@ def _trial_json(trial: StoredTrial) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Erasure:
-    """What was deleted, and what may be left.
+    """What was deleted, and what may remain.
 
     Attributes:
-        trials: How many finished ones were deleted from the study.
-        journals: How many were deleted, of unfinished trials too.
-        missing: UUIDs of the deleted trials, aborted ones too, whose journals were not there.
-        unreadable: Journals that do not say whose they are.
+        trials: Number of finished trials deleted from the study.
+        journals: Number of deleted journals, including those of unfinished trials.
+        missing: UUIDs of deleted trials whose journals were not found.
+        unreadable: Journals that name no trainee.
     """
 
     trials: int
@@ -81,7 +77,7 @@ class Erasure:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """One sentence for each kind of thing that may be left; none where nothing is."""
+        """One sentence for each kind of data that may remain."""
         sentences = []
         if self.missing:
             names = ", ".join(f"*_{trial_id}{SUFFIX}" for trial_id in self.missing)
@@ -98,16 +94,16 @@ class Erasure:
 def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure:
     """Delete a trainee for good.
 
-    The journals go first: if one cannot be deleted, the trainee is still in the study and the
-    deletion can be repeated. Exports that were made before are the lab's to delete.
+    Journals are deleted first: if one cannot be deleted, the trainee remains and the deletion can
+    be repeated. Earlier exports must be deleted by the lab.
 
     Args:
-        study: In which the trainee is.
-        pseudonym: Of the trainee.
-        records: Folder of the simulator's journals; None where they are elsewhere.
+        study: The trainee's study.
+        pseudonym: The trainee.
+        records: The simulator's folder of journals; None if they are elsewhere.
 
     Raises:
-        InputError: there is no such trainee, or a journal cannot be deleted.
+        InputError: an unknown trainee, or a journal cannot be deleted.
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
     ids += [aborted.record.trial_id for aborted in AbortedTrials(study).of(pseudonym)]

@@ -1,4 +1,4 @@
-"""Trials and questionnaires as xAPI statements (IEEE 9274.1.1, xAPI 1.0.3) for a record store."""
+"""Trials and questionnaires as xAPI statements (IEEE 9274.1.1, xAPI 1.0.3)."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ NAMESPACE = uuid.UUID("6f0f2f3e-6f53-5d8f-9a1a-7f7a52415354")
 
 
 def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, Any]]:
-    """Return a statement for each trial, aborted ones too, and each answered questionnaire.
+    """Return a statement for each finished or aborted trial and each answered questionnaire.
 
     Args:
-        data: The study; a trial's statement has the trial's UUID, so that twice is once.
-        home_page: IRL of the lab's system, which makes the pseudonyms unique.
+        data: The study; statements have the trials' UUIDs, so duplicates are recognized.
+        home_page: IRL of the lab's system, which makes pseudonyms unique.
     """
     mark = pass_mark_of(data.protocol)
     trials = [_trial(trial, mark, home_page) for trial in data.trials if trial.trial_id]
@@ -41,12 +41,12 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
 
 
 def statements_text(data: StudyData, home_page: str = HOME_PAGE) -> str:
-    """Return the statements as the JSON array that a record store takes."""
+    """Return the statements as a JSON array for a learning record store."""
     return json.dumps(statements(data, home_page), indent=1, allow_nan=False) + "\n"
 
 
 def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
-    """Return the statement that a trial was completed, at its end; the duration has no pauses."""
+    """Return the statement of a completed trial; its duration excludes pauses."""
     result: dict[str, Any] = {
         "completion": True,
         "duration": f"PT{trial.values['completion_time_s']:.2f}S",
@@ -66,20 +66,11 @@ def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
         result["score"] = {"scaled": round(score / 100, 6), "raw": score, "min": 0, "max": 100}
         result["success"] = passes(score, trial.acceptable, mark)
         context[f"{home_page}/xapi/pass-mark"] = mark
-    return {
-        "id": trial.trial_id,
-        "version": VERSION,
-        "actor": _actor(trial.trainee, home_page),
-        "verb": _verb("completed"),
-        "object": _activity(f"{home_page}/tasks/{trial.task}", task_title(trial.task), SIMULATION),
-        "result": result,
-        "context": {"platform": f"RASTrainer, {mode_title(trial.mode)}", "extensions": context},
-        "timestamp": trial.completed_utc,
-    }
+    return _trial_statement("completed", trial, trial.completed_utc, result, context, home_page)
 
 
 def _aborted(record: AbortedTrial, home_page: str) -> dict[str, Any]:
-    """Return the statement that a trial was started and not finished."""
+    """Return the statement of an aborted trial."""
     result: dict[str, Any] = {
         "completion": False,
         "duration": f"PT{record.elapsed_s:.2f}S",
@@ -91,25 +82,32 @@ def _aborted(record: AbortedTrial, home_page: str) -> dict[str, Any]:
     }
     if record.counts_as_failed:
         result["success"] = False
+    context = {
+        f"{home_page}/xapi/mode": record.mode,
+        f"{home_page}/xapi/started": record.started_utc,
+        f"{home_page}/xapi/aborted-in": record.phase,
+        f"{home_page}/xapi/aborted-because": record.reason,
+    }
+    return _trial_statement("terminated", record, record.aborted_utc, result, context, home_page)
+
+
+def _trial_statement(
+    verb: str,
+    trial: TrialRow | AbortedTrial,
+    timestamp: str,
+    result: dict[str, Any],
+    context: dict[str, Any],
+    home_page: str,
+) -> dict[str, Any]:
     return {
-        "id": record.trial_id,
+        "id": trial.trial_id,
         "version": VERSION,
-        "actor": _actor(record.trainee, home_page),
-        "verb": _verb("terminated"),
-        "object": _activity(
-            f"{home_page}/tasks/{record.task}", task_title(record.task), SIMULATION
-        ),
+        "actor": _actor(trial.trainee, home_page),
+        "verb": _verb(verb),
+        "object": _activity(f"{home_page}/tasks/{trial.task}", task_title(trial.task), SIMULATION),
         "result": result,
-        "context": {
-            "platform": f"RASTrainer, {mode_title(record.mode)}",
-            "extensions": {
-                f"{home_page}/xapi/mode": record.mode,
-                f"{home_page}/xapi/started": record.started_utc,
-                f"{home_page}/xapi/aborted-in": record.phase,
-                f"{home_page}/xapi/aborted-because": record.reason,
-            },
-        },
-        "timestamp": record.aborted_utc,
+        "context": {"platform": f"RASTrainer, {mode_title(trial.mode)}", "extensions": context},
+        "timestamp": timestamp,
     }
 
 

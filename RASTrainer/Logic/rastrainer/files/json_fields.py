@@ -1,4 +1,4 @@
-"""Read a JSON file that nobody has checked yet: each field with its type, range and a sentence."""
+"""Read untrusted JSON files: each field with its type and range, and an error that names it."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ T = TypeVar("T")
 
 
 class Fields:
-    """The fields of a JSON object; what is missing or wrong raises `InputError`.
+    """The fields of a JSON object; a missing or invalid one raises `InputError`.
 
-    Sentences name the file and the field by its path, such as `cameras.far.viewAngleDeg`.
+    The error names the file and the path of the field, such as `cameras.far.viewAngleDeg`.
     """
 
     def __init__(self, values: dict[str, Any], file: Path, path: str = "") -> None:
@@ -26,20 +26,20 @@ class Fields:
         self._path = path
 
     def names(self) -> tuple[str, ...]:
-        """Return the names of all fields, in their order."""
+        """Return the names of all fields, in order."""
         return tuple(self._values)
 
-    def text(self, name: str, longest: int = 200) -> str:
-        """Return printable text of 1 to `longest` characters."""
-        return self._accepted(name, json_checks.text(longest))
+    def text(self, name: str, max_length: int = 200) -> str:
+        """Return printable text of 1 to `max_length` characters."""
+        return self._accepted(name, json_checks.text(max_length))
 
-    def number(self, name: str, lowest: float, highest: float) -> float:
-        """Return a finite number from `lowest` to `highest`."""
-        return self._accepted(name, json_checks.number(lowest, highest))
+    def number(self, name: str, minimum: float, maximum: float) -> float:
+        """Return a finite number from `minimum` to `maximum`."""
+        return self._accepted(name, json_checks.number(minimum, maximum))
 
-    def whole_number(self, name: str, lowest: int, highest: int) -> int:
-        """Return a whole number from `lowest` to `highest`, which may be written as 3.0."""
-        check = json_checks.whole_number(lowest, highest)
+    def whole_number(self, name: str, minimum: int, maximum: int) -> int:
+        """Return an integer from `minimum` to `maximum`, also if written as 3.0."""
+        check = json_checks.whole_number(minimum, maximum)
 
         def check_whole(value: Any) -> int:
             is_whole = isinstance(value, float) and value.is_integer()
@@ -48,42 +48,42 @@ class Fields:
         return self._accepted(name, check_whole)
 
     def one_of(self, name: str, choices: tuple[str, ...]) -> str:
-        """Return one of the given words."""
+        """Return one of the given choices."""
         return self._accepted(name, json_checks.one_of(*choices))
 
     def texts(
-        self, name: str, fewest: int, most: int, choices: tuple[str, ...] = ()
+        self, name: str, min_count: int, max_count: int, choices: tuple[str, ...] = ()
     ) -> tuple[str, ...]:
         """Return a list of different texts, each printable and, if given, one of the choices."""
-        return self._accepted(name, json_checks.texts(fewest, most, choices))
+        return self._accepted(name, json_checks.texts(min_count, max_count, choices))
 
     def numbers(self, name: str, count: int, limit: float) -> list[float]:
         """Return a list of `count` finite numbers, each within ±`limit`."""
         return list(self._accepted(name, json_checks.numbers(count, limit)))
 
     def fields(self, name: str) -> Fields:
-        """Return an object's own fields."""
+        """Return the fields of an object."""
         value = self._values.get(name)
         if not isinstance(value, dict):
             raise self.error(name, "an object")
         return Fields(value, self._file, f"{self._path}{name}.")
 
-    def list_of_fields(self, name: str, fewest: int, most: int) -> list[Fields]:
-        """Return the fields of each object of a list of `fewest` to `most`."""
+    def list_of_fields(self, name: str, min_count: int, max_count: int) -> list[Fields]:
+        """Return the fields of each object of a list of `min_count` to `max_count`."""
         values = self._values.get(name)
         if (
             not isinstance(values, list)
-            or not fewest <= len(values) <= most
+            or not min_count <= len(values) <= max_count
             or not all(isinstance(value, dict) for value in values)
         ):
-            raise self.error(name, f"a list of {fewest} to {most} objects")
+            raise self.error(name, f"a list of {min_count} to {max_count} objects")
         paths = (f"{self._path}{name}[{index}]." for index in range(len(values)))
         return [Fields(v, self._file, path) for v, path in zip(values, paths, strict=True)]
 
     def file(self, name: str) -> Path:
-        """Return a file that lies in this file's folder or below it; symbolic links are followed.
+        """Return a file in this file's folder or below; symbolic links are followed.
 
-        It need not exist: who reads it says so.
+        It need not exist.
         """
         relative = self.text(name)
         folder = self._file.parent.resolve()
@@ -93,7 +93,7 @@ class Fields:
         return path
 
     def error(self, name: str, wanted: str) -> InputError:
-        """Return the error that says what a field must be."""
+        """Return the error that states what a field must be."""
         return InputError(f"{self._field(name)} must be {wanted}.")
 
     def _accepted(self, name: str, check: Callable[[Any], T]) -> T:
@@ -104,7 +104,7 @@ class Fields:
 
 
 def read_fields(path: Path) -> Fields:
-    """Read a file that holds one JSON object.
+    """Read a file with one JSON object.
 
     Raises:
         InputError: missing, larger than 1 MiB, or not one JSON object with finite numbers.

@@ -20,7 +20,7 @@ SCHEMA = (
     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/"
     "Resources/Schema/markups-schema-v1.0.3.json#"
 )
-"""The name by which Slicer knows its format; nothing is fetched from there."""
+"""Identifies the format for Slicer; nothing is downloaded."""
 _SCHEMA_MARK = "markups-schema-v1."
 _TO_RAS = {"RAS": np.array([1.0, 1.0, 1.0]), "LPS": np.array([-1.0, -1.0, 1.0])}
 
@@ -29,8 +29,8 @@ def read_markups(path: str | os.PathLike[str]) -> PointList:
     """Return the points of a markups file with one point list, in RAS mm.
 
     Raises:
-        InputError: the file cannot be read, is no markups file of Slicer, holds another markup or
-            several, other units than mm, or a point that is not placed.
+        InputError: unreadable, not a markups file, not exactly one point list, not in mm, or a
+            point is not placed.
     """
     document = read_json(path, LIMIT_BYTES)
     try:
@@ -40,7 +40,7 @@ def read_markups(path: str | os.PathLike[str]) -> PointList:
 
 
 def write_markups(path: str | os.PathLike[str], point_list: PointList) -> None:
-    """Write points in RAS mm as a markups file that Slicer opens, whole or not at all.
+    """Write points in RAS mm as a markups file for Slicer, whole or not at all.
 
     Raises:
         InputError: the file cannot be written.
@@ -87,7 +87,7 @@ def _point_list(document: Any) -> PointList:
         raise InputError("its markup must be a point list (type Fiducial).")
     if markup.get("coordinateUnits", "mm") not in ("mm", ["mm", "mm", "mm"]):
         raise InputError("its coordinates must be in mm.")
-    # Slicer takes LPS where a file does not say.
+    # Slicer assumes LPS if a file has no coordinate system.
     system = markup.get("coordinateSystem", "LPS")
     if not isinstance(system, str) or system not in _TO_RAS:
         raise InputError("its coordinate system must be LPS or RAS.")
@@ -117,13 +117,12 @@ def _control_point(row: int, item: Any) -> tuple[str, tuple[float, ...]]:
 
 
 def read_points(path: str | os.PathLike[str]) -> PointList:
-    """Return the points of a file in mm; a name that ends in `.json` means a markups file.
+    """Return the points of a file in mm; a name ending in `.json` means markups.
 
-    Points of markups files are in RAS; a CSV file is taken as it is. Its column `label` may be
-    empty or absent.
+    Markups are in RAS; a CSV file is taken as it is, its column `label` is optional.
 
     Raises:
-        InputError: the file cannot be used; the sentence says what would be right.
+        InputError: the file cannot be used.
     """
     if os.fspath(path).lower().endswith(".json"):
         return read_markups(path)
@@ -142,14 +141,13 @@ def read_points(path: str | os.PathLike[str]) -> PointList:
 def read_point_numbers(
     path: str | os.PathLike[str], column: str, labels: Sequence[str], lowest: float, highest: float
 ) -> np.ndarray:
-    """Return the numbers of a column for points of these labels, (n,) float, in their order.
+    """Return the numbers in a column for the points with these labels, (n,) float, in order.
 
-    Rows are found by their column `label`; without one, their order is that of the points. Further
-    columns do not matter, so that a file of points may have the numbers in a column of its own.
+    Rows are matched by the column `label`, or by order without one. Other columns are ignored, so
+    the numbers may be in a file of points.
 
     Raises:
-        InputError: the file cannot be used, a number is not within the limits, or a point has none
-            or two.
+        InputError: the file cannot be used, a number is out of range, or a point has none or two.
     """
     rows = read_rows(path, (column,), optional=("label",))
     numbers = [number_in(path, line, cells, column, lowest, highest) for line, cells in rows]

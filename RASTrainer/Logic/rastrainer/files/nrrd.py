@@ -1,9 +1,8 @@
-"""One image in one NRRD file: as much of the format as a scenario's volume needs.
+"""One image in one NRRD file: the part of the format that a scenario's volume needs.
 
-The format is Teem's "nearly raw raster data": lines of text, an empty line, then the voxels. Read
-are three axes of whole numbers, compressed by gzip, in a space that is known. Whatever a file says
-is checked before its voxels are unpacked; names, comments and other texts of it are read over, and
-never written.
+The format is Teem's "nearly raw raster data": text lines, an empty line, then the voxels. Supported
+are three axes of gzip-compressed integers in a known space. The header is checked before the voxels
+are unpacked; comments and key/value texts are ignored and never written.
 """
 
 from __future__ import annotations
@@ -26,11 +25,11 @@ MAX_FILE_BYTES = 40_000_000
 MAX_VOXELS = 50_000_000
 MAX_AXIS_VOXELS = 2048
 MAX_ORIGIN_MM = 2000.0
-"""Of the first voxel from the origin of the patient's coordinates, along each axis."""
+"""Distance of the first voxel from the origin, along each axis."""
 
 SPACINGS_MM = (0.1, 10.0)
 MIN_AXIS_VOLUME = 0.1
-"""Of the box that unit steps along the axes span: less, and they lie almost in a plane."""
+"""Of the box spanned by unit steps along the axes; smaller means almost coplanar axes."""
 
 _MAGIC = re.compile(r"NRRD000[1-5]")
 _MAX_HEADER_BYTES = 16_384
@@ -46,7 +45,7 @@ _SPACES = {
     "right-anterior-superior": (1.0, 1.0, 1.0),
     "ras": (1.0, 1.0, 1.0),
 }
-"""What makes a place in the file's space one in RAS."""
+"""Signs that convert to RAS."""
 
 _ELSEWHERE = ("data file", "datafile", "line skip", "lineskip", "byte skip", "byteskip")
 _VECTOR = re.compile(r"\(([^()]*)\)")
@@ -54,11 +53,11 @@ _VECTOR = re.compile(r"\(([^()]*)\)")
 
 @dataclass(frozen=True)
 class _Header:
-    """What the voxels are, and where they lie.
+    """Type and geometry of the voxels.
 
     Attributes:
-        dtype: of the voxels, as they are stored.
-        shape: how many there are along each axis.
+        dtype: as stored.
+        shape: number of voxels along each axis.
         ijk_to_ras: (4, 4) float, mm.
     """
 
@@ -71,8 +70,7 @@ def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm.
 
     Raises:
-        InputError: the file is missing, or is not as the module's description says; the sentence
-            names it and what is wrong.
+        InputError: the file is missing or not supported.
     """
     content = read_bytes(path, MAX_FILE_BYTES)
     header, start = _read_header(path, content)
@@ -83,7 +81,7 @@ def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
-    """Write an image, compressed as well as gzip can; the same image gives the same bytes.
+    """Write a gzip-compressed image; the same image gives the same bytes.
 
     Args:
         path: of the file.
@@ -108,14 +106,14 @@ def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
         f"space origin: {_vector(to_lps[:3, 3])}",
     )
     packed = io.BytesIO()
-    # Without a time and a name, which `gzip.open` would write.
+    # Without the time and name that `gzip.open` would write.
     with gzip.GzipFile("", "wb", 9, packed, mtime=0) as file:
         file.write(values.astype(values.dtype.newbyteorder("<")).tobytes(order="F"))
     write_bytes(path, "\n".join(lines).encode("ascii") + b"\n\n" + packed.getvalue())
 
 
 def _read_header(path: Path, content: bytes) -> tuple[_Header, int]:
-    """Return the header of a file and where its voxels begin."""
+    """Return the header of a file and the offset of its voxels."""
     head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
     text, separator, _ = head.partition(b"\n\n")
     magic, _, rest = text.decode("latin-1").partition("\n")
@@ -133,7 +131,7 @@ def _fields(path: Path, text: str) -> dict[str, str]:
     fields: dict[str, str] = {}
     for line in text.split("\n"):
         name, separator, value = line.partition(":")
-        # "#" begins a comment, and "name:=value" is a text of whoever wrote the file.
+        # "#" starts a comment, "name:=value" is a key/value text.
         if line.startswith("#") or not separator or value.startswith("="):
             continue
         name = name.strip().lower()
@@ -207,7 +205,7 @@ def _vectors(path: Path, fields: dict[str, str], name: str, count: int) -> np.nd
 
 
 def _unpacked(path: Path, packed: bytes, count: int) -> bytes:
-    """Return exactly so many bytes; more or fewer are refused, whatever would be unpacked."""
+    """Return exactly `count` bytes; more or fewer are refused."""
     stream = zlib.decompressobj(wbits=31)
     try:
         content = stream.decompress(packed, count + 1)

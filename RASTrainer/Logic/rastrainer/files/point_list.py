@@ -18,11 +18,11 @@ class PointList:
     """Points in mm.
 
     Attributes:
-        labels: Names of the points, all different; empty where the points have none.
+        labels: Unique names of the points; empty if the points have none.
         points: (n, 3) float, finite, n ≥ 1.
 
     Raises:
-        InputError: on construction, if they are not so.
+        InputError: on construction, if they are invalid.
     """
 
     labels: tuple[str, ...]
@@ -51,8 +51,8 @@ class PointList:
 def pair(moving: PointList, fixed: PointList) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Return the labels and both (n, 3) point sets of two lists, paired row by row.
 
-    Where both lists are labeled, equal labels make a pair and the moving list gives the order;
-    otherwise the order of both lists makes the pairs.
+    Points are paired by label if both lists have labels, in the moving list's order; otherwise by
+    order.
 
     Raises:
         InputError: a point has no partner.
@@ -71,17 +71,17 @@ def pair(moving: PointList, fixed: PointList) -> tuple[tuple[str, ...], np.ndarr
 
 
 def _check_partners(moving: PointList, fixed: PointList) -> None:
-    lonely = []
+    unpaired = []
     for which, here, there in (
         ("moving", moving.labels, set(fixed.labels)),
         ("fixed", fixed.labels, set(moving.labels)),
     ):
         missing = [label for label in here if label not in there]
         if missing:
-            lonely.append(f"{_some(missing)} only in the {which} list")
-    if lonely:
+            unpaired.append(f"{_some(missing)} only in the {which} list")
+    if unpaired:
         raise InputError(
-            f"Points are paired by their labels, but {' and '.join(lonely)}; "
+            f"Points are paired by their labels, but {' and '.join(unpaired)}; "
             "give both lists the same labels, or none."
         )
 

@@ -17,11 +17,11 @@ from rastrainer.finite_json import decode_finite_json
 
 
 def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
-    """Return what a file holds.
+    """Return the content of a file.
 
     Raises:
-        InputError: no such file, no regular file, not readable, empty, or larger than the limit
-            (checked before it is read).
+        InputError: missing, not a regular file, unreadable, empty, or larger than the limit, which
+            is checked before reading.
     """
     try:
         # Opening a pipe would wait for its writer.
@@ -54,7 +54,7 @@ def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
 
 
 def decode_text(content: bytes, what: str) -> str:
-    """Return UTF-8 text without its byte order mark; `what` begins the sentence of an error.
+    """Return UTF-8 text without its byte order mark; `what` starts the error message.
 
     Raises:
         InputError: not UTF-8 text.
@@ -99,7 +99,7 @@ def _too_large(path: object, limit_bytes: int) -> InputError:
 
 
 def failure_reason(error: Exception) -> str:
-    """Return the system's words for why a file cannot be used."""
+    """Return the system's description of a failure."""
     strerror = getattr(error, "strerror", None)
     return strerror.lower() if strerror else "its name is not valid"
 
@@ -116,14 +116,14 @@ _DECLARATION = re.compile(r"\s*<\?xml\s[^>]*\?>")
 
 
 def plain_xml(content: bytes, what: str) -> str:
-    """Return XML as it can be given to any parser, without its declaration.
+    """Return untrusted XML without its declaration, safe for any parser.
 
-    The declaration goes because it may name an encoding in which the rest reads differently.
-    `what` begins the sentence of an error, such as "The URDF robot.urdf".
+    The declaration could name an encoding in which the rest reads differently. `what` starts the
+    error message, such as "The URDF robot.urdf".
 
     Raises:
-        InputError: not UTF-8, not well-formed, with a document type or entities (they could expand
-            without end, or name other files), too deeply nested, or too many elements.
+        InputError: not UTF-8, not well-formed, too deep, too many elements, or with a document type
+            or entities, which could expand without end or name other files.
     """
     text = decode_text(content, what)
     declaration = _DECLARATION.match(text)
@@ -136,7 +136,7 @@ def plain_xml(content: bytes, what: str) -> str:
 
 
 class _Check:
-    """Looks at every element as it comes, and stops at the first that is one too many."""
+    """Checks each element as it is parsed."""
 
     def __init__(self, what: str) -> None:
         self._what = what
@@ -171,16 +171,16 @@ CSV_LIMIT_BYTES = 4 * 2**20
 def read_rows(
     path: str | os.PathLike[str], required: Sequence[str], optional: Sequence[str] = ()
 ) -> list[tuple[int, dict[str, str]]]:
-    """Return the line number and the named cells of each row, stripped of spaces.
+    """Return the line number and the named, stripped cells of each row of a CSV file.
 
     Args:
-        path: A CSV file in UTF-8, comma separated, of at most 4 MiB. Empty lines do not count.
-        required: Columns that the header must name, in any order.
-        optional: Columns that it may name; further ones are ignored.
+        path: UTF-8, comma-separated, at most 4 MiB; empty lines are ignored.
+        required: Columns that the header must have, in any order.
+        optional: Columns that it may have; others are ignored.
 
     Raises:
-        InputError: the file cannot be read, its header is another, a row has other cells than the
-            header, or there is no row.
+        InputError: the file is unreadable or empty, its header is wrong, or a row does not match
+            it.
     """
     reader = csv.reader(io.StringIO(read_text(path, CSV_LIMIT_BYTES)), strict=True)
     try:
@@ -207,20 +207,20 @@ def read_rows(
 
 
 def number_in(
-    path: object, line: int, cells: dict[str, str], column: str, lowest: float, highest: float
+    path: object, line: int, cells: dict[str, str], column: str, minimum: float, maximum: float
 ) -> float:
     """Return the number in a cell.
 
     Raises:
-        InputError: it is no finite number from `lowest` to `highest`.
+        InputError: it is not a finite number from `minimum` to `maximum`.
     """
     try:
         value = float(cells[column])
     except ValueError:
         value = math.nan
-    if not lowest <= value <= highest:
+    if not minimum <= value <= maximum:
         raise InputError(
-            f"Line {line} of {path}: {column} must be a number from {lowest:g} to {highest:g}, "
+            f"Line {line} of {path}: {column} must be a number from {minimum:g} to {maximum:g}, "
             f"not {cells[column][:40]!r}."
         )
     return value

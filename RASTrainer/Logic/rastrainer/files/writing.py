@@ -1,12 +1,13 @@
-"""Writing files: whole or not at all, and for this user alone where they are about people.
+"""Write files whole or not at all, and privately if they are about people.
 
-What is recorded of people is private: files 0600, our folders 0700. On Windows the user's profile
-protects them. What is exported, to be given to others, has the user's usual permissions.
+Recordings of people are private: files 0600, folders 0700 (on Windows, the user's profile protects
+them). Exports have the user's usual permissions.
 """
 
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import shutil
 import stat
@@ -31,7 +32,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 
 def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a file as a whole: after a crash the old or the new one is there.
+    """Write a file atomically: after a crash there is the old or the new one.
 
     Raises:
         InputError: the file cannot be written.
@@ -52,14 +53,24 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
         raise _unwritable(path, error) from None
 
 
-def make_empty_folder(folder: Path) -> None:
-    """Make a folder; raise `InputError` where it cannot be made or holds something."""
+def write_json(path: str | os.PathLike[str], value: object) -> None:
+    """Write indented JSON as `write_text` does."""
+    write_text(path, json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and its missing parents; raise `InputError` if that fails."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()):
-            raise InputError(f"The folder {folder} holds something; choose one that is empty.")
     except OSError as error:
         raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+
+
+def make_empty_folder(folder: Path) -> None:
+    """Make a folder; raise `InputError` if that fails or it is not empty."""
+    make_folder(folder)
+    if any(folder.iterdir()):
+        raise InputError(f"The folder {folder} holds something; choose one that is empty.")
 
 
 def _unwritable(path: object, error: Exception) -> InputError:
@@ -69,16 +80,16 @@ def _unwritable(path: object, error: Exception) -> InputError:
 
 
 OUR_FOLDERS = ("RASTrainer", "rastrainer")
-"""Names of folders that we make for users, and make others in."""
+"""Names of folders that we create for users."""
 _FILE, _FOLDER = 0o600, 0o700
 _OTHERS = 0o077
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder, and those above it that are missing, for this user alone.
+    """Make a folder and its missing parents for this user only.
 
-    One that is there is closed to others where its name, or that of the one above, is of
-    `OUR_FOLDERS`; any other is the user's own affair.
+    An existing folder is made private if its name or its parent's is in `OUR_FOLDERS`; the
+    permissions of others are the user's choice.
 
     Raises:
         OSError: it cannot be made.
@@ -92,7 +103,7 @@ def make_private_folder(folder: Path) -> None:
 
 
 def open_private(path: str | os.PathLike[str], flags: int) -> int:
-    """Open a file as `os.open` does, and keep other users out of it; return its descriptor.
+    """Open a file like `os.open`, make it private, and return its descriptor.
 
     Raises:
         OSError: it cannot be opened.
@@ -103,10 +114,10 @@ def open_private(path: str | os.PathLike[str], flags: int) -> int:
 
 
 def keep_others_out(path: str | os.PathLike[str]) -> None:
-    """Take from other users what they may do with a file or folder.
+    """Remove other users' permissions on a file or folder.
 
-    What is another's, or not there, stays as it is; so does what lies in a folder with the setgid
-    bit, which somebody has set to share its files with a group.
+    Another user's or a missing file is left unchanged, and so are files in a folder with the setgid
+    bit, which shares them with a group.
     """
     if os.name != "posix":
         return

@@ -32,17 +32,17 @@ class SurfaceGraph:
     def distance(self, start: np.ndarray, end: np.ndarray) -> float:
         """Return the length of the path over the surface between two points (3,) on it."""
         # Of a task both the complexity and the shortest path ask for the same paths.
-        asked = (*map(float, start), *map(float, end))
-        if asked not in self._known:
-            self._known[asked] = self._distance(start, end)
-        return self._known[asked]
+        key = (*map(float, start), *map(float, end))
+        if key not in self._known:
+            self._known[key] = self._distance(start, end)
+        return self._known[key]
 
     def _distance(self, start: np.ndarray, end: np.ndarray) -> float:
         first, last = nearest_on_mesh(self._mesh, start), nearest_on_mesh(self._mesh, end)
         if first.triangle == last.triangle:
             return float(np.linalg.norm(first.position - last.position))
         reached = self._from_corners(first, last)
-        return min(reached.get(v, np.inf) + way for way, v in self._leaving(last))
+        return min(reached.get(v, np.inf) + length for length, v in self._leaving(last))
 
     def _corners(self, point: NearestPoint) -> list[int]:
         return self._mesh.triangles[point.triangle].tolist()
@@ -50,8 +50,8 @@ class SurfaceGraph:
     def _leaving(self, point: NearestPoint) -> list[tuple[float, int]]:
         """Return the straight paths from a point to the corners of its triangle."""
         corners = self._corners(point)
-        ways = np.linalg.norm(self._mesh.vertices[corners] - point.position, axis=1)
-        return list(zip(ways.tolist(), corners, strict=True))
+        lengths = np.linalg.norm(self._mesh.vertices[corners] - point.position, axis=1)
+        return list(zip(lengths.tolist(), corners, strict=True))
 
     def _from_corners(self, first: NearestPoint, last: NearestPoint) -> dict[int, float]:
         """Return the distances of vertices, as far as the corners of the last are reached.
@@ -69,8 +69,8 @@ class SurfaceGraph:
             if length > shortest[vertex]:
                 continue
             missing.discard(vertex)
-            for way in range(self._starts[vertex], self._starts[vertex + 1]):
-                end, further = self._ends[way], length + self._lengths[way]
+            for edge in range(self._starts[vertex], self._starts[vertex + 1]):
+                end, further = self._ends[edge], length + self._lengths[edge]
                 if further < shortest.get(end, np.inf):
                     shortest[end] = further
                     heapq.heappush(waiting, (further + left[end], further, end))

@@ -1,4 +1,8 @@
-"""The contents of messages: a transform, a text, a status, a command and its answer."""
+"""The contents of messages: transform, text, status, command and its answer.
+
+`pack` and `unpack` raise `InputError` for anything that the format does not allow. With
+`keep_bytes`, invalid UTF-8 is kept as `decode_text` describes.
+"""
 
 from __future__ import annotations
 
@@ -45,16 +49,12 @@ class Transform:
         return (*(self.columns[row::3] for row in range(3)), (0.0, 0.0, 0.0, 1.0))
 
     def pack(self) -> bytes:
-        """Return the content's 48 bytes."""
+        """Return the content's bytes."""
         return _TRANSFORM.pack(*self.columns)
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> Transform:  # noqa: ARG003
-        """Return the transform that `data` holds; it has no text.
-
-        Raises:
-            InputError: a wrong length, or a number that is not finite.
-        """
+        """Return the content of `data`."""
         if len(data) != _TRANSFORM.size:
             raise InputError(f"A TRANSFORM must have {_TRANSFORM.size} bytes, not {len(data)}.")
         return cls(_TRANSFORM.unpack(data))
@@ -68,11 +68,7 @@ class String:
     text: str
 
     def pack(self) -> bytes:
-        """Return the content's bytes.
-
-        Raises:
-            InputError: more than 65,535 bytes, or a NUL in the text.
-        """
+        """Return the content's bytes."""
         encoding, data = encode_text(self.text)
         if len(data) > MAX_STRING_BYTES:
             raise InputError(
@@ -82,11 +78,7 @@ class String:
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> String:
-        """Return the text that `data` holds; `keep_bytes` as of `decode_text`.
-
-        Raises:
-            InputError: cut short, or not UTF-8.
-        """
+        """Return the content of `data`."""
         if len(data) < _STRING.size:
             raise InputError(f"A STRING must have at least {_STRING.size} bytes, not {len(data)}.")
         _encoding, length = _STRING.unpack_from(data)
@@ -100,10 +92,10 @@ class Status:
     """The state of a device; becomes a status node in Slicer.
 
     Attributes:
-        code: 1 is well, any other number a kind of trouble that the protocol lists.
-        subcode: meaning is the device's own.
-        name: the trouble's name, at most 20 ASCII characters.
-        message: anything for people to read.
+        code: 1 is OK, other numbers are the protocol's error codes.
+        subcode: defined by the device.
+        name: of the error, at most 20 ASCII characters.
+        message: for people.
     """
 
     TYPE: ClassVar[str] = "STATUS"
@@ -114,11 +106,7 @@ class Status:
     message: str = ""
 
     def pack(self) -> bytes:
-        """Return the content's bytes; the message ends with a NUL.
-
-        Raises:
-            InputError: a number out of range, or a name that is not short ASCII.
-        """
+        """Return the content's bytes."""
         if not (0 <= self.code < 2**16 and 0 <= self.subcode < 2**64):
             raise InputError("A status must have a 16-bit code and a 64-bit subcode.")
         name = pack_name(self.name, 20, "The name in a status")
@@ -127,11 +115,7 @@ class Status:
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> Status:
-        """Return the status that `data` holds; `keep_bytes` as of `decode_text`.
-
-        Raises:
-            InputError: cut short, or a message that is not UTF-8.
-        """
+        """Return the content of `data`."""
         if len(data) < _STATUS.size:
             raise InputError(f"A STATUS must have at least {_STATUS.size} bytes, not {len(data)}.")
         code, subcode, name = _STATUS.unpack_from(data)
@@ -145,11 +129,11 @@ _T = TypeVar("_T", bound="_NumberedText")
 
 @dataclass(frozen=True)
 class _NumberedText:
-    """What a command and its answer share.
+    """What a command and its answer have in common.
 
     Attributes:
-        command_id: the asking side's own 32-bit number; the answer carries the same.
-        name: the command's, at most 128 ASCII characters.
+        command_id: the sender's 32-bit number; the answer has the same.
+        name: at most 128 ASCII characters.
         body: arguments or results; ours are JSON objects.
     """
 
@@ -158,11 +142,7 @@ class _NumberedText:
     body: str = ""
 
     def pack(self) -> bytes:
-        """Return the content's bytes.
-
-        Raises:
-            InputError: an identifier beyond 32 bits, or a name that is not short ASCII.
-        """
+        """Return the content's bytes."""
         if not 0 <= self.command_id < 2**32:
             raise InputError("The number of a command must fit 32 bits.")
         name = pack_name(self.name, 128, "The name of a command")
@@ -171,11 +151,7 @@ class _NumberedText:
 
     @classmethod
     def unpack(cls: type[_T], data: bytes, keep_bytes: bool = False) -> _T:
-        """Return the command that `data` holds; `keep_bytes` as of `decode_text`.
-
-        Raises:
-            InputError: cut short, or not UTF-8.
-        """
+        """Return the content of `data`."""
         if len(data) < _COMMAND.size:
             raise InputError(f"A COMMAND must have at least {_COMMAND.size} bytes.")
         command_id, name, _encoding, length = _COMMAND.unpack_from(data)
@@ -187,17 +163,14 @@ class _NumberedText:
 
 @dataclass(frozen=True)
 class Command(_NumberedText):
-    """A request that gets lost nowhere: Slicer queues every one of them."""
+    """A request; unlike other messages, Slicer queues every one of them."""
 
     TYPE: ClassVar[str] = "COMMAND"
 
 
 @dataclass(frozen=True)
 class CommandReply(_NumberedText):
-    """The answer to the command of the same number and name.
-
-    Whether the command succeeded stands in the message's metadata: see `SUCCESS`.
-    """
+    """The answer to the command of the same number and name; its metadata has the status."""
 
     TYPE: ClassVar[str] = "RTS_COMMAND"
 

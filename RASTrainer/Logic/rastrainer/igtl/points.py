@@ -1,4 +1,4 @@
-"""The content POINT: a whole list of points, as Slicer replaces the list it shows."""
+"""The content POINT: a list of points, which replaces the list shown in Slicer."""
 
 from __future__ import annotations
 
@@ -50,22 +50,14 @@ class Points:
     points: tuple[Point, ...]
 
     def pack(self) -> bytes:
-        """Return the content's bytes, 136 a point.
-
-        Raises:
-            InputError: a label, group or owner that does not fit, or too many points.
-        """
+        """Return the content's bytes, 136 per point."""
         if len(self.points) > MAX_POINTS:
             raise InputError(f"A POINT message must have at most {MAX_POINTS} points.")
         return b"".join(_pack_point(point) for point in self.points)
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> Points:
-        """Return the points that `data` holds; `keep_bytes` as of `unpack_name`.
-
-        Raises:
-            InputError: not a whole number of points, or a number that is not finite.
-        """
+        """Return the content of `data`."""
         if len(data) % _POINT.size:
             raise InputError(f"A POINT message must have {_POINT.size} bytes for each point.")
         points = (_unpack_point(fields, keep_bytes) for fields in _POINT.iter_unpack(data))

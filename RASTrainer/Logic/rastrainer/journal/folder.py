@@ -36,15 +36,15 @@ def journals_of(folder: Path, trial_id: str) -> list[Path]:
 
 
 def read_trajectory(
-    folder: Path, trial_id: str, rest: Callable[[], None] = lambda: None
+    folder: Path, trial_id: str, pause: Callable[[], None] = lambda: None
 ) -> Trajectory | None:
     """Return the trajectory of a trial; None where the folder has no usable journal of it.
 
-    `rest` is as of `read_journal`.
+    `pause` is as of `read_journal`.
     """
     for path in journals_of(folder, trial_id):
         with contextlib.suppress(InputError):
-            return Recording.of(read_journal(path, rest).entries).trajectory()
+            return Recording.of(read_journal(path, pause).entries).trajectory()
     return None
 
 
@@ -115,10 +115,10 @@ def _locked(path: Path) -> Iterator[int]:
 
 
 def _overwrite(descriptor: int) -> None:
-    rest = os.fstat(descriptor).st_size
+    left = os.fstat(descriptor).st_size
     os.lseek(descriptor, 0, os.SEEK_SET)
-    while rest > 0:
-        rest -= os.write(descriptor, _ZEROS[: min(rest, len(_ZEROS))])
+    while left > 0:
+        left -= os.write(descriptor, _ZEROS[: min(left, len(_ZEROS))])
     os.fsync(descriptor)
 
 

@@ -133,24 +133,24 @@ class JournalReading:
         return [entry for entry in self.entries if entry["kind"] in kinds]
 
 
-def read_journal(path: Path, rest: Callable[[], None] = lambda: None) -> JournalReading:
+def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> JournalReading:
     """Read a journal as far as it is whole.
 
     Args:
         path: of the file.
-        rest: called again and again meanwhile; a thread may wait in it.
+        pause: called again and again meanwhile; a thread may wait in it.
 
     Raises:
         InputError: the file cannot be read, is no journal, or is of another format version.
     """
     try:
         with path.open("rb") as file:
-            return _read(path, file, rest)
+            return _read(path, file, pause)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from None
 
 
-def _read(path: Path, file: BinaryIO, rest: Callable[[], None]) -> JournalReading:
+def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReading:
     beginning = file.read(len(FIRST_BYTES))
     if not FIRST_BYTES.startswith(beginning):
         raise InputError(f"{path} is not a trial's journal: it should begin with {_BEGINNING}.")
@@ -160,7 +160,7 @@ def _read(path: Path, file: BinaryIO, rest: Callable[[], None]) -> JournalReadin
     while line := file.readline(MAX_LINE_BYTES):
         n = len(entries) + 1
         if n % LINES_PER_PAUSE == 0:
-            rest()
+            pause()
         if not line.endswith(b"\n") and len(line) < MAX_LINE_BYTES:
             break
         try:

@@ -46,9 +46,9 @@ class ReplayTrack:
 
 
 def find_track(
-    records: Path, trial_id: str, rest: Callable[[], None] = lambda: None
+    records: Path, trial_id: str, pause: Callable[[], None] = lambda: None
 ) -> ReplayTrack:
-    """Return the track of a trial whose journal lies in a folder; `rest` as of `read_journal`.
+    """Return the track of a trial whose journal lies in a folder; `pause` as of `read_journal`.
 
     Raises:
         InputError: there is none, or it holds no movement.
@@ -59,16 +59,16 @@ def find_track(
             f"The journal of this trial is not in {records}: it can be shown again only on the "
             "computer whose simulator has recorded it."
         )
-    return read_track(paths[0], rest)
+    return read_track(paths[0], pause)
 
 
-def read_track(path: Path, rest: Callable[[], None] = lambda: None) -> ReplayTrack:
-    """Return the track of a journal, as far as it is whole; `rest` as of `read_journal`.
+def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTrack:
+    """Return the track of a journal, as far as it is whole; `pause` as of `read_journal`.
 
     Raises:
         InputError: the file is no journal, or holds no movement.
     """
-    reading = read_journal(path, rest)
+    reading = read_journal(path, pause)
     recording = _ReplayRecording.of(reading.entries)
     trajectory, q = recording.trajectory(), np.array(recording.postures, dtype=np.float64)
     if len(q) < 2 or q.shape != (len(trajectory.times_s), 7):

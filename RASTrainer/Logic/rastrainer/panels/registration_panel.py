@@ -19,7 +19,8 @@ from rastrainer.panels.widgets import (
     setUsable,
     textLabel,
 )
-from rastrainer.registration.registration import AFFINE, RIGID, SIMILARITY, Registration
+from rastrainer.registration.fits import AFFINE, RIGID, SIMILARITY
+from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.registration_logic import Comparison

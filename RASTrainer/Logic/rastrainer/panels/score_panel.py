@@ -35,7 +35,7 @@ from rastrainer.slicer.scene.score_board import (
     standings,
 )
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.study import StoredTrial
+from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING

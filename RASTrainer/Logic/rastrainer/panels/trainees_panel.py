@@ -27,7 +27,7 @@ from rastrainer.slicer.scene.study_plots import showCalibration, showLearningCur
 from rastrainer.slicer.settings import STUDY
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAborted
-from rastrainer.study.database.study import StoredTrial, Trainee
+from rastrainer.study.database.values import StoredTrial, Trainee
 
 
 class TraineesPanel:

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.registration.fits import PARAMETERS
-from rastrainer.registration.registration import AFFINE, SIMILARITY, Registration
+from rastrainer.registration.fits import AFFINE, PARAMETERS, SIMILARITY
+from rastrainer.registration.registration import Registration
 
 
 @dataclass(frozen=True)

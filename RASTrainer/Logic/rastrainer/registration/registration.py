@@ -12,18 +12,8 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.registration.checks import check_points, check_weights
-from rastrainer.registration.fits import AFFINE, KINDS, RIGID, SIMILARITY, fit, leave_one_out
+from rastrainer.registration.fits import AFFINE, RIGID, SIMILARITY, fit, leave_one_out
 from rastrainer.registration.warnings import RegistrationWarning, find_warnings
-
-__all__ = [
-    "AFFINE",
-    "KINDS",
-    "RIGID",
-    "SIMILARITY",
-    "Registration",
-    "register",
-    "register_all_kinds",
-]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,8 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 import rastrainer
-from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import trials_csv
-from rastrainer.files.writing import write_text
+from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
 from rastrainer.report.elements.comparisons import ModeComparison, compare_modes
 from rastrainer.report.elements.markup import bullets, page, paragraph, section
@@ -53,10 +52,7 @@ def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> 
         InputError: the folder cannot be written, or scipy is missing.
     """
     page_text = report_html(data, made_utc)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+    make_folder(folder)
     written = WrittenReport(folder / PAGE, folder / NUMBERS)
     write_text(written.page, page_text)
     write_text(written.numbers, trials_csv(data.trials))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
-from rastrainer.files.writing import write_text
+from rastrainer.files.writing import write_json
 from rastrainer.head.pose import MAX_PERTURBATION, Perturbation
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Camera, Furniture
@@ -136,7 +135,7 @@ def write_setup(path: Path, setup: SetUp) -> None:
         "stand": {"diameterMm": setup.stand_diameter},
         "robotBaseMm": setup.robot_base,
     }
-    write_text(path, json.dumps(content, indent=2) + "\n")
+    write_json(path, content)
 
 
 def _part(fields: Fields, name: str) -> Fields | None:

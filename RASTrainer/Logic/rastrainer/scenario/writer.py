@@ -7,7 +7,6 @@ available, `skull.ply` and `volume.nrrd`.
 from __future__ import annotations
 
 import contextlib
-import json
 import re
 import shutil
 import uuid
@@ -22,7 +21,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.json_fields import read_fields
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.files.writing import make_private_folder, write_text
+from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
 from rastrainer.scenario.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
@@ -97,7 +96,7 @@ def write_scenario(
     for task in scenario.tasks:
         write_markups(folder / _file(task), PointList(task.labels, task.fiducials))
     content = scenario_json(scenario, skull is not None, volume)
-    write_text(folder / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    write_json(folder / FILE_NAME, content)
 
 
 def scenario_json(
@@ -217,7 +216,7 @@ def write_draft(folder: Path, draft: HeadDraft) -> None:
     if draft.volume is not None:
         write_head_volume(folder / VOLUME_NAME, draft.volume)
         content["volume"] = volume_entry(draft.volume)
-    write_text(folder / DRAFT_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    write_json(folder / DRAFT_NAME, content)
 
 
 def read_draft(folder: Path) -> HeadDraft:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, Mode
-from rastrainer.registration.registration import RIGID
+from rastrainer.registration.fits import RIGID
 
 Value = TypeVar("Value", str, int, bool)
 

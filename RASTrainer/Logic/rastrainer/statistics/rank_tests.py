@@ -96,18 +96,18 @@ def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankSumTest | None:
         return RankSumTest(p, 0.0)
     # Twice the ranks, since tied ones are halves: whole numbers can be counted.
     doubled = np.rint(2 * ranks).astype(int)
-    ways = _ways(doubled, len(one))
+    chances = _sum_probabilities(doubled, len(one))
     observed = int(doubled[: len(one)].sum())
-    lower, upper = ways[: observed + 1].sum(), ways[observed:].sum()
-    possible = np.flatnonzero(ways)
-    smallest = min(ways[possible[0]], ways[possible[-1]])
+    lower, upper = chances[: observed + 1].sum(), chances[observed:].sum()
+    possible = np.flatnonzero(chances)
+    smallest = min(chances[possible[0]], chances[possible[-1]])
     return RankSumTest(
         p=float(min(1.0, 2 * min(lower, upper))),
         smallest_p=float(min(1.0, 2 * smallest)),
     )
 
 
-def _ways(doubled_ranks: np.ndarray, drawn: int) -> np.ndarray:
+def _sum_probabilities(doubled_ranks: np.ndarray, drawn: int) -> np.ndarray:
     """Return the probability of each sum of so many ranks, (sum + 1,) float."""
     counts = np.zeros((drawn + 1, int(doubled_ranks.sum()) + 1))
     counts[0, 0] = 1.0

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.registration.registration import RIGID
+from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.study import Study

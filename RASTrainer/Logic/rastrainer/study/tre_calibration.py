@@ -13,7 +13,7 @@ import numpy as np
 
 from rastrainer.number_text import fixed, percent
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.registration.registration import RIGID
+from rastrainer.registration.fits import RIGID
 from rastrainer.statistics.intervals import Proportion, proportion
 from rastrainer.study.database.values import StoredTrial
 

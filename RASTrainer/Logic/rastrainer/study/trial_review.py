@@ -74,7 +74,7 @@ def review(
     scenario: Scenario,
     study: Study,
     records: Path | None = None,
-    rest: Callable[[], None] = lambda: None,
+    pause: Callable[[], None] = lambda: None,
 ) -> TrialAnalysis:
     """Score a registered trial as its study's protocol says, with the feedback of its journal.
 
@@ -84,14 +84,14 @@ def review(
         scenario: in which it was played.
         study: whose protocol sets the references of the score.
         records: folder of journals; None, or one that is not there, explains less of the touches.
-        rest: called again and again while the journal is read; a thread may wait in it.
+        pause: called again and again while the journal is read; a thread may wait in it.
 
     Raises:
         InputError: the trial cannot be scored, or the study not be read.
     """
     protocol = StudyProgress(study).protocol()
     references = None if protocol is None else protocol.references
-    return scored_with_journal(analysis, truth, scenario, references, records, rest)
+    return scored_with_journal(analysis, truth, scenario, references, records, pause)
 
 
 def scored_with_journal(
@@ -100,7 +100,7 @@ def scored_with_journal(
     scenario: Scenario,
     references: Mapping[str, ScoreReference] | None = None,
     records: Path | None = None,
-    rest: Callable[[], None] = lambda: None,
+    pause: Callable[[], None] = lambda: None,
 ) -> TrialAnalysis:
     """Score a registered trial, with the feedback of its journal; all as of `review`.
 
@@ -110,17 +110,17 @@ def scored_with_journal(
     Raises:
         InputError: the trial cannot be scored.
     """
-    trajectory = trajectory_of(analysis.record, records, rest)
+    trajectory = trajectory_of(analysis.record, records, pause)
     return analysis.scored(scenario, truth, references, trajectory)
 
 
 def trajectory_of(
-    record: TrialRecord, records: Path | None, rest: Callable[[], None] = lambda: None
+    record: TrialRecord, records: Path | None, pause: Callable[[], None] = lambda: None
 ) -> Trajectory | None:
     """Return a trial's trajectory from its journal; None where there is no folder or journal."""
     if records is None or not records.is_dir():
         return None
-    return read_trajectory(records, record.trial_id, rest)
+    return read_trajectory(records, record.trial_id, pause)
 
 
 def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:

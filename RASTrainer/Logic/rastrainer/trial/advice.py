@@ -80,17 +80,17 @@ def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[A
     total = float((residuals**2).sum())
     if total <= 0:
         return
-    hurting = [finding for finding in findings if finding.hurts]
-    if hurting:
+    outliers = [finding for finding in findings if finding.is_outlier]
+    if outliers:
         typical = float(np.median(residuals))
         better = sum(
-            (typical if finding.hurts else finding.residual_mm) ** 2 for finding in findings
+            (typical if finding.is_outlier else finding.residual_mm) ** 2 for finding in findings
         )
         yield Advice(
             "worst touches",
             say(
-                "worst touch" if len(hurting) == 1 else "worst touches",
-                points=", ".join(finding.label for finding in hurting),
+                "worst touch" if len(outliers) == 1 else "worst touches",
+                points=", ".join(finding.label for finding in outliers),
                 share=100 * (1 - math.sqrt(better / total)),
             ),
             _gain(score, error_factor=math.sqrt(better / total)),

@@ -12,8 +12,9 @@ from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.motion.trajectory import Trajectory
+from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import error_along_surface
-from rastrainer.registration.registration import RIGID, Registration, register_all_kinds
+from rastrainer.registration.registration import Registration, register_all_kinds
 from rastrainer.registration.target_error import TargetError, target_error
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
@@ -154,7 +155,7 @@ def analyze_trial(
     references: Mapping[str, ScoreReference] | None = None,
     trajectory: Trajectory | None = None,
     truth: RevealedTruth | None = None,
-    give_way: Callable[[], None] = lambda: None,
+    pause: Callable[[], None] = lambda: None,
 ) -> TrialAnalysis:
     """Register a trial's touches to its task's fiducials, paired by label; score it by its truth.
 
@@ -166,7 +167,7 @@ def analyze_trial(
             for tasks that it leaves out.
         trajectory: of the trial, from its journal; it explains why a touch was off.
         truth: what the simulator has revealed; without it there is no score.
-        give_way: called between the steps, every 10 ms or so; a worker may wait in it.
+        pause: called between the steps, every 10 ms or so; a worker may wait in it.
 
     Raises:
         InputError: the scenario has no such task or labels, or the points cannot be registered, or
@@ -180,11 +181,11 @@ def analyze_trial(
     normals = _normals_at(scenario, record.task, labels)
     errors = {}
     for kind, fit in fits.items():
-        give_way()
+        pause()
         localization = error_along_surface(fit, normals)
-        give_way()
+        pause()
         errors[kind] = target_error(fit, scenario.target_position, localization)
-    give_way()
+    pause()
     analysis = TrialAnalysis(
         record=record,
         target_name=scenario.target_name,

@@ -165,41 +165,26 @@ def _all_points(value: Any) -> tuple[TouchedPoint, ...]:
     return tuple(touched_point(item) for item in value)
 
 
-def _versions(value: Any) -> dict[str, str]:
-    """Accept names of programs with their versions; raise `ValueError` for anything else."""
-    words = "an object of at most 32 names with their versions as text"
-    if not isinstance(value, dict) or len(value) > VERSIONS_LIMIT:
-        raise ValueError(words)
-    check = json_checks.text()
-    try:
-        return {check(name): check(version) for name, version in value.items()}
-    except ValueError:
-        raise ValueError(words) from None
+def _mapping(
+    limit: int, words: str, check: Callable[[Any], Any]
+) -> Callable[[Any], dict[str, Any]]:
+    """Accept an object of at most `limit` names with checked values; `words` describes them."""
+    check_name = json_checks.text()
+
+    def check_mapping(value: Any) -> dict[str, Any]:
+        try:
+            if isinstance(value, Mapping) and len(value) <= limit:
+                return {check_name(name): check(item) for name, item in value.items()}
+        except ValueError:
+            pass
+        raise ValueError(f"an object of at most {limit} {words}")
+
+    return check_mapping
 
 
-def _motion(value: Any) -> dict[str, float]:
-    words = f"an object of at most {MOTION_LIMIT} names with finite numbers"
-    if not isinstance(value, Mapping) or len(value) > MOTION_LIMIT:
-        raise ValueError(words)
-    check_name, check_number = json_checks.text(), json_checks.number(-1e9, 1e9)
-    try:
-        return {check_name(name): check_number(number) for name, number in value.items()}
-    except ValueError:
-        raise ValueError(words) from None
-
-
-def _display(value: Any) -> dict[str, str | float]:
-    words = f"an object of at most {DISPLAY_LIMIT} names with texts or finite numbers"
-    if not isinstance(value, Mapping) or len(value) > DISPLAY_LIMIT:
-        raise ValueError(words)
-    check_text, check_number = json_checks.text(), json_checks.number(0, 1e9)
-    try:
-        return {
-            check_text(name): check_text(item) if isinstance(item, str) else check_number(item)
-            for name, item in value.items()
-        }
-    except ValueError:
-        raise ValueError(words) from None
+def _text_or_number(value: Any) -> str | float:
+    check = json_checks.text() if isinstance(value, str) else json_checks.number(0, 1e9)
+    return check(value)
 
 
 def _optional(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -272,7 +257,9 @@ SHARED_CHECKS = {
     "startedUtc": Argument(utc_time),
     "rejectedTouches": Argument(json_checks.whole_number(0, TOUCH_LIMIT)),
     "undoneTouches": Argument(json_checks.whole_number(0, TOUCH_LIMIT)),
-    "versions": Argument(_versions),
+    "versions": Argument(
+        _mapping(VERSIONS_LIMIT, "names with their versions as text", json_checks.text())
+    ),
     "touchRule": Argument(json_checks.one_of(*(rule.value for rule in TouchRule))),
 }
 """Of the keys that the records of finished and of aborted trials share."""
@@ -285,6 +272,10 @@ _CHECKS = {
     "seed": Argument(_optional(json_checks.whole_number(0, 2**63 - 1)), None),
     # Records older than this key are of the paper's rule.
     "touchRule": Argument(SHARED_CHECKS["touchRule"].check, TouchRule.WITHIN_RADIUS.value),
-    "motion": Argument(_motion, {}),
-    "display": Argument(_display, {}),
+    "motion": Argument(
+        _mapping(MOTION_LIMIT, "names with finite numbers", json_checks.number(-1e9, 1e9)), {}
+    ),
+    "display": Argument(
+        _mapping(DISPLAY_LIMIT, "names with texts or finite numbers", _text_or_number), {}
+    ),
 }

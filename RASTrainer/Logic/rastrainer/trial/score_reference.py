@@ -26,8 +26,8 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_vertices, outward_normals
 from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import motions
-from rastrainer.registration.registration import RIGID
 from rastrainer.registration.target_error import true_errors
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.scoring import ScoreReference
@@ -210,5 +210,5 @@ def _time_s(fiducials: np.ndarray, normals: np.ndarray) -> float:
     skin turns between them, and with it the tool, that way is the longer one.
     """
     above = fiducials + LIFT_MM * normals
-    way_mm = np.linalg.norm(np.diff(above, axis=0), axis=1).sum()
-    return float(TOUCH_S * len(fiducials) + way_mm / SPEED_MM_S)
+    path_mm = np.linalg.norm(np.diff(above, axis=0), axis=1).sum()
+    return float(TOUCH_S * len(fiducials) + path_mm / SPEED_MM_S)

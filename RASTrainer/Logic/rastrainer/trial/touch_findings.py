@@ -13,8 +13,8 @@ from rastrainer.motion.trial_motion import DWELL_RADIUS_MM
 from rastrainer.registration.registration import Registration
 from rastrainer.trial.wording import Sentence, say
 
-HURTING_SHARE = 2.0
-"""A touch hurts when its part of the squared error is at least twice that of an average touch."""
+OUTLIER_SHARE = 2.0
+"""An outlier has at least twice the squared error of an average touch."""
 HURRY_SHARE = 0.6
 HURRY_DWELL_S = 0.15
 TREMOR_WINDOW_S = 0.5
@@ -43,7 +43,7 @@ class TouchFinding:
         aside_mm: The part along the skin; None likewise.
         share: Of the squared registration error, 1 for all of it.
         dwell_s: How long the tip had been within 2 mm; None without a recording.
-        hurts: Whether it is one of those that made the registration worse.
+        is_outlier: Whether it is one of those that made the registration worse.
         reasons: Why, the main one first; empty where nothing stands out.
         replay_s: From when to when to look at it again, in trial time; None without a recording.
     """
@@ -54,7 +54,7 @@ class TouchFinding:
     aside_mm: float | None
     share: float
     dwell_s: float | None
-    hurts: bool
+    is_outlier: bool
     reasons: tuple[Reason, ...]
     replay_s: tuple[float, float] | None
 
@@ -104,7 +104,7 @@ def touch_findings(
                 float(registration.residuals_mm[row]),
                 depth,
                 share,
-                share * len(squares) >= HURTING_SHARE,
+                share * len(squares) >= OUTLIER_SHARE,
                 trajectory,
                 touches.get(label),
             )
@@ -117,7 +117,7 @@ def _finding(
     residual: float,
     depth: float | None,
     share: float,
-    hurts: bool,
+    is_outlier: bool,
     trajectory: Trajectory | None,
     index: int | None,
 ) -> TouchFinding:
@@ -132,13 +132,15 @@ def _finding(
         replay = (before, touch.time_s)
     aside = None if depth is None else float(np.sqrt(max(residual**2 - depth**2, 0.0)))
     reasons = []
-    if hurts and depth is not None and aside is not None:
+    if is_outlier and depth is not None and aside is not None:
         reasons.append(Reason.DEPTH if abs(depth) > aside else Reason.ASIDE)
-    if hurts and tremor is not None and tremor > TREMOR_MM:
+    if is_outlier and tremor is not None and tremor > TREMOR_MM:
         reasons.append(Reason.TREMOR)
-    if hurts and is_hurried:
+    if is_outlier and is_hurried:
         reasons.append(Reason.HURRY)
-    return TouchFinding(label, residual, depth, aside, share, dwell, hurts, tuple(reasons), replay)
+    return TouchFinding(
+        label, residual, depth, aside, share, dwell, is_outlier, tuple(reasons), replay
+    )
 
 
 def _last_moments(trajectory: Trajectory, touch: Touch) -> tuple[float, float]:

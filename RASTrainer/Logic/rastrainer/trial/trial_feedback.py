@@ -74,10 +74,10 @@ class TrialFeedback:
     @property
     def touch_sentences(self) -> tuple[Sentence, ...]:
         """The touches that hurt, the worst first; or that none stands out."""
-        hurting = sorted((t for t in self.touches if t.hurts), key=lambda t: -t.residual_mm)
-        if not hurting:
+        outliers = sorted((t for t in self.touches if t.is_outlier), key=lambda t: -t.residual_mm)
+        if not outliers:
             return (say("no touch"),)
-        return tuple(touch.sentence for touch in hurting)
+        return tuple(touch.sentence for touch in outliers)
 
     @property
     def sentences(self) -> tuple[str, ...]:

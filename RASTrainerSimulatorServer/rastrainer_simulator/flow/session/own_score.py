@@ -118,7 +118,7 @@ def registered_alone(ask: Ask, trial_id: str, scenario: Scenario) -> TrialAnalys
     """
     told = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
     cohort = read_trials(asset_path(*PUBLISHED_STUDY))
-    return analyze_trial(TrialRecord.from_json(told["record"]), scenario, cohort, give_way=_rest)
+    return analyze_trial(TrialRecord.from_json(told["record"]), scenario, cohort, pause=_rest)
 
 
 def score_alone(
@@ -143,7 +143,7 @@ def score_alone(
     truth = RevealedTruth.from_json(
         _asked(ask, CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
     )
-    scored = scored_with_journal(analysis, truth, scenario, records=records, rest=_rest)
+    scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)
     arguments = score_arguments(_with_progress(scored, earlier))
     arguments["details"][OWN_SCORE] = True
     _asked(ask, CommandName.TRIAL_SCORED, arguments)

@@ -30,10 +30,10 @@ def questionnaires(data: StudyData) -> str:
     rows: list[Line] = []
     sources = []
     for name, questionnaire in QUESTIONNAIRES.items():
-        for asked in questionnaire.scales:
+        for scale_of in questionnaire.scales:
             for key, scores in values.items():
-                if key[:2] == (name, asked.name):
-                    rows.append(_row(asked, key[2], scores))
+                if key[:2] == (name, scale_of.name):
+                    rows.append(_row(scale_of, key[2], scores))
         if any(key[0] == name for key in values):
             sources.append(f"{questionnaire.title}: {questionnaire.source}.")
     header: list[Line] = [

@@ -32,7 +32,7 @@ from rastrainer.slicer.scene.scenario_volume import VolumeLoader
 from rastrainer.slicer.scene.views import BorrowedLayout
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
-from rastrainer.study.database.database import Patience
+from rastrainer.study.database.database import LockWait
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import TrialAnalysis
@@ -118,7 +118,7 @@ class ModuleSession:
         self.layout = BorrowedLayout(scene)
         self.studyPath = places.study
         self._scene = scene
-        self._patience = Patience.interactive()
+        self._lockWait = LockWait.interactive()
         cache = ScenarioCache.below(places.assets / "scenarios", places.library)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
         self.work = BackgroundWork()
@@ -175,7 +175,7 @@ class ModuleSession:
             InputError: the file is no study, or cannot be used.
             StudyBusyError: another program has it locked.
         """
-        return Study.open(self.studyPath, self._patience, make_folder=True)
+        return Study.open(self.studyPath, self._lockWait, make_folder=True)
 
     def openStudyPatiently(self) -> Study:
         """Open the present study in a thread that may wait for a lock; otherwise as `openStudy`."""
@@ -187,7 +187,7 @@ class ModuleSession:
         Raises:
             InputError: the file is no study, or cannot be used; the present one stays.
         """
-        Study.open(path, self._patience, make_folder=True).close()
+        Study.open(path, self._lockWait, make_folder=True).close()
         self.study.leaveStudy()
         self.studyPath = path
         self.trials.forgetWaiting()
@@ -213,7 +213,7 @@ class ModuleSession:
         self.link.wantPoses(areShown and self.isSeen(inSlices))
         self.link.process()
         self.work.process()
-        if self._patience.regained():
+        if self._lockWait.may_retry():
             # What could not be read while the study was locked may be shown now.
             self.trainees.changed.emit()
         if self.trainees.hasChangedElsewhere():

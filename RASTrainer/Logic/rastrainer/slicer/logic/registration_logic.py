@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import LocalizationError
-from rastrainer.registration.registration import RIGID, Registration, register_all_kinds
+from rastrainer.registration.registration import Registration, register_all_kinds
 from rastrainer.registration.target_error import TargetError, target_error
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene.control_points import localPoints, worldPoints

@@ -11,7 +11,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.journal.replay_track import find_track
 from rastrainer.progress import Progress
-from rastrainer.registration.registration import RIGID
+from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.main_turn import giveWay
@@ -30,7 +30,8 @@ from rastrainer.slicer.scene.trial_scene import setTouchesVisible, showTouches
 from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.study import StoredTrial, Study
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.trial_review import trajectory_of, with_progress
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.trial_feedback import TrialFeedback

@@ -98,7 +98,7 @@ class StudyLogic:
             InputError: the file is no protocol, or the study has another one.
         """
         protocol = read_study_protocol(path)
-        StudyProgress(self._trainees.study).begin(protocol)
+        StudyProgress(self._trainees.study).set_protocol(protocol)
         self.changed.emit()
         return protocol
 

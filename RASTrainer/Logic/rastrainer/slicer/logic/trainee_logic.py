@@ -13,7 +13,9 @@ from rastrainer.progress import Progress
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.signal import Signal
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
-from rastrainer.study.database.study import StoredTrial, Study, StudyBusyError, Trainee
+from rastrainer.study.database.database import StudyBusyError
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial, Trainee
 from rastrainer.study.tre_calibration import TreCalibration, calibration_of
 
 LOOK_EVERY_S = 1.0

@@ -16,7 +16,8 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.study import DeletedTrialError, Study
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.study_trainees import DeletedTrialError
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 T = TypeVar("T")

@@ -147,7 +147,7 @@ class TrialLogic:
     def _analyze(self, record: TrialRecord) -> TrialAnalysis:
         # To register it nothing is needed of its journal, which takes long to read.
         scenario = self._findScenario(record.scenario)
-        return analyze_trial(record, scenario, self._cohort, give_way=giveWay)
+        return analyze_trial(record, scenario, self._cohort, pause=giveWay)
 
     def _review(self, analysis: TrialAnalysis, study: Study, truth: RevealedTruth) -> TrialAnalysis:
         scenario = self._findScenario(analysis.record.scenario)

@@ -9,7 +9,8 @@ import slicer
 
 from rastrainer import transforms
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.registration.registration import RIGID, Registration, register
+from rastrainer.registration.fits import RIGID
+from rastrainer.registration.registration import Registration, register
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.scene.control_points import labelsOf, localPoints, worldPoints
 from rastrainer.slicer.scene.robot_scene import placeRobot

@@ -10,12 +10,13 @@ import numpy as np
 
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.number_text import fixed
-from rastrainer.registration.registration import RIGID
+from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.scene.scene import Role
 from rastrainer.slicer.scene.tables import Column, showTable
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.study import StoredTrial, Study
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial
 from rastrainer.trial.analysis import published_score
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import (

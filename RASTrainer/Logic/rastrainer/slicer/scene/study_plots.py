@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rastrainer.registration.registration import RIGID
+from rastrainer.registration.fits import RIGID
 from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
 from rastrainer.slicer.scene.tables import Column, showTable
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.study import StoredTrial
+from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.tre_calibration import TreCalibration, share_text
 
 BEST_SCORE = 100.0

@@ -59,7 +59,7 @@ class CohortStore:
     def __init__(self, study: Study) -> None:
         self._database = study.database
 
-    def begin(self, plan: Mapping[str, Any], planned_trials: int) -> None:
+    def start(self, plan: Mapping[str, Any], planned_trials: int) -> None:
         """Note what will be played; the same again, to resume, changes nothing.
 
         Args:

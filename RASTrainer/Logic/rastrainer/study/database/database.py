@@ -25,7 +25,7 @@ INTERACTIVE_TIMEOUT_S = 0.05
 REST_S = 1.0
 
 
-class Patience:
+class LockWait:
     """Waits for a lock, and after a timeout no more for a while.
 
     A panel asks a study ten questions in a row: with a lock held elsewhere it waits once, not ten
@@ -40,30 +40,30 @@ class Patience:
     ) -> None:
         """Wait `most_s` for a lock, but not within `rest_s` after a timeout."""
         self._most_s, self._rest_s, self._clock = most_s, rest_s, clock
-        self._rests_until = float("-inf")
-        self._is_lost = False
+        self._retry_at = float("-inf")
+        self._has_timed_out = False
 
     @classmethod
-    def interactive(cls) -> Patience:
+    def interactive(cls) -> LockWait:
         """Return that of a thread which draws a window."""
         return cls(INTERACTIVE_TIMEOUT_S, REST_S)
 
     @property
     def timeout_s(self) -> float:
         """How long to wait now."""
-        return 0.0 if self._clock() < self._rests_until else self._most_s
+        return 0.0 if self._clock() < self._retry_at else self._most_s
 
-    def lose(self) -> None:
+    def note_timeout(self) -> None:
         """Note a timeout."""
-        self._is_lost = True
-        if self._clock() >= self._rests_until:
-            self._rests_until = self._clock() + self._rest_s
+        self._has_timed_out = True
+        if self._clock() >= self._retry_at:
+            self._retry_at = self._clock() + self._rest_s
 
-    def regained(self) -> bool:
+    def may_retry(self) -> bool:
         """Return whether, after a timeout, it is time to try again; true once."""
-        is_rested = self._is_lost and self._clock() >= self._rests_until
-        self._is_lost = self._is_lost and not is_rested
-        return is_rested
+        is_time = self._has_timed_out and self._clock() >= self._retry_at
+        self._has_timed_out = self._has_timed_out and not is_time
+        return is_time
 
 
 _COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
@@ -76,12 +76,12 @@ class StudyBusyError(InputError):
 class StudyDatabase:
     """A connection to one file; several processes and threads may have one each."""
 
-    def __init__(self, path: str | os.PathLike[str], patience: Patience | None = None) -> None:
+    def __init__(self, path: str | os.PathLike[str], lock_wait: LockWait | None = None) -> None:
         """Open the file, create it if it is not there, and bring its tables up to date.
 
         Args:
             path: of the file.
-            patience: with a lock held elsewhere; half a minute when left out.
+            lock_wait: with a lock held elsewhere; half a minute when left out.
 
         Raises:
             InputError: no such folder, not a database, another program's, damaged, or made by a
@@ -89,7 +89,7 @@ class StudyDatabase:
             StudyBusyError: another program has it locked.
         """
         self.path = Path(path)
-        self._patience = patience or Patience()
+        self._lock_wait = lock_wait or LockWait()
         self._check_place()
         with self._sentences():
             self._connection = self._connect()
@@ -136,7 +136,8 @@ class StudyDatabase:
     @contextmanager
     def _transaction(self, begin: str) -> Iterator[sqlite3.Connection]:
         with self._sentences():
-            self._connection.execute(f"PRAGMA busy_timeout = {1000 * self._patience.timeout_s:.0f}")
+            timeout_ms = 1000 * self._lock_wait.timeout_s
+            self._connection.execute(f"PRAGMA busy_timeout = {timeout_ms:.0f}")
             self._connection.execute(begin)
             try:
                 yield self._connection
@@ -148,7 +149,7 @@ class StudyDatabase:
     def _connect(self) -> sqlite3.Connection:
         self._keep_private()
         # Only we begin transactions: `isolation_level=None`.
-        return sqlite3.connect(self.path, timeout=self._patience.timeout_s, isolation_level=None)
+        return sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s, isolation_level=None)
 
     def _check_place(self) -> None:
         if "\0" in str(self.path):
@@ -226,7 +227,7 @@ class StudyDatabase:
         except sqlite3.Error as error:
             text = str(error).lower()
             if "locked" in text:
-                self._patience.lose()
+                self._lock_wait.note_timeout()
                 raise StudyBusyError(
                     f"Another program has the study {self.path} locked; try again when it has "
                     "finished."

@@ -26,7 +26,7 @@ class ReadOnlyStudyDatabase(StudyDatabase):
             self._roll_back()
         return sqlite3.connect(
             read_only_uri(self.path),
-            timeout=self._patience.timeout_s,
+            timeout=self._lock_wait.timeout_s,
             isolation_level=None,
             uri=True,
         )
@@ -43,7 +43,7 @@ class ReadOnlyStudyDatabase(StudyDatabase):
         self._connection.execute("PRAGMA query_only = ON")
 
     def _roll_back(self) -> None:
-        connection = sqlite3.connect(self.path, timeout=self._patience.timeout_s)
+        connection = sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s)
         try:
             connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         finally:

@@ -16,23 +16,13 @@ from rastrainer.files.writing import make_private_folder
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.database import Patience, StudyBusyError, StudyDatabase
+from rastrainer.study.database.database import LockWait, StudyDatabase
 from rastrainer.study.database.reading import ReadOnlyStudyDatabase
-from rastrainer.study.database.study_trainees import DeletedTrialError
-from rastrainer.study.database.values import StoredRegistration, StoredTrial, Trainee, TrialOutcome
+from rastrainer.study.database.values import StoredTrial, Trainee, TrialOutcome
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 from rastrainer.trial.trainee_progress import PastTrial
-
-__all__ = [
-    "DeletedTrialError",
-    "StoredRegistration",
-    "StoredTrial",
-    "Study",
-    "StudyBusyError",
-    "Trainee",
-]
 
 STUDY_FILE = "study.db"
 """The usual name."""
@@ -42,7 +32,7 @@ class Study:
     """A study's file; use it in a `with` statement, or call `close`.
 
     Every method raises `InputError` where the file cannot be read or written: read-only, damaged,
-    disk full; `StudyBusyError` where another program has it locked for longer than the patience
+    disk full; `StudyBusyError` where another program has it locked for longer than the lock_wait
     lasts. One thread may use it.
     """
 
@@ -54,14 +44,14 @@ class Study:
     def open(
         cls,
         path: str | os.PathLike[str],
-        patience: Patience | None = None,
+        lock_wait: LockWait | None = None,
         make_folder: bool = False,
     ) -> Study:
         """Open the study in a file, or begin one there.
 
         Args:
             path: Of the file.
-            patience: With a lock held elsewhere; half a minute when left out.
+            lock_wait: With a lock held elsewhere; half a minute when left out.
             make_folder: Make a missing folder of the file, for its user alone.
 
         Raises:
@@ -75,11 +65,11 @@ class Study:
                 make_private_folder(folder)
             except OSError as error:
                 raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
-        return cls(StudyDatabase(path, patience))
+        return cls(StudyDatabase(path, lock_wait))
 
     @classmethod
     def open_for_reading(
-        cls, path: str | os.PathLike[str], patience: Patience | None = None
+        cls, path: str | os.PathLike[str], lock_wait: LockWait | None = None
     ) -> Study:
         """Open the study in a file, which stays as it is; what would change it is refused.
 
@@ -87,7 +77,7 @@ class Study:
             InputError: as `open`, or there is no such file.
             StudyBusyError: another program has it locked.
         """
-        return cls(ReadOnlyStudyDatabase(path, patience))
+        return cls(ReadOnlyStudyDatabase(path, lock_wait))
 
     def __enter__(self) -> Study:
         return self

@@ -1,4 +1,4 @@
-"""Trainees in a study's database; every function works inside the caller's transaction."""
+"""Trainees in a study's database; each function runs in the caller's transaction, see `Study`."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class DeletedTrialError(InputError):
 def mark_deleted(connection: sqlite3.Connection, trial_ids: Iterable[str]) -> None:
     """Remember that these trials are deleted.
 
-    Kept are hashes of random UUIDs. They hold no name, no time and no number, and who does not have
-    the trial's record cannot learn from them that there was one.
+    Only hashes of the random UUIDs are kept: without the record, nobody can learn that a trial
+    existed.
     """
     connection.executemany(
         "INSERT OR IGNORE INTO deleted_trials VALUES (?)",
@@ -29,7 +29,7 @@ def mark_deleted(connection: sqlite3.Connection, trial_ids: Iterable[str]) -> No
 
 
 def check_not_deleted(connection: sqlite3.Connection, trial_id: str) -> None:
-    """Raise `DeletedTrialError` where the trial was deleted."""
+    """Raise `DeletedTrialError` if the trial was deleted."""
     query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
     if connection.execute(query, (_sha256(trial_id),)).fetchone() is not None:
         raise DeletedTrialError(
@@ -46,11 +46,7 @@ _SELECT = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
 
 
 def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool) -> Trainee:
-    """Add a trainee, by default under the next free pseudonym.
-
-    Raises:
-        InputError: the pseudonym is taken, or cannot be one.
-    """
+    """Add a trainee, by default with the next free pseudonym."""
     pseudonym = next_pseudonym(connection) if pseudonym is None else pseudonym
     check_pseudonym(pseudonym)
     if exists(connection, pseudonym):
@@ -63,7 +59,7 @@ def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool)
 
 
 def check_pseudonym(pseudonym: str) -> None:
-    """Raise `InputError` where a text cannot be a pseudonym, typed in or from the simulator."""
+    """Raise `InputError` if a text is not a valid pseudonym."""
     try:
         json_checks.pseudonym()(pseudonym)
     except ValueError as error:
@@ -71,22 +67,18 @@ def check_pseudonym(pseudonym: str) -> None:
 
 
 def create_where_missing(connection: sqlite3.Connection, pseudonym: str, consent: bool) -> None:
-    """Add the trainee of a record that arrives, unless the study has that one already.
-
-    Raises:
-        InputError: it cannot be a pseudonym.
-    """
+    """Add the trainee of a record unless they exist."""
     if not exists(connection, pseudonym):
         create(connection, pseudonym, consent)
 
 
 def exists(connection: sqlite3.Connection, pseudonym: str) -> bool:
-    """Return whether the study has a trainee of this pseudonym."""
+    """Return whether the study has a trainee."""
     return connection.execute(TRAINEE_ID, (pseudonym,)).fetchone() is not None
 
 
 def find(connection: sqlite3.Connection, pseudonym: str) -> Trainee:
-    """Return a trainee; raise `InputError` if the study has none of this pseudonym."""
+    """Return a trainee; raise `InputError` if unknown."""
     row = connection.execute(f"{_SELECT} WHERE pseudonym = ?", (pseudonym,)).fetchone()
     if row is None:
         raise InputError(f"The study has no trainee {json.dumps(str(pseudonym)[:64])}.")
@@ -94,7 +86,7 @@ def find(connection: sqlite3.Connection, pseudonym: str) -> Trainee:
 
 
 def listed(connection: sqlite3.Connection, archived: bool) -> tuple[Trainee, ...]:
-    """Return those who train, or those who are archived, by pseudonym."""
+    """Return active or archived trainees by pseudonym."""
     rows = connection.execute(
         f"{_SELECT} WHERE archived = ? ORDER BY pseudonym", (bool(archived),)
     ).fetchall()
@@ -107,7 +99,7 @@ def change(
     consent: bool | None = None,
     archived: bool | None = None,
 ) -> Trainee:
-    """Change what is not None; raise `InputError` if the study has no such trainee."""
+    """Change the given values of a trainee."""
     trainee = find(connection, pseudonym)
     connection.execute(
         "UPDATE trainees SET consent = ?, archived = ? WHERE pseudonym = ?",
@@ -121,13 +113,7 @@ def change(
 
 
 def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
-    """Delete a trainee with all that hangs on it; return how many finished trials that were.
-
-    The trials, aborted ones too, cannot be stored again.
-
-    Raises:
-        InputError: the study has no such trainee.
-    """
+    """Delete a trainee with all trials; return the number of finished ones."""
     find(connection, pseudonym)
     finished, aborted = (
         [
@@ -144,8 +130,8 @@ def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
 
 
 def next_pseudonym(connection: sqlite3.Connection) -> str:
-    """Return the pseudonym of a trainee who is created without one."""
-    # Numbers of deleted trainees do not come back: someone else would get their name.
+    """Return the next free pseudonym."""
+    # Numbers of deleted trainees are not reused, to avoid confusion.
     row = connection.execute("SELECT seq FROM sqlite_sequence WHERE name = 'trainees'").fetchone()
     number = (row[0] if row else 0) + 1
     while exists(connection, f"T{number:03d}"):

@@ -1,4 +1,4 @@
-"""Trials in a study's database; every function works inside the caller's transaction."""
+"""Trials in a study's database; each function runs in the caller's transaction, see `Study`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 from rastrainer import json_checks, protocol
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
-from rastrainer.registration.registration import RIGID, Registration
+from rastrainer.registration.fits import RIGID
+from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
@@ -37,7 +38,7 @@ _STAMPED_TRIALS = f"""
         (SELECT stored_utc FROM motions WHERE motions.trial_id = trials.trial_id)
     FROM trials WHERE trainee_id = ({TRAINEE_ID}) ORDER BY started_utc, rowid
 """
-"""Each trial of a trainee with what changes whenever something of it is stored."""
+"""Each trial of a trainee with a stamp that changes with any stored result."""
 
 Value = TypeVar("Value")
 
@@ -45,17 +46,7 @@ Value = TypeVar("Value")
 def add(
     connection: sqlite3.Connection, record: TrialRecord, json_object: Mapping[str, Any]
 ) -> bool:
-    """Store a trial with its trainee; return False where it is already stored.
-
-    Args:
-        connection: In a transaction.
-        record: The trial.
-        json_object: As it was delivered, with keys that the record does not know.
-
-    Raises:
-        InputError: the object is larger than 1 MiB, or another trial has its UUID.
-        DeletedTrialError: the trial was deleted with its trainee.
-    """
+    """Store a trial with its trainee; return False if it is stored already."""
     text = json_text(json_object)
     if len(text) > RECORD_LIMIT_BYTES:
         raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
@@ -82,12 +73,7 @@ def add(
 
 
 def check(connection: sqlite3.Connection, record: TrialRecord) -> bool:
-    """Return whether a trial would be new.
-
-    Raises:
-        InputError: another trial has its UUID, or its trainee's name is no pseudonym.
-        DeletedTrialError: the trial was deleted with its trainee.
-    """
+    """Return whether a trial would be new."""
     check_not_deleted(connection, record.trial_id)
     if exists(connection, record.trial_id):
         _check_same(find_record(connection, record.trial_id), record)
@@ -104,7 +90,7 @@ def add_results(
     target_errors: Mapping[str, TargetError],
     score: TrialScore | None,
 ) -> None:
-    """Add what was computed from a trial; raise `InputError` if the study has no such trial."""
+    """Add results that were computed from a trial."""
     _check_exists(connection, trial_id)
     for registration in registrations:
         stored = StoredRegistration.of(registration, target_errors.get(registration.kind))
@@ -127,11 +113,7 @@ def set_truth(
     true_tre_mm: float,
     head_to_world: Sequence[float],
 ) -> None:
-    """Store what the simulator revealed; a second time changes nothing.
-
-    Raises:
-        InputError: the study has no such trial, or the truth is not 1 and 16 finite numbers.
-    """
+    """Store the truth that the simulator revealed; only the first one counts."""
     _check_exists(connection, trial_id)
     try:
         true_tre_mm = json_checks.number(0, TRUTH_LIMIT)(true_tre_mm)
@@ -145,11 +127,7 @@ def set_truth(
 
 
 def set_motion(connection: sqlite3.Connection, trial_id: str, motion: Mapping[str, float]) -> None:
-    """Store the motion metrics of a trial; a second time changes nothing.
-
-    Raises:
-        InputError: the study has no such trial, or a metric is no finite number.
-    """
+    """Store the motion metrics of a trial; only the first ones count."""
     _check_exists(connection, trial_id)
     try:
         checked = {
@@ -164,19 +142,19 @@ def set_motion(connection: sqlite3.Connection, trial_id: str, motion: Mapping[st
 
 
 def exists(connection: sqlite3.Connection, trial_id: str) -> bool:
-    """Return whether the study has a trial of this UUID."""
+    """Return whether a trial is stored."""
     query = "SELECT 1 FROM trials WHERE trial_id = ?"
     return connection.execute(query, (trial_id,)).fetchone() is not None
 
 
 def is_revealed(connection: sqlite3.Connection, trial_id: str) -> bool:
-    """Return whether the simulator has revealed the truth of a trial."""
+    """Return whether the truth of a trial is stored."""
     query = "SELECT 1 FROM truths WHERE trial_id = ?"
     return connection.execute(query, (trial_id,)).fetchone() is not None
 
 
 def find_record(connection: sqlite3.Connection, trial_id: str) -> TrialRecord:
-    """Return the record of a trial; raise `InputError` if the study has no such trial."""
+    """Return the record of a trial."""
     _check_exists(connection, trial_id)
     (text,) = connection.execute(
         "SELECT record_json FROM trials WHERE trial_id = ?", (trial_id,)
@@ -185,7 +163,7 @@ def find_record(connection: sqlite3.Connection, trial_id: str) -> TrialRecord:
 
 
 def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
-    """Return a trial with its latest results; raise `InputError` if there is no such trial."""
+    """Return a trial with its latest results."""
     record = find_record(connection, trial_id)
     registrations = connection.execute(
         "SELECT kind, registration_json FROM registrations WHERE trial_id = ? ORDER BY id",
@@ -215,13 +193,9 @@ def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
 def history(
     connection: sqlite3.Connection, pseudonym: str, known: dict[str, tuple[tuple, StoredTrial]]
 ) -> tuple[StoredTrial, ...]:
-    """Return a trainee's trials as they were started; raise `InputError` for an unknown one.
+    """Return a trainee's trials in order of starting.
 
-    Args:
-        connection: In a transaction.
-        pseudonym: Of the trainee.
-        known: Trials that were read before, with a stamp that changes with them;
-            becomes those of this trainee.
+    `known` caches trials with a stamp that changes with them; it is updated to this trainee's.
     """
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(_STAMPED_TRIALS, (pseudonym,)).fetchall()
@@ -237,7 +211,7 @@ def history(
 
 
 def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTrial, ...]:
-    """Return a trainee's scored trials but the trial runs, as they were started."""
+    """Return a trainee's scored trials without trial runs, in order of starting."""
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
         "SELECT trial_id, task, mode, completion_time_s, "
@@ -246,7 +220,7 @@ def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTri
         "ORDER BY started_utc, trials.rowid",
         (pseudonym, protocol.TRIAL_RUN),
     )
-    # Row by row: the texts of all trials of a busy trainee are never in memory together.
+    # Row by row, so that not all records are in memory together.
     return tuple(_past_trial(*row) for row in rows)
 
 
@@ -258,7 +232,7 @@ def _past_trial(trial_id: str, task: str, mode: str, seconds: float, latest: str
 
 
 def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:
-    """Return the trials whose truth is not known yet, oldest first."""
+    """Return the records of trials without stored truth, oldest first."""
     rows = connection.execute(
         "SELECT record_json FROM trials "
         "WHERE trial_id NOT IN (SELECT trial_id FROM truths) ORDER BY rowid"
@@ -267,7 +241,7 @@ def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:
 
 
 def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
-    """Return what CTPS compares: registered trials but the trial runs, of one mode or all."""
+    """Return the registered trials without trial runs, for CTPS."""
     rows = connection.execute(
         """
         SELECT mode, pseudonym, task, completion_time_s, fre_mm
@@ -286,7 +260,7 @@ def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
 
 
 def outcomes(connection: sqlite3.Connection, task: str, mode: str) -> tuple[TrialOutcome, ...]:
-    """Return the outcomes of all trials of a task and mode, in the order they were stored."""
+    """Return the outcomes of all trials of a task and mode, in order of storing."""
     rows = connection.execute(
         f"""
         SELECT trials.trial_id, pseudonym, completion_time_s,
@@ -303,7 +277,7 @@ def outcomes(connection: sqlite3.Connection, task: str, mode: str) -> tuple[Tria
 
 
 def json_text(value: object) -> str:
-    """Return a value as ASCII JSON; raise `InputError` if it has no such form."""
+    """Return a value as ASCII JSON; raise `InputError` if that is impossible."""
     try:
         return json.dumps(value, allow_nan=False)
     except (TypeError, ValueError, RecursionError):
@@ -311,7 +285,7 @@ def json_text(value: object) -> str:
 
 
 def decoded(text: str, read: Callable[[Any], Value]) -> Value:
-    """Return what stored JSON holds; raise `InputError` where it is not what was stored."""
+    """Return decoded stored JSON; raise `InputError` if it is invalid."""
     try:
         return read(decode_finite_json(text))
     except (TypeError, ValueError, KeyError, AttributeError):

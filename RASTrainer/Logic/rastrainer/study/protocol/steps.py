@@ -118,7 +118,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
 
 
 def _questions(protocol: StudyProtocol, occasion: str, mode: str, prefix: str) -> Iterator[Step]:
-    for asked in protocol.asked:
+    for asked in protocol.questionnaires:
         if asked.occasion == occasion and (not asked.modes or mode in asked.modes):
             name = asked.questionnaire
             yield Step(f"{prefix}/{name}", StepKind.QUESTIONNAIRE, mode, questionnaire=name)

@@ -43,7 +43,7 @@ class StudyProgress:
     def __init__(self, study: Study) -> None:
         self._database = study.database
 
-    def begin(self, protocol: StudyProtocol) -> None:
+    def set_protocol(self, protocol: StudyProtocol) -> None:
         """Make this the study's protocol; the same one again changes nothing.
 
         Raises:

@@ -34,7 +34,7 @@ _KEYS = (
 
 
 @dataclass(frozen=True)
-class Asked:
+class ScheduledQuestionnaire:
     """A questionnaire, when it is asked and in which modes (all where the tuple is empty)."""
 
     questionnaire: str
@@ -56,7 +56,7 @@ class StudyProtocol:
         trial_run_min: Length of the trial run at the start of each mode, in min; 0 for none.
         break_between_modes_min: At least so long, in min; 0 for none.
         break_between_tasks_min: The same between tasks.
-        asked: Questionnaires.
+        questionnaires: When each one is answered.
         references: Of the score, by task; a task without one has that of the scenario.
         score_version: Version of the score that the study was planned with.
         pass_mark: Score that passes; None where the protocol sets none and the default holds.
@@ -72,7 +72,7 @@ class StudyProtocol:
     trial_run_min: float = 0.0
     break_between_modes_min: float = 0.0
     break_between_tasks_min: float = 0.0
-    asked: tuple[Asked, ...] = ()
+    questionnaires: tuple[ScheduledQuestionnaire, ...] = ()
     references: Mapping[str, ScoreReference] = field(default_factory=dict)
     score_version: str = SCORE_VERSION
     pass_mark: float | None = None
@@ -96,7 +96,7 @@ class StudyProtocol:
             },
             "questionnaires": [
                 {"name": asked.questionnaire, "when": asked.occasion, "modes": list(asked.modes)}
-                for asked in self.asked
+                for asked in self.questionnaires
             ],
             "scoring": {
                 "version": self.score_version,
@@ -163,8 +163,8 @@ def _protocol(fields: Fields) -> StudyProtocol:
         trial_run_min=fields.fields("trialRun").number("minutes", 0, 120),
         break_between_modes_min=breaks.number("betweenModesMinutes", 0, 30 * 24 * 60),
         break_between_tasks_min=breaks.number("betweenTasksMinutes", 0, 24 * 60),
-        asked=tuple(
-            _asked(entry, modes) for entry in fields.list_of_fields("questionnaires", 0, 20)
+        questionnaires=tuple(
+            _questionnaire(entry, modes) for entry in fields.list_of_fields("questionnaires", 0, 20)
         ),
         # Those of the first version are of the expected TRE, which is scored no more.
         references=_references(scoring.fields("references"), tasks)
@@ -178,7 +178,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
     return protocol
 
 
-def _asked(entry: Fields, modes: tuple[str, ...]) -> Asked:
+def _questionnaire(entry: Fields, modes: tuple[str, ...]) -> ScheduledQuestionnaire:
     name = entry.text("name", 40)
     try:
         find_questionnaire(name)
@@ -188,7 +188,7 @@ def _asked(entry: Fields, modes: tuple[str, ...]) -> Asked:
     chosen = entry.texts("modes", 0, len(modes), choices=modes)
     if chosen and occasion in (BEFORE_ALL, AFTER_ALL):
         raise entry.error("modes", f"empty, since {occasion} belongs to no mode")
-    return Asked(name, occasion, chosen)
+    return ScheduledQuestionnaire(name, occasion, chosen)
 
 
 def _references(fields: Fields, tasks: tuple[str, ...]) -> dict[str, ScoreReference]:
