@@ -1,35 +1,35 @@
-"""Numbers as people read them: halves rounded up, a true minus sign."""
+"""Numbers for people: halves are rounded up, with a true minus sign."""
 
 from __future__ import annotations
 
 
 def fixed(value: float, digits: int) -> str:
-    """Return a number with so many digits after the point."""
+    """Return a number with `digits` decimals."""
     text = f"{_past_half(value):.{digits}f}"
     if float(text) == 0:
-        # What rounds to 0 has no sign.
+        # Zero has no sign.
         text = text.removeprefix("-")
     return text.replace("-", "−")
 
 
 def signed(value: float, digits: int) -> str:
-    """Return a number with so many digits after the point, with its sign even where that is +."""
+    """Return a number with `digits` decimals and its sign, also +."""
     text = fixed(value, digits)
     return text if text.startswith("−") or float(text) == 0 else f"+{text}"
 
 
 def significant(value: float, digits: int = 3, sign: bool = False) -> str:
-    """Return a number with so many significant digits, with its sign even where that is +."""
+    """Return a number with significant digits, optionally with its sign."""
     return f"{_past_half(value):{'+' if sign else ''}.{digits}g}".replace("-", "−")
 
 
 def p_text(p: float) -> str:
-    """Return a p-value as papers print it, with three digits and no zero before the point."""
+    """Return a p-value with three decimals and no leading zero, as in papers."""
     return "< .001" if p < 0.001 else fixed(p, 3).removeprefix("0")
 
 
 def p_phrase(p: float) -> str:
-    """Return a p-value within a sentence, kept on one line: `p = .125` or `p < .001`."""
+    """Return a p-value for a sentence, without line breaks: `p = .125` or `p < .001`."""
     text = p_text(p)
     words = f"p {text}" if text.startswith("<") else f"p = {text}"
     return words.replace(" ", "\N{NO-BREAK SPACE}")
@@ -41,7 +41,7 @@ def percent(share: float) -> str:
 
 
 def counted(count: int, what: str) -> str:
-    """Return how many there are: `1 trial`, `2 trials`."""
+    """Return a count with its noun: `1 trial`, `2 trials`."""
     return f"{count} {what}{'' if count == 1 else 's'}"
 
 

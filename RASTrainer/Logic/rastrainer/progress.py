@@ -1,4 +1,4 @@
-"""Progress of long work, reported step by step, also from one process to another in lines."""
+"""Progress of long work, also between processes as lines of output."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _WARNING = "Warning: "
 
 
 def print_progress(step: str, share: float) -> None:
-    """Print a step as a line that `report_line` understands."""
+    """Print a step as a line for `report_line`."""
     print(f"{share:4.0%}  {step}", flush=True)
 
 
 def print_warning(sentence: str) -> None:
-    """Print a warning as a line that `report_line` understands."""
+    """Print a warning as a line for `report_line`."""
     print(f"{_WARNING}{sentence}", flush=True)
 
 

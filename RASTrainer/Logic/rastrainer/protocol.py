@@ -1,7 +1,6 @@
 """The contract between the simulator and its clients: device names, commands, phases, limits.
 
-Both sides import this one file, so that neither can drift from the other. It says what may travel;
-`rastrainer.igtl` says how the bytes look.
+Both sides import this file, so they cannot diverge. `rastrainer.igtl` defines the bytes.
 """
 
 from __future__ import annotations
@@ -46,9 +45,9 @@ class DeviceName:
 
 
 class Rate:
-    """How often each device is sent: poses and state in simulated time, the rest in wall time.
+    """How often each device is sent: poses and state in simulated time, others in wall time.
 
-    Poses and state come at most so often, and only when they have changed.
+    Poses and state are sent at most this often, and only when changed.
     """
 
     TOOL_TIP_HZ = 60.0
@@ -70,7 +69,7 @@ class Phase(str, Enum):
 
 
 OPEN_PHASES = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
-"""A trial is being played, paused, or waits to be registered."""
+"""A trial that is running, paused, or not registered yet."""
 FINISHED_PHASES = (Phase.REGISTERED, Phase.SCORED)
 
 
@@ -84,10 +83,10 @@ class AbortReason(str, Enum):
 
 
 COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTICE_OVER)
-"""In the simulator's menu, by a client's command, or since the time of a trial run was over. The
-other one is a trial that the simulator's end has cut short and after which another was begun."""
+"""In the simulator's menu, by a client's command, or at the end of a trial run's time. The other
+reason is for a trial interrupted by the end of the simulator and not resumed before another."""
 MIN_ABORTED_S = 10.0
-"""An aborted trial without any touch is kept where it took longer than this."""
+"""An aborted trial without any touch is kept if it took longer than this."""
 
 
 class Mode(str, Enum):
@@ -98,14 +97,14 @@ class Mode(str, Enum):
 
 
 class TouchRule(str, Enum):
-    """Which touch counts: of a tip on the skin, or, as in the paper, anywhere near the fiducial."""
+    """Which touch counts: only on the skin, or, as in the paper, anywhere near the fiducial."""
 
     ON_SKIN = "on skin"
     WITHIN_RADIUS = "within radius"
 
 
 class StepKind(str, Enum):
-    """What a study asks of a trainee in one step."""
+    """Kind of a step in a study."""
 
     QUESTIONNAIRE = "questionnaire"
     TRIAL_RUN = "trial-run"
@@ -114,8 +113,8 @@ class StepKind(str, Enum):
 
 
 ALL_DONE, FREE, REPEAT = "all-done", "free", "repeat"
-"""In place of a step: none is left, no study leads the trainee, or the step's trial was aborted and
-is played again only once there is a reason."""
+"""Instead of a step: none is left, the trainee follows no study, or the step's trial was aborted
+and needs a reason to be repeated."""
 
 
 class Proximity(str, Enum):
@@ -228,11 +227,10 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
 
 
 def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the checked arguments of a command, defaults filled in.
+    """Return the checked arguments of a command with defaults.
 
     Raises:
-        InputError: the command or an argument is unknown, missing or out of range; the sentence
-            says what would be right.
+        InputError: the command or an argument is unknown, missing or out of range.
     """
     if command not in COMMAND_ARGUMENTS:
         known = ", ".join(COMMAND_ARGUMENTS)
@@ -255,9 +253,9 @@ def _quoted(word: object) -> str:
 
 
 def decode_json_object(body: str) -> dict[str, Any]:
-    """Return the JSON object that a command's body holds; an empty body is an empty object.
+    """Return the JSON object in a command's body; an empty body is an empty object.
 
     Raises:
-        InputError: it holds none, as of `rastrainer.finite_json.decode_message_object`.
+        InputError: as `rastrainer.finite_json.decode_message_object`.
     """
     return decode_message_object(body or "{}", "The command's body")

@@ -1,9 +1,9 @@
-"""Take the face off a head's surface, so that nobody is known by it.
+"""Remove the face from a head's surface, so that the person cannot be recognized.
 
 The skin around the tip of the nose, from the brows to the chin, is replaced by a smooth shield:
-seen from the head's vertical axis, each place has the mean direction, height and distance of its
-neighbors (Tutte 1963). What is left there depends on the shield's rim alone. Vertices are moved,
-never added or removed: the surface stays closed.
+each vertex gets the mean direction, height and distance of its neighbors as seen from the head's
+vertical axis (Tutte 1963), so the shield depends only on its rim. Vertices are moved, never added
+or removed: the surface stays closed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _TOLERANCE = 1e-4
 
 
 def face_vertices(mesh: HeadMesh) -> np.ndarray:
-    """Return which vertices (n,) bool are the face; none on a head that ends above it."""
+    """Return which vertices (n,) bool are the face; none if the head ends above it."""
     away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
     return (away < RADIUS_MM) & ~is_on_base(mesh)
 
@@ -34,7 +34,7 @@ def is_on_base(mesh: HeadMesh) -> np.ndarray:
 
 
 def nose_tip(mesh: HeadMesh) -> np.ndarray:
-    """Return the foremost place (3,), RAS mm, of the lower half of the head, near its middle."""
+    """Return the foremost point (3,), RAS mm, of the lower half of the head near the midline."""
     vertices = mesh.vertices
     top, bottom = vertices[:, 2].max(), vertices[:, 2].min()
     below = (top - vertices[:, 2]) / (top - bottom)
@@ -46,7 +46,7 @@ def nose_tip(mesh: HeadMesh) -> np.ndarray:
 
 
 def without_face(mesh: HeadMesh) -> HeadMesh:
-    """Return the head with a smooth membrane in the place of its face."""
+    """Return the head with a smooth membrane instead of its face."""
     free = face_vertices(mesh)
     # Where the base cuts through the face its rim would keep the profile: it may slide along.
     away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
@@ -63,7 +63,7 @@ def without_face(mesh: HeadMesh) -> HeadMesh:
 
 
 def _relaxed(edges: np.ndarray, values: np.ndarray, moving: np.ndarray) -> np.ndarray:
-    """Return values (n,) that are the mean of their neighbors wherever they may move.
+    """Return values (n,) of which the moving ones are the mean of their neighbors.
 
     Solved by conjugate gradients (Hestenes and Stiefel 1952).
     """

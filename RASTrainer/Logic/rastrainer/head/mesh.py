@@ -69,7 +69,7 @@ class HeadMesh:
 
     @cached_property
     def base(self) -> np.ndarray:
-        """(3,) float: the middle of the flat base on which the head stands, RAS mm."""
+        """(3,) float: the center of the flat base of the head, RAS mm."""
         heights = self.vertices[:, 2]
         base = self.vertices[heights <= heights.min() + BASE_THICKNESS_MM]
         return (base.min(axis=0) + base.max(axis=0)) / 2.0

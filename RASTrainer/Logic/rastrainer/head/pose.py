@@ -1,4 +1,4 @@
-"""Where the head of a trial stands: near its nominal pose, and known only to the simulator."""
+"""The pose of the head in a trial: near its nominal pose, and known only to the simulator."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rastrainer import transforms
 
 @dataclass(frozen=True)
 class Perturbation:
-    """How far the head of a trial may stand from its nominal pose.
+    """How far the head may be from its nominal pose.
 
     Attributes:
         translation_mm: along each axis of World.
@@ -26,20 +26,18 @@ class Perturbation:
 
 
 MAX_PERTURBATION = Perturbation(200.0, 180.0, 45.0)
-"""What a scenario or a set-up may ask for at most."""
+"""Limits for scenarios and set-ups."""
 
 
 def perturbed_pose(
     head_to_world: np.ndarray, pivot: np.ndarray, limits: Perturbation, seed: int
 ) -> np.ndarray:
-    """Return the pose of the head in the trial of a seed, (4, 4) float, mm.
-
-    The head is turned about a point of it, then moved. The same seed gives the same pose.
+    """Return the pose of the head for a seed, (4, 4) float, mm: rotated about a pivot, then moved.
 
     Args:
         head_to_world: (4, 4) float, the nominal pose.
         pivot: (3,) float, RAS mm.
-        limits: how far the pose may be from it.
+        limits: of the perturbation.
         seed: 0 or above.
     """
     random = default_rng(seed)

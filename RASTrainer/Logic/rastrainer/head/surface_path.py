@@ -1,9 +1,8 @@
-"""The distance from one point of a surface to another along the surface.
+"""Shortest paths along a surface.
 
-The shortest path is sought in a graph whose nodes are the mesh's vertices. Besides the edges it
-has, for every edge, the straight path across it between the opposite corners of its two triangles,
-unfolded into one plane. Its lengths are never shorter than the true geodesic and, on a sphere,
-about 2.5 % longer on average.
+They are searched in a graph of the mesh's vertices. Besides the edges, it has for every edge the
+straight path between the opposite corners of its two triangles, unfolded into one plane. Lengths
+are never shorter than the geodesic and, on a sphere, about 2.5 % longer on average.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ class SurfaceGraph:
 
     def distance(self, start: np.ndarray, end: np.ndarray) -> float:
         """Return the length of the path over the surface between two points (3,) on it."""
-        # Of a task both the complexity and the shortest path ask for the same paths.
+        # Complexity and shortest path of a task need the same paths.
         key = (*map(float, start), *map(float, end))
         if key not in self._known:
             self._known[key] = self._distance(start, end)
@@ -54,10 +53,9 @@ class SurfaceGraph:
         return list(zip(lengths.tolist(), corners, strict=True))
 
     def _from_corners(self, first: NearestPoint, last: NearestPoint) -> dict[int, float]:
-        """Return the distances of vertices, as far as the corners of the last are reached.
+        """Return the distances of vertices until the corners of the last triangle are reached.
 
-        Vertices are taken in the order of their distance and what is left at least, the straight
-        line (A*, Hart 1968): most of what leads elsewhere is never looked at.
+        Vertices are visited by distance plus straight line to the goal (A*, Hart 1968).
         """
         left = np.linalg.norm(self._mesh.vertices - last.position, axis=1).tolist()
         missing = set(self._corners(last))
@@ -110,10 +108,10 @@ def _paths_across(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def shortest_path_mm(fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph) -> float:
-    """Return the length of the shortest free path through (n, 3) fiducials in their order, in mm.
+    """Return the length in mm of the shortest free path through (n, 3) fiducials in order.
 
-    From each to the next it is the straight line where the head is not in the way, else the way
-    over the skin, which the graph makes about 2.5 % too long. It takes about half a second.
+    Between two fiducials it is the straight line or, if the head is in the way, the path along the
+    skin, about 2.5 % too long in the graph. Takes about half a second.
     """
     fiducials = np.asarray(fiducials, dtype=float)
     normals = [outward_normal(mesh, point) for point in fiducials]
@@ -126,7 +124,7 @@ def shortest_path_mm(fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph)
 
 
 def _is_free(mesh: HeadMesh, ends: np.ndarray, normals: list[np.ndarray]) -> bool:
-    """Return whether the straight line leaves the skin outward at both ends and meets nothing."""
+    """Return whether the straight line leaves the skin outward at both ends and hits nothing."""
     along = ends[1] - ends[0]
     if along @ normals[0] <= 0 or -along @ normals[1] <= 0:
         return False

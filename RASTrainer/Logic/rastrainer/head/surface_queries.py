@@ -1,4 +1,4 @@
-"""Queries to a surface: the nearest point on it, its outward normals, what it hides."""
+"""Nearest points, outward normals and visibility on a surface."""
 
 from __future__ import annotations
 
@@ -72,10 +72,10 @@ def outward_normals(mesh: HeadMesh, points: np.ndarray) -> np.ndarray:
 
 
 def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 1.0) -> bool:
-    """Return whether the surface comes between `eye` and `point`, both (3,).
+    """Return whether the surface is between `eye` and `point`, both (3,).
 
-    The last `slack_mm` before the point do not count: it lies on the surface itself.
-    (Ray and triangle by Möller and Trumbore 1997.)
+    The last `slack_mm` are ignored, because the point is on the surface. (Ray and triangle by
+    Möller and Trumbore 1997.)
     """
     start = np.asarray(eye, dtype=float)
     along = point - start

@@ -1,4 +1,4 @@
-"""The images that a head was made of, as a scenario carries them: in an NRRD file, RAS mm."""
+"""The images of a scenario's head, in an NRRD file, RAS mm."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ MIN_COVERED_SHARE = 0.5
 
 @dataclass(frozen=True)
 class VolumeFile:
-    """What a scenario says about its volume, of which nothing is read yet.
+    """A scenario's volume, not read yet.
 
     Attributes:
         path: of the NRRD file.
-        window, level: of its values, that are shown from black to white.
+        window, level: values displayed from black to white.
     """
 
     path: Path
@@ -54,7 +54,7 @@ class HeadVolume:
 
 
 def read_volume_file(fields: Fields) -> VolumeFile | None:
-    """Return what the field `volume` says; None where there is none."""
+    """Return the field `volume`, or None."""
     if "volume" not in fields.names():
         return None
     volume = fields.fields("volume")
@@ -68,13 +68,13 @@ def read_head_volume(file: VolumeFile) -> HeadVolume:
     """Read the volume of a scenario.
 
     Raises:
-        InputError: it is missing or cannot be used; the sentence says what it must be.
+        InputError: it is missing or unusable.
     """
     return HeadVolume(*read_nrrd(file.path), file.window, file.level)
 
 
 def write_head_volume(path: Path, volume: HeadVolume) -> None:
-    """Write the voxels of a volume and where they lie, and nothing else.
+    """Write the voxels and geometry of a volume, and nothing else.
 
     Raises:
         InputError: the file cannot be written.
@@ -83,10 +83,10 @@ def write_head_volume(path: Path, volume: HeadVolume) -> None:
 
 
 def check_place(volume: HeadVolume, head: HeadMesh, path: Path) -> None:
-    """Raise a sentence about the file where a volume does not lie where its head is.
+    """Check that a volume covers its head.
 
     Raises:
-        InputError: less than half of the head lies in the volume.
+        InputError: less than half of the head is in the volume.
     """
     indices = transforms.apply(transforms.inverse(volume.ijk_to_ras), head.vertices.astype(float))
     is_within = (indices >= -0.5) & (indices <= np.array(volume.values.shape) - 0.5)

@@ -1,4 +1,4 @@
-"""A simple client: one connection, one receiving thread, commands that wait for their answer."""
+"""A simple client: one connection, one receiving thread, blocking commands."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _PIECE_BYTES = 64 * 1024
 
 
 class LinkError(RASTrainerError):
-    """The connection could not be made, was lost, or did not answer in time."""
+    """The connection failed, was lost, or timed out."""
 
 
 @dataclass(frozen=True)
 class Reply:
-    """The answer to a command: whether it succeeded, the sentence if not, and the data."""
+    """The answer to a command: success, error message and data."""
 
     ok: bool
     error: str = ""
@@ -38,11 +38,11 @@ class Reply:
 class Client:
     """A connection to an OpenIGTLink server; close it, or use it in a `with` statement.
 
-    `on_message` is called in the receiving thread with every message that is not an answer to
-    `send_command`; it must not itself wait for an answer.
+    `on_message` is called in the receiving thread with every message except answers to
+    `send_command`; it must not wait for an answer itself.
 
     Attributes:
-        latest: the last message of each device, by its name.
+        latest: the last message of each device, by name.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Client:
         """Connect within `timeout` seconds.
 
         Raises:
-            LinkError: nothing listens there, or it does not answer in time.
+            LinkError: the connection is refused or times out.
         """
         try:
             self._socket = socket.create_connection((host, port), timeout)
@@ -83,7 +83,7 @@ class Client:
 
     @property
     def is_open(self) -> bool:
-        """Whether the connection stands, as far as this side knows."""
+        """Whether the connection is open, as far as this side knows."""
         return self._is_open
 
     def close(self) -> None:
@@ -97,7 +97,7 @@ class Client:
         """Send one message.
 
         Raises:
-            InputError: the message cannot travel.
+            InputError: the message is invalid.
             LinkError: the connection is lost.
         """
         data = pack(message)
@@ -135,7 +135,7 @@ class Client:
         accept: Callable[[Message], bool] = lambda _message: True,
         timeout: float = 5.0,
     ) -> Message:
-        """Return the latest message of `device` as soon as there is one that `accept` accepts.
+        """Return the latest message of `device` that `accept` accepts, waiting for it if needed.
 
         Raises:
             LinkError: none within `timeout` seconds, or the connection is lost.
@@ -184,7 +184,7 @@ class Client:
 
 
 def _resolve(answer: Future[Reply], content: CommandReply, metadata: Mapping[str, str]) -> None:
-    """Give the answer to the waiting thread; its body comes from the peer, and is checked."""
+    """Pass the answer to the waiting thread; its body is untrusted and checked."""
     try:
         data = decode_json_object(content.body)
     except InputError:

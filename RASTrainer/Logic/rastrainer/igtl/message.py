@@ -1,7 +1,7 @@
-"""A whole message: header, extended header, content and metadata, as bytes and back.
+"""Messages with header, extended header, content and metadata, from and to bytes.
 
 Only the types in `CONTENTS` can be sent. Slicer crashes on most types with an underscore in their
-name, so a type is no argument anywhere: it follows from the content's class.
+name, so the type is never an argument: it follows from the class of the content.
 """
 
 from __future__ import annotations
@@ -45,11 +45,11 @@ class Message:
     """One message.
 
     Attributes:
-        device: the device's name, 1 to 20 ASCII characters; the name of the node in Slicer.
-        content: what it carries, which also makes its type.
-        metadata: texts by key; only header version 2 carries them.
-        message_id: 32-bit number of the sender's own; only header version 2 carries it.
-        timestamp: seconds since 1970; None stamps it when packed. Slicer sends 0.
+        device: 1 to 20 ASCII characters; the name of the node in Slicer.
+        content: the content, whose class determines the type.
+        metadata: texts by key; header version 2 only.
+        message_id: the sender's 32-bit number; header version 2 only.
+        timestamp: seconds since 1970; None for the time of packing. Slicer sends 0.
         version: header version, 1 or 2.
     """
 
@@ -77,10 +77,9 @@ def pack(message: Message) -> bytes:
     """Return the bytes of a message.
 
     Raises:
-        InputError: something in it cannot travel, or would do harm in Slicer: a content that is
-            none of ours, a name that is too long, a body without a byte, an empty list without
-            metadata (Slicer would not clear its points), an answer without its status (Slicer
-            would take it for a failure).
+        InputError: the message is invalid or would do harm in Slicer: an unknown content, a name
+            that is too long, an empty body, an empty list without metadata (Slicer would not clear
+            its points), an answer without status (Slicer would assume a failure).
     """
     if type(message.content) not in CONTENTS.values():
         known = ", ".join(CONTENTS)
@@ -133,7 +132,7 @@ def _pack_metadata(metadata: Mapping[str, str]) -> tuple[bytes, bytes]:
 
 
 def read_header(data: bytes | bytearray) -> Header | None:
-    """Return the header that the first 58 bytes of `data` hold, or None where they hold none."""
+    """Return the header in the first 58 bytes of `data`, or None if there is none."""
     version, kind, device, seconds, fraction, size, checksum = _HEADER.unpack_from(data)
     if version not in (1, 2) or not _TYPE_FIELD.fullmatch(kind):
         return None
@@ -143,12 +142,12 @@ def read_header(data: bytes | bytearray) -> Header | None:
 
 
 def unpack(header: Header, body: bytes, keep_bytes: bool = False) -> Message:
-    """Return the message of a header and the body that belongs to it; its checksum is not checked.
+    """Return the message of a header and its body, whose checksum is not checked.
 
-    `keep_bytes` keeps texts that are not UTF-8, as `decode_text` says.
+    `keep_bytes` keeps invalid UTF-8, see `decode_text`.
 
     Raises:
-        InputError: the type is none of ours, or the body does not hold what it says.
+        InputError: the type is unknown, or the body is invalid.
     """
     kind = CONTENTS.get(header.type)
     if kind is None:
@@ -172,7 +171,7 @@ def _unpack_metadata(index: bytes, entries: bytes, keep_bytes: bool) -> dict[str
     if not index:
         return {}
     if len(index) < _COUNT.size:
-        raise InputError("The metadata of a message must begin with their count.")
+        raise InputError("The metadata of a message must start with their count.")
     (count,) = _COUNT.unpack_from(index)
     if count > MAX_METADATA or len(index) < _COUNT.size + count * _ENTRY.size:
         raise InputError(f"A message must list at most {MAX_METADATA} whole metadata entries.")

@@ -1,4 +1,4 @@
-"""From a stream of bytes, arriving in any pieces, to messages; hostile until proven good."""
+"""From a stream of untrusted bytes, in pieces of any size, to messages."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from rastrainer.igtl.message import (
 from rastrainer.igtl.wire import crc64
 
 MAX_KEPT_BYTES = 2**20
-"""Bytes of a body that are held in memory until it is whole; longer ones are passed over."""
+"""Longer bodies are skipped instead of buffered."""
 
 MAX_GARBAGE_BYTES = 64 * 1024
-"""Bytes in a row that belong to no message, after which the stream is given up."""
+"""Bytes in a row that belong to no message, after which the stream is rejected."""
 
-# What a header begins with; `read_header` looks closer.
+# The start of a header; `read_header` checks the rest.
 _HEADER_START = re.compile(rb"\0[\1\2][A-Z]")
 
 
 class StreamError(str, Enum):
-    """Why bytes did not become a message."""
+    """Why bytes were not accepted as a message."""
 
     CHECKSUM = "wrong checksum"
     TYPE = "unsupported type"
@@ -40,21 +40,21 @@ class StreamError(str, Enum):
 
 
 class MessageReader:
-    """Cuts a stream of bytes into messages, and counts what is none.
+    """Splits a stream of bytes into messages and counts errors.
 
-    A message that cannot be used is passed over by the length its header claims; after bytes that
-    are no header the reader looks for the next one. Memory stays below `largest_kept` and one
-    piece, whatever arrives. A stream that does not begin with a header is given up at once: a page
-    in somebody's browser can make it send an HTTP request to any port, with messages in its body.
+    An unusable message is skipped by the length in its header; after bytes that are no header, the
+    reader searches for the next header. Memory is limited. A stream that does not start with a
+    header is rejected at once: a web page can make a browser send an HTTP request with messages in
+    its body to any port.
 
     Attributes:
-        taken: messages that were used up, and stretches of waste between them.
-        errors: how often each kind of trouble came up.
-        refusal: empty, or why nothing more is read: the sentence to close the connection with.
+        taken: number of processed messages and stretches of garbage between them.
+        errors: number of errors of each kind.
+        refusal: why reading stopped, the message to close the connection with; empty while reading.
     """
 
     def __init__(self, kept: Mapping[str, int] | None = None):
-        """Keep only the types in `kept`, each up to so many bytes; all that we know by default."""
+        """Keep only the types in `kept`, up to the given sizes; by default all known types."""
         self._kept = dict.fromkeys(CONTENTS, MAX_KEPT_BYTES) if kept is None else dict(kept)
         self._buffer = bytearray()
         self._to_skip = 0
@@ -65,11 +65,11 @@ class MessageReader:
 
     @property
     def is_between_messages(self) -> bool:
-        """Whether nothing of a message is still missing."""
+        """Whether no message is incomplete."""
         return not self._buffer and not self._to_skip
 
     def feed(self, data: bytes) -> list[Message]:
-        """Return the messages that `data` completes, in their order."""
+        """Return the messages that `data` completes, in order."""
         if self.refusal:
             return []
         self._buffer += data
@@ -79,7 +79,7 @@ class MessageReader:
         return messages
 
     def _take_one(self, messages: list[Message]) -> bool:
-        """Use up one message or one stretch of waste; False where more bytes are needed."""
+        """Process one message or stretch of garbage; return False if more bytes are needed."""
         if self._to_skip:
             return self._skip()
         if len(self._buffer) < HEADER_BYTES:
@@ -133,7 +133,7 @@ class MessageReader:
         if not self._garbage:
             self.errors[StreamError.GARBAGE] += 1
         start = _HEADER_START.search(self._buffer, 1)
-        # The last two bytes may begin a header whose third has not arrived.
+        # The last two bytes may be the start of a header.
         waste = start.start() if start else len(self._buffer) - 2
         del self._buffer[:waste]
         self._garbage += waste

@@ -25,9 +25,9 @@ def pack_name(name: str, size: int, what: str) -> bytes:
 
 
 def unpack_name(field: bytes, keep_bytes: bool = False) -> str:
-    """Return the text before the first NUL; what is not ASCII is replaced, as names are shown.
+    """Return the text before the first NUL; non-ASCII characters are replaced.
 
-    With `keep_bytes` it is read as UTF-8, as `decode_text` does.
+    With `keep_bytes` it is decoded like `decode_text`.
     """
     name = field.partition(b"\0")[0]
     text = decode_text(name, True) if keep_bytes else name.decode("ascii", "replace")
@@ -38,7 +38,7 @@ def encode_text(text: str) -> tuple[int, bytes]:
     """Return the IANA number of the encoding and the bytes of `text`.
 
     Raises:
-        InputError: the text holds a NUL, at which Slicer would cut it, or a lone surrogate.
+        InputError: the text has a NUL, at which Slicer would truncate it, or a lone surrogate.
     """
     if "\0" in text:
         raise InputError("A text must not contain NUL characters.")
@@ -51,10 +51,10 @@ def encode_text(text: str) -> tuple[int, bytes]:
 
 
 def decode_text(data: bytes, keep_bytes: bool = False) -> str:
-    """Return the text that `data` holds in UTF-8, without the NULs that some peers append.
+    """Return UTF-8 text without the NULs that some peers append.
 
-    The announced encoding is ignored: Slicer announces ASCII for UTF-8. With `keep_bytes` each
-    byte that is not UTF-8 becomes a lone surrogate, from which it can be had back.
+    The declared encoding is ignored: Slicer declares ASCII for UTF-8. With `keep_bytes`, invalid
+    bytes become lone surrogates, from which they can be recovered.
 
     Raises:
         InputError: not UTF-8, unless `keep_bytes`.

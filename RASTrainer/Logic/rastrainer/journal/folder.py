@@ -1,4 +1,4 @@
-"""The journals in a folder: whose they are, which is the newest, how they are read or erased."""
+"""The journals in a folder: find, read and erase them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ZEROS = bytes(1 << 20)
 
 
 def journals(folder: Path) -> list[Path]:
-    """Return the files of a folder that are journals by their name and first bytes.
+    """Return the files of a folder that are journals by name and first bytes.
 
     Raises:
         InputError: there is no such folder.
@@ -31,16 +31,15 @@ def journals(folder: Path) -> list[Path]:
 
 
 def journals_of(folder: Path, trial_id: str) -> list[Path]:
-    """Return the files of a folder that are named as a trial's journal: one, or none."""
+    """Return the files named as a trial's journal: one or none."""
     return sorted(folder.glob(f"*_{trial_id}{SUFFIX}"))
 
 
 def read_trajectory(
     folder: Path, trial_id: str, pause: Callable[[], None] = lambda: None
 ) -> Trajectory | None:
-    """Return the trajectory of a trial; None where the folder has no usable journal of it.
-
-    `pause` is as of `read_journal`.
+    """Return the trajectory of a trial, or None without a usable journal; `pause` as in
+    `read_journal`.
     """
     for path in journals_of(folder, trial_id):
         with contextlib.suppress(InputError):
@@ -51,16 +50,15 @@ def read_trajectory(
 def erase_journals(
     folder: Path, trainee: str, trial_ids: Collection[str] = ()
 ) -> tuple[list[Path], list[Path]]:
-    """Overwrite and delete every journal of a trainee, damaged ones too.
+    """Overwrite and delete every journal of a trainee, including damaged ones.
 
     Args:
         folder: Of the journals.
-        trainee: Pseudonym; a journal's first line holds it.
-        trial_ids: UUIDs of the trainee's trials; where the first line is damaged the file's name
-            identifies the trial.
+        trainee: Pseudonym; it is in a journal's first line.
+        trial_ids: UUIDs of the trainee's trials, to identify journals by file name.
 
     Returns:
-        The paths that were deleted, and those of files named as journals that name neither.
+        The deleted paths, and those of journals that name no trainee.
 
     Raises:
         InputError: there is no such folder, a journal cannot be deleted, or one is being written.
@@ -97,7 +95,7 @@ def _begins_as_journal(path: Path) -> bool:
 
 
 def _trainee_of(path: Path) -> str | None:
-    """Return the trainee that the first line names, whatever became of the others."""
+    """Return the trainee named in the first line, even if other lines are damaged."""
     with contextlib.suppress(OSError, ValueError, AttributeError), path.open("rb") as file:
         trainee = decode_finite_json(file.readline(MAX_LINE_BYTES).decode("ascii")).get("trainee")
         return trainee if isinstance(trainee, str) else None
@@ -127,18 +125,17 @@ _NUMBER = re.compile(rb'"kind":"header","format":"[a-z-]+","version":\d+,"number
 
 
 def newest_journal(folder: Path) -> Path | None:
-    """Return the journal of the trial that was begun last; None where there is no journal.
+    """Return the journal of the latest trial, or None.
 
-    A clock that was set back gives a later trial an earlier name. So the trials of a folder are
-    numbered; those that a version before the numbers has written are older, and in the order of
-    their names.
+    Trials of a folder are numbered, because a clock that is set back gives a later trial an earlier
+    name. Unnumbered journals of older versions are ordered by name before the others.
     """
     paths = folder.glob(f"*{SUFFIX}")
     return max(paths, key=lambda path: (number_of(path), path.name), default=None)
 
 
 def number_of(path: Path) -> int:
-    """Return the number in a journal's header; 0 where there is none."""
+    """Return the number in a journal's header, or 0."""
     with contextlib.suppress(OSError), path.open("rb") as file:
         found = _NUMBER.search(file.read(_HEADER_BYTES))
         return int(found[1]) if found else 0

@@ -1,7 +1,7 @@
-"""Locks on files, and which simulator records in a folder: it holds the folder's lock.
+"""File locks, and which simulator records in a folder: the one that holds the folder's lock.
 
-The lock file names the simulator. The lock ends with its process, however that ends, and no other
-process inherits it: while it is held, the process that it names is running.
+The lock file describes the simulator. The lock ends with its process and is not inherited: while it
+is held, that process is running.
 """
 
 from __future__ import annotations
@@ -54,15 +54,15 @@ STARTED_BY = "RASTRAINER_STARTED_BY"
 
 @dataclass(frozen=True)
 class FolderHolder:
-    """A simulator as others on its computer find it.
+    """The simulator that holds a folder.
 
     Attributes:
-        pid: of its process; 0 where it has not said yet who it is.
+        pid: of its process; 0 if unknown yet.
         started: UTC, ISO 8601.
-        started_by: the program that has started it; empty where a person has.
+        started_by: program that started it; empty if a person did.
         host: on which it listens for OpenIGTLink.
-        port: there; 0 while, or because, it listens on none.
-        page: address of its page; empty without.
+        port: its port; 0 if it does not listen.
+        page: address of its page; empty if none.
     """
 
     pid: int = 0
@@ -74,7 +74,7 @@ class FolderHolder:
 
 
 def write_holder(descriptor: int, holder: FolderHolder) -> None:
-    """Say in the lock, which is open and held, who holds it.
+    """Write the holder into the lock file, which is open and locked.
 
     Raises:
         OSError: it cannot be written.
@@ -86,7 +86,7 @@ def write_holder(descriptor: int, holder: FolderHolder) -> None:
 
 
 def read_holder(folder: Path) -> FolderHolder | None:
-    """Return who records in a folder; None where nobody does, or nobody whom we may know."""
+    """Return the simulator that records in a folder, or None if none is known."""
     try:
         descriptor = os.open(folder / LOCK_NAME, os.O_RDWR | getattr(os, "O_BINARY", 0))
     except OSError:
@@ -102,7 +102,7 @@ def read_holder(folder: Path) -> FolderHolder | None:
 
 
 def read_open_holder(descriptor: int) -> FolderHolder:
-    """Return who is named in a lock that is open."""
+    """Return the holder named in an open lock file."""
     with contextlib.suppress(OSError, ValueError, TypeError):
         os.lseek(descriptor, 0, os.SEEK_SET)
         said = decode_finite_json(os.read(descriptor, MAX_LOCK_BYTES).decode("ascii"))

@@ -1,9 +1,9 @@
-"""A trial's journal: lines with hashes, and whether a file is intact, cut short or altered.
+"""A trial's journal: hashed lines, and whether a file is intact, cut short or altered.
 
-A line is a JSON object that carries its own hash and the one of the line before:
+A line is a JSON object with its own hash and that of the previous line:
 `{"n":…,"previous":"…",…,"sha256":"…"}` and a newline. `n` counts from 1, `previous` is the `sha256`
-of the line before (64 zeros in the first), and `sha256` is that of the line's bytes up to the comma
-in front of it, closed by `}`.
+of the previous line (64 zeros in the first), and `sha256` is that of the line's bytes before its
+comma, closed by `}`.
 """
 
 from __future__ import annotations
@@ -22,27 +22,27 @@ from rastrainer.finite_json import MAX_DEPTH, decode_finite_json
 FORMAT = "rastrainer-trial-journal"
 FORMAT_VERSION = 1
 NO_LINE = "0" * 64
-"""What the first line carries in place of a hash."""
+"""Hash before the first line."""
 MAX_LINE_BYTES = 1 << 20
 MAX_LINE_DEPTH = MAX_DEPTH + 8
-"""Levels of a line: it holds what came in a message, which may be as deep as any."""
+"""A line may contain a message of the maximum depth."""
 
 FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT}",'.encode()
-"""How every journal begins."""
+"""The start of every journal."""
 
 _SEAL = b',"sha256":"'
 _SEAL_LENGTH = len(_SEAL) + 64 + len(b'"}')
 
 
 class DamagedLineError(ValueError):
-    """The line is not what was once written; the message says why."""
+    """The line was altered; the message says how."""
 
 
 def encode_line(n: int, previous: str, entry: Mapping[str, Any]) -> tuple[bytes, str]:
     """Return the line of an entry with its newline, and its hash.
 
     Raises:
-        ValueError: the entry holds a number that is not finite.
+        ValueError: the entry has a number that is not finite.
     """
     body = json.dumps(
         {"n": n, "previous": previous, **entry},
@@ -55,12 +55,12 @@ def encode_line(n: int, previous: str, entry: Mapping[str, Any]) -> tuple[bytes,
 
 
 def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
-    """Return the entry of a line, without its newline, that shall be the `n`-th after `previous`.
+    """Return the entry of a line without newline, which must be the `n`-th after `previous`.
 
     The entry has `sha256` as its last key.
 
     Raises:
-        DamagedLineError: something in it has been altered, or it is not the line that belongs here.
+        DamagedLineError: it was altered or is not the expected line.
     """
     body, seal = line[:-_SEAL_LENGTH] + b"}", line[-_SEAL_LENGTH:]
     digest = hashlib.sha256(body).hexdigest()
@@ -80,14 +80,14 @@ def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
 
 
 ENDS = frozenset({"registered", "aborted", "stopped"})
-"""Kinds of entries after which nothing of the trial itself is missing."""
+"""Kinds of entries that complete a trial."""
 LINES_PER_PAUSE = 10
 """They take about 0.1 ms."""
 _STEPS = frozenset({"header", "phase", "continued", *ENDS})
 
 
 class Integrity(str, Enum):
-    """What became of a journal."""
+    """The state of a journal."""
 
     INTACT = "intact"
     CUT_SHORT = "cut short"
@@ -96,14 +96,14 @@ class Integrity(str, Enum):
 
 @dataclass(frozen=True)
 class JournalReading:
-    """What a journal says.
+    """The content of a journal.
 
     Attributes:
         path: of the file.
-        integrity: whether all of it is there, as it was written.
-        entries: of the whole lines, up to the first that was altered.
-        end: how many bytes these lines take.
-        sentence: the same in words.
+        integrity: whether it is complete and unaltered.
+        entries: of the complete lines, up to the first altered one.
+        end: number of bytes of these lines.
+        sentence: the integrity in words.
     """
 
     path: Path
@@ -117,7 +117,7 @@ class JournalReading:
         """The first entry.
 
         Raises:
-            InputError: not even the first line is whole.
+            InputError: the first line is incomplete.
         """
         if not self.entries:
             raise InputError(f"{self.path} holds no whole line.")
@@ -125,23 +125,23 @@ class JournalReading:
 
     @property
     def last_hash(self) -> str:
-        """The hash that the next line would have to carry."""
+        """The hash that the next line must refer to."""
         return self.entries[-1]["sha256"] if self.entries else NO_LINE
 
     def of_kind(self, *kinds: str) -> list[dict[str, Any]]:
-        """Return the entries of the given kinds, in their order."""
+        """Return the entries of the given kinds, in order."""
         return [entry for entry in self.entries if entry["kind"] in kinds]
 
 
 def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> JournalReading:
-    """Read a journal as far as it is whole.
+    """Read a journal as far as it is intact.
 
     Args:
         path: of the file.
-        pause: called again and again meanwhile; a thread may wait in it.
+        pause: called regularly while reading; may block, to let other threads run.
 
     Raises:
-        InputError: the file cannot be read, is no journal, or is of another format version.
+        InputError: the file cannot be read, is no journal, or has another format version.
     """
     try:
         with path.open("rb") as file:
@@ -153,7 +153,7 @@ def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> Journa
 def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReading:
     beginning = file.read(len(FIRST_BYTES))
     if not FIRST_BYTES.startswith(beginning):
-        raise InputError(f"{path} is not a trial's journal: it should begin with {_BEGINNING}.")
+        raise InputError(f"{path} is not a trial's journal: it should start with {_BEGINNING}.")
     file.seek(0)
     entries: list[dict[str, Any]] = []
     previous, end = NO_LINE, 0

@@ -1,4 +1,4 @@
-"""From a journal's entries, as they are formed or as they are read, to a trial's trajectory."""
+"""From a journal's entries, while recorded or read, to a trial's trajectory."""
 
 from __future__ import annotations
 
@@ -20,17 +20,18 @@ _T = TypeVar("_T", bound="Recording")
 
 
 class Recording:
-    """Takes a journal's entries one by one; `trajectory` is what they amount to so far.
+    """Collects a journal's entries; `trajectory` is the result so far.
 
-    The simulator feeds it while the trial runs, a reader from the file: the numbers are the same.
+    The simulator adds entries while the trial runs, a reader adds them from the file: the numbers
+    are the same.
     """
 
     def __init__(self) -> None:
         self._start_s = self._tick_s = 0.0
         self._paused_s = 0.0
         self._paused_since: float | None = None
-        # A row a sample: time in s, tip, clearance and depth in mm. Half an hour is 4 MB as plain
-        # numbers; depth is not a number where the journal does not record it.
+        # One row per sample: time in s, tip, clearance and depth in mm (NaN if not recorded).
+        # Half an hour takes 4 MB.
         self._samples = array("d")
         self._touches: list[Touch] = []
         self._refused: list[Touch] = []
@@ -47,7 +48,7 @@ class Recording:
         """Return the recording of entries.
 
         Raises:
-            InputError: an entry is not as the journal's format has it.
+            InputError: an entry is malformed.
         """
         recording = cls()
         try:
@@ -60,7 +61,7 @@ class Recording:
         return recording
 
     def add(self, entry: Mapping[str, Any]) -> None:
-        """Take in one entry."""
+        """Add one entry."""
         kind = entry["kind"]
         if kind == "sample":
             self._add_sample(entry)
@@ -68,7 +69,7 @@ class Recording:
             _HANDLERS[kind](self, entry)
 
     def trajectory(self) -> Trajectory:
-        """Return the movement so far; what is still going on ends with the last sample."""
+        """Return the movement so far; open intervals end with the last sample."""
         samples = np.array(self._samples).reshape(-1, _COLUMNS)
         times, tip, clearance = samples[:, 0].copy(), samples[:, 1:4].copy(), samples[:, 4].copy()
         depth = samples[:, 5].copy()
@@ -96,7 +97,7 @@ class Recording:
         )
 
     def _add_sample(self, entry: Mapping[str, Any]) -> bool:
-        """Keep a sample that is later than the last one; return whether it counts."""
+        """Keep a sample that is later than the last one; return whether it was kept."""
         time = self._trial_time(entry["simTime"])
         if self._samples and time <= self._samples[-_COLUMNS]:
             return False
@@ -110,7 +111,7 @@ class Recording:
         return sim_time - self._start_s - self._paused_s
 
     def _event_time(self, entry: Mapping[str, Any]) -> float:
-        """Return the trial's time of an event: that of the tick before its line."""
+        """Return the trial time of an event: that of the tick before its line."""
         return self._trial_time(entry["simTime"] - self._tick_s)
 
     def _header(self, entry: Mapping[str, Any]) -> None:
@@ -145,18 +146,18 @@ class Recording:
         elif entry["phase"] == Phase.RUNNING.value and self._paused_since is not None:
             self._paused_s += now - self._paused_since
             self._paused_since = None
-        # What could not be written was undone: the phase says from which fiducial on.
+        # Touches that could not be written were undone, back to this fiducial.
         labels = [touch.label for touch in self._touches]
         if entry.get("nextPoint") in labels:
             del self._touches[labels.index(entry["nextPoint"]) :]
 
     def _continued(self, entry: Mapping[str, Any]) -> None:
-        """The trial was interrupted: its time stood still until now."""
+        """Exclude the time of an interruption."""
         if entry["phase"] == Phase.PAUSED.value and self._paused_since is None:
             self._paused_since = entry["since"]
 
     def _proximity(self, entry: Mapping[str, Any]) -> None:
-        # This event is of the tick's end, unlike those of commands.
+        # This event is at the end of its tick, unlike those of commands.
         now, state = self._trial_time(entry["simTime"]), Proximity(entry["to"])
         if self._state is Proximity.FREE:
             self._near_since = now
@@ -170,7 +171,7 @@ class Recording:
         self._state = state
 
     def _press(self, entry: Mapping[str, Any]) -> None:
-        """Take note of the depth in an entry, which older journals do not record."""
+        """Update the depth of the contact; older journals have none."""
         if self._state is Proximity.CONTACT:
             self._contact_depth = max(self._contact_depth, entry.get("depthMm", 0.0))
 

@@ -1,4 +1,4 @@
-"""A trial to be looked at again: its trajectory, the arm's postures, and what happened."""
+"""A trial for replay: its trajectory, joint angles and events."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from rastrainer.motion.trajectory import Trajectory
 EVENTS = frozenset(
     {"phase", "touch", "undo", "rejected", "proximity", "camera", "plan", "registered", "aborted"}
 )
-"""Kinds of entries that change what is seen besides the arm."""
+"""Kinds of entries that change the view besides the arm."""
 
 
 class RecordedEvent(NamedTuple):
-    """An entry of one of the kinds in `EVENTS`, and when it was seen in the trial's time, s."""
+    """An entry whose kind is in `EVENTS`, and its trial time in s."""
 
     time_s: float
     entry: Mapping[str, Any]
@@ -30,13 +30,13 @@ class RecordedEvent(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ReplayTrack:
-    """What a journal shows of a trial. Its times are the trial's: a pause takes none.
+    """A recorded trial in trial time, which excludes pauses.
 
     Attributes:
         header: the journal's first entry.
-        trajectory: the tool's tip, clearance and touches over the trial's time.
-        q: (n, 7) float, joint angles in rad, a row a sample of the trajectory.
-        events: in their order.
+        trajectory: of the tool's tip.
+        q: (n, 7) float, joint angles in rad, one row per sample.
+        events: in order.
     """
 
     header: Mapping[str, Any]
@@ -48,10 +48,10 @@ class ReplayTrack:
 def find_track(
     records: Path, trial_id: str, pause: Callable[[], None] = lambda: None
 ) -> ReplayTrack:
-    """Return the track of a trial whose journal lies in a folder; `pause` as of `read_journal`.
+    """Return the track of a trial from a folder of journals; `pause` as in `read_journal`.
 
     Raises:
-        InputError: there is none, or it holds no movement.
+        InputError: there is no journal, or it has no movement.
     """
     paths = journals_of(records, trial_id)
     if not paths:
@@ -63,10 +63,10 @@ def find_track(
 
 
 def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTrack:
-    """Return the track of a journal, as far as it is whole; `pause` as of `read_journal`.
+    """Return the track of a journal, as far as it is intact; `pause` as in `read_journal`.
 
     Raises:
-        InputError: the file is no journal, or holds no movement.
+        InputError: the file is no journal, or has no movement.
     """
     reading = read_journal(path, pause)
     recording = _ReplayRecording.of(reading.entries)
@@ -77,7 +77,7 @@ def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTr
 
 
 class _ReplayRecording(Recording):
-    """Keeps the joint angles beside each sample that counts, and the events."""
+    """Also keeps the joint angles of each kept sample, and the events."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -88,7 +88,7 @@ class _ReplayRecording(Recording):
         super().add(entry)
         if entry["kind"] in EVENTS:
             seen_s = entry["simTime"] if self._paused_since is None else self._paused_since
-            # What comes in the tick in which a trial is paused is not earlier than what was before.
+            # Keep events in order, also in the tick in which a trial is paused.
             before_s = self.events[-1].time_s if self.events else 0.0
             self.events.append(RecordedEvent(max(before_s, self._trial_time(seen_s)), entry))
 

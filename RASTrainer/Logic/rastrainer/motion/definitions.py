@@ -1,4 +1,4 @@
-"""What each motion metric means: unit, definition, thresholds, source, and which way is better."""
+"""The definition of each motion metric: unit, thresholds, source, and which direction is better."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
         MetricDefinition(
             "completion_time_s",
             "Completion time",
-            "From the start of the trial to the last kept touch, pauses left out.",
+            "From the start of the trial to the last kept touch, without pauses.",
             unit="s",
             better=-1,
             source="the paper, section V",
@@ -56,7 +56,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
         MetricDefinition(
             "path_length_mm",
             "Path length",
-            f"Length of the way of the tool's tip ({FILTER}).",
+            f"Length of the path of the tool's tip ({FILTER}).",
             unit="mm",
             better=-1,
             source="Cotin et al. 2002",
@@ -72,10 +72,10 @@ DEFINITIONS: dict[str, MetricDefinition] = {
         MetricDefinition(
             "path_efficiency",
             "Path efficiency",
-            "Shortest free way through all fiducials (straight, or over the skin where the head is "
-            "in the way) over the path length between touches; 1 is direct.",
+            "Shortest free path through all fiducials (straight, or along the skin where the head "
+            "is in the way) divided by the path length between touches; 1 is direct.",
             better=1,
-            source="Cotin et al. 2002; way over the skin: Dijkstra 1959 on the mesh",
+            source="Cotin et al. 2002; path along the skin: Dijkstra 1959 on the mesh",
         ),
         MetricDefinition(
             "mean_speed_mm_s", "Mean speed", f"Mean speed of the tip ({FILTER}).", unit="mm/s"
@@ -179,7 +179,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
         MetricDefinition(
             "unintended_contact_path_mm",
             "Path of contact away from a touch",
-            "Length of the way of the tip during that time (as sampled, not filtered).",
+            "Length of the path of the tip during that time (as sampled, not filtered).",
             unit="mm",
             better=-1,
         ),

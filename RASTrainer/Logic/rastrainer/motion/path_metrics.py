@@ -1,7 +1,7 @@
-"""Path, rest and smoothness of the tool's movement, and the filter that comes before them.
+"""Path, rest and smoothness of the tool's movement, and the filter applied before them.
 
-Differences of raw samples are no metric: 2 % of noise moves the log dimensionless jerk of a reach
-from −5.3 to −15. So a trajectory is resampled and filtered before it is differentiated.
+Raw samples are resampled and filtered before differentiation: 2 % of noise changes the log
+dimensionless jerk of a reach from −5.3 to −15.
 """
 
 from __future__ import annotations
@@ -38,15 +38,16 @@ def resample(times_s: np.ndarray, values: np.ndarray, rate_hz: float) -> np.ndar
 
 
 def low_pass(values: np.ndarray, rate_hz: float, cutoff_hz: float = CUTOFF_HZ) -> np.ndarray:
-    """Return the values without what is faster than the cutoff, undelayed.
+    """Return the values low-pass filtered without delay.
 
-    It is a second-order Butterworth filter run forth and back, as its gain 1/(1 + (f/fc)⁴) on the
-    spectrum. The ends are continued by point reflection, which keeps straight lines straight.
+    The gain 1/(1 + (f/fc)⁴) on the spectrum is that of a second-order Butterworth filter run
+    forward and backward. The ends are extended by point reflection, which keeps straight lines
+    straight.
 
     Args:
         values: (n, k) float, evenly sampled.
-        rate_hz: Samples a second.
-        cutoff_hz: Frequency at which half the amplitude is left.
+        rate_hz: Sampling rate.
+        cutoff_hz: Frequency at which half the amplitude remains.
 
     Returns:
         (n, k) float.
@@ -58,7 +59,7 @@ def low_pass(values: np.ndarray, rate_hz: float, cutoff_hz: float = CUTOFF_HZ) -
     before = 2 * values[0] - values[pad:0:-1]
     after = 2 * values[-1] - values[-2 : -2 - pad : -1]
     padded = np.concatenate([before, values, after])
-    # A straight line from end to end is taken off so that the spectrum sees no jump between them.
+    # Subtract the line between the ends, so that the spectrum has no jump.
     line = np.linspace(padded[0], padded[-1], len(padded))
     spectrum = rfft(padded - line, axis=0)
     frequencies = rfftfreq(len(padded), 1 / rate_hz)
@@ -106,13 +107,13 @@ def idle_time(
     threshold_mm_s: float = IDLE_SPEED_MM_S,
     shortest_s: float = IDLE_DURATION_S,
 ) -> float:
-    """Return how long the tool rested, in s: below the threshold for longer than `shortest_s`.
+    """Return the total time in s of rests: below the threshold for longer than `shortest_s`.
 
     Args:
         speed_mm_s: (n,) float, evenly sampled.
-        rate_hz: Samples a second.
+        rate_hz: Sampling rate.
         threshold_mm_s: Speed below which the tool rests.
-        shortest_s: Shorter rests do not count.
+        shortest_s: Shorter rests are ignored.
     """
     resting = np.concatenate([[False], np.asarray(speed_mm_s) < threshold_mm_s, [False]])
     changes = np.flatnonzero(np.diff(resting.astype(int)))

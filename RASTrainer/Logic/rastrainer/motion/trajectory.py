@@ -11,21 +11,21 @@ from dataclasses import dataclass, field
 import numpy as np
 
 NEAR_MM, FAR_MM = 20.0, 21.0
-"""Clearances of the tip at which proximity begins and ends, unless the simulator is set otherwise;
-a trial's journal tells its settings."""
+"""Clearances of the tip at which proximity starts and ends by default; the journal has the actual
+settings."""
 TOUCHING_MM, RELEASED_MM = 0.05, 0.3
-"""Clearances of the tool at which contact begins and ends, as above."""
+"""Clearances of the tool at which contact starts and ends by default."""
 
 
 @dataclass(frozen=True)
 class Interval:
-    """From when to when, in s, and how near to the head the tool was meanwhile, in mm.
+    """A time interval and the tool's distance to the head in it.
 
     Attributes:
-        start_s: the trial's time.
-        end_s: the trial's time.
-        least_clearance_mm: least signed distance of tool and head.
-        greatest_depth_mm: how far the commanded motion has gone into the head at most.
+        start_s: trial time.
+        end_s: trial time.
+        least_clearance_mm: smallest signed distance of tool and head.
+        greatest_depth_mm: how far the commanded motion went into the head at most.
     """
 
     start_s: float
@@ -41,7 +41,7 @@ class Interval:
 
 @dataclass(frozen=True)
 class Touch:
-    """A touch: which fiducial was due, where the tip was (World, mm) and when."""
+    """A touch: the fiducial due, the position of the tip (World, mm) and the time."""
 
     label: str
     position_mm: tuple[float, float, float]
@@ -53,21 +53,21 @@ class Trajectory:
     """The movement of one trial.
 
     Attributes:
-        times_s: (n,) float, strictly rising.
+        times_s: (n,) float, strictly increasing.
         tip_mm: (n, 3) float, the tool's tip, World.
         clearance_mm: (n,) float, signed distance of the tool to the head.
-        touches: the kept ones, in their order.
-        refused: touches that did not count.
-        undone: how many touches were taken back.
-        near: when the tip was near the head, or the tool touched it.
-        contacts: when it touched the head.
-        camera_switches: how often the view was changed.
-        pauses: how often the trial was paused.
-        paused_s: how long in all.
-        fiducials_mm: label → (3,) position in World; empty as long as that is a secret.
-        shortest_path_mm: the shortest free way through the task's fiducials; None where unknown.
-        depth_mm: (n,) float, how far the commanded motion has gone into the head beyond where the
-            tool could go; None where it was not recorded for the whole trial.
+        touches: kept touches, in order.
+        refused: refused touches.
+        undone: number of undone touches.
+        near: intervals with the tip near the head, or the tool in contact.
+        contacts: intervals in contact.
+        camera_switches: number of changes of the view.
+        pauses: number of pauses.
+        paused_s: their total duration.
+        fiducials_mm: label → (3,) position in World; empty while secret.
+        shortest_path_mm: the shortest free path through the task's fiducials, or None.
+        depth_mm: (n,) float, how far the commanded motion went into the head beyond the tool; None
+            unless recorded for the whole trial.
     """
 
     times_s: np.ndarray
@@ -97,16 +97,16 @@ class Trajectory:
 
 
 INTENDED_MM = 5.0
-"""Contact with the tip within this distance of a touch is meant."""
+"""Contact with the tip within this distance of a touch is intended."""
 
 
 def unintended_contact(trajectory: Trajectory) -> tuple[float, float]:
-    """Return the time (s) of contact that was not meant and the tip's way (mm) meanwhile.
+    """Return the time (s) of unintended contact and the path (mm) of the tip during it.
 
-    Contact is not meant while the tip is farther than `INTENDED_MM` from both the place that is
-    touched next and the one touched last, of the kept touches; where there are none, all is. The
-    tip goes straight from sample to sample. Between neighboring samples or touches the place in the
-    middle decides, and what is in contact of the time between them counts.
+    Contact is unintended while the tip is farther than `INTENDED_MM` from both the next and the
+    previous kept touch; without touches, always. The tip is interpolated linearly between samples.
+    Between neighboring samples or touches the midpoint decides, for the part of the time in
+    contact. Repeated contact cannot lower the result.
     """
     contacts, samples_s = trajectory.contacts, trajectory.times_s
     if not contacts or not len(samples_s):
@@ -116,13 +116,13 @@ def unintended_contact(trajectory: Trajectory) -> tuple[float, float]:
     outer = [time for time in ends if not samples_s[0] <= time <= samples_s[-1]]
     times = np.unique(np.concatenate([samples_s, trajectory.touch_times_s, outer]))
     tip = np.column_stack([np.interp(times, samples_s, axis) for axis in trajectory.tip_mm.T])
-    begins, steps = times[:-1], np.diff(times)
+    starts, steps = times[:-1], np.diff(times)
     middle = (tip[:-1] + tip[1:]) / 2
-    counts = _distance_to_touches(trajectory, begins + steps / 2, middle) > INTENDED_MM
+    counts = _distance_to_touches(trajectory, starts + steps / 2, middle) > INTENDED_MM
     in_contact = np.zeros(len(steps))
     for contact in contacts:
-        in_contact += np.clip(contact.end_s, begins, times[1:]) - np.clip(
-            contact.start_s, begins, times[1:]
+        in_contact += np.clip(contact.end_s, starts, times[1:]) - np.clip(
+            contact.start_s, starts, times[1:]
         )
     speeds = np.linalg.norm(np.diff(tip, axis=0), axis=1) / steps
     time_s = in_contact * counts
@@ -130,11 +130,11 @@ def unintended_contact(trajectory: Trajectory) -> tuple[float, float]:
 
 
 def pressing_depth(trajectory: Trajectory) -> float | None:
-    """Return how deep the tool was pressed into the head, mm; None where that was not recorded.
+    """Return how deep the tool was pressed into the head, mm; None if not recorded.
 
-    sqrt(Σ kᵢ·dᵢ² / n) with dᵢ the greatest depth in contact i, kᵢ how many kept touches were made
-    in it, at least 1, and n the fiducials of the task, or the kept touches as long as these are a
-    secret. Further contacts can only add to the sum.
+    sqrt(Σ kᵢ·dᵢ² / n) with dᵢ the greatest depth in contact i, kᵢ the number of kept touches in it,
+    at least 1, and n the number of fiducials, or of kept touches while these are secret. Further
+    contacts can only add to the sum.
     """
     if trajectory.depth_mm is None:
         return None
@@ -147,7 +147,7 @@ def pressing_depth(trajectory: Trajectory) -> float | None:
 
 
 def _distance_to_touches(trajectory: Trajectory, times: np.ndarray, tip: np.ndarray) -> np.ndarray:
-    """Return how far the tip is from the nearer of the last and the next touch, (n,) float, mm."""
+    """Return the tip's distance to the previous or next touch, the nearer one, (n,) float, mm."""
     places = trajectory.touch_positions_mm
     if not len(places):
         return np.full(len(times), np.inf)

@@ -101,20 +101,17 @@ def effective_throughput(
 
 
 RATE_HZ = 50.0
-"""Samples a second after resampling; the journal holds as many."""
+"""Sampling rate after resampling; the journal has the same."""
 DWELL_RADIUS_MM = 2.0
 ACCEPTANCE_MM = 10.0
-"""A refused touch within this distance of another fiducial was at the wrong one; a contact that
-begins within this distance of a touch belongs to it."""
+"""A refused touch within this distance of another fiducial was of the wrong one; a contact that
+starts within this distance of a touch belongs to it."""
 MIN_MOVEMENT_SAMPLES = 10
-"""Movements of fewer samples (0.2 s) tell nothing about smoothness."""
+"""Shorter movements (0.2 s) have no meaningful smoothness."""
 
 
 def trial_motion(trajectory: Trajectory) -> dict[str, float]:
-    """Return the metrics that the trajectory of a trial, or of a part of it, allows.
-
-    What cannot be computed is left out.
-    """
+    """Return the metrics that the trajectory of a whole or partial trial allows."""
     metrics = _counts(trajectory)
     if len(trajectory.times_s) < 2:
         return metrics
@@ -167,7 +164,7 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
 
 
 def _is_meant(contact: Interval, trajectory: Trajectory) -> bool:
-    """Return whether a contact began near the fiducial that was touched next or last."""
+    """Return whether a contact started near the next or the previous touch."""
     if not len(trajectory.times_s):
         return False
     start = int(np.searchsorted(trajectory.times_s, contact.start_s))
@@ -190,7 +187,7 @@ def _is_wrong(touch: Touch, trajectory: Trajectory) -> bool:
 def _of_movements(
     trajectory: Trajectory, times: np.ndarray, tip: np.ndarray, speed: np.ndarray
 ) -> dict[str, float]:
-    """Return the means and medians over the movements from each touch to the next."""
+    """Return the metrics of the movements from each touch to the next."""
     first = np.searchsorted(times, trajectory.touch_times_s[:-1])
     last = np.searchsorted(times, trajectory.touch_times_s[1:], side="right")
     parts = [slice(a, b) for a, b in zip(first, last, strict=True) if b - a >= MIN_MOVEMENT_SAMPLES]
@@ -209,7 +206,7 @@ def _of_movements(
 
 
 def _dwell(touch: Touch, times: np.ndarray, tip: np.ndarray) -> float:
-    """Return how long the tip had been near the touched point when it was touched, in s."""
+    """Return how long the tip had been near the point when it was touched, in s."""
     until = int(np.searchsorted(times, touch.time_s, side="right"))
     is_far = np.linalg.norm(tip[:until] - touch.position_mm, axis=1) > DWELL_RADIUS_MM
     left = np.flatnonzero(is_far)
@@ -217,7 +214,7 @@ def _dwell(touch: Touch, times: np.ndarray, tip: np.ndarray) -> float:
 
 
 def _efficiency(trajectory: Trajectory, actual_mm: float) -> dict[str, float]:
-    """Return the path efficiency, which only a whole trial has."""
+    """Return the path efficiency of a complete trial."""
     is_whole = 0 < len(trajectory.fiducials_mm) == len(trajectory.touches)
     if not is_whole or trajectory.shortest_path_mm is None or actual_mm <= 0:
         return {}

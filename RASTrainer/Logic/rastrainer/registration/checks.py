@@ -1,6 +1,6 @@
-"""What makes points unfit for registration: each fault ends with a sentence that names it.
+"""Points that are unfit for registration: each error names the fault.
 
-Faults that a fit survives, such as a mirrored set, are in `rastrainer.registration.warnings`.
+`rastrainer.registration.warnings` has faults that still allow a fit, such as a mirrored set.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Finds in paired points what a fit would hide: wrong scale, mirror, wrong order, bad touches.
+"""Detects faults in paired points that a fit would hide: scale, mirror, order, bad touches.
 
-Each test compares the squared distances left by two explanations of the same points. Touching noise
-alone makes the extended one look better in about one set of 100,000 (an F test, corrected for the
+Each test compares the squared residuals of two explanations of the same points. Noise alone makes
+the extended one significantly better in about one of 100,000 sets (an F test, corrected for the
 number of explanations tried).
 """
 
@@ -28,7 +28,7 @@ ORDERS_LIMIT = 100
 
 
 def find_scale(moving: np.ndarray, fixed: np.ndarray) -> float | None:
-    """Return how many times larger the fixed points are, or None where they are alike.
+    """Return how many times larger the fixed points are, or None if they match.
 
     Both the extents and the typical distance must differ: one bad touch far away changes the
     former, a wrong order the latter. A scale near 1 counts only if noise cannot explain it.
@@ -45,7 +45,7 @@ def find_scale(moving: np.ndarray, fixed: np.ndarray) -> float | None:
 
 
 def is_mirrored(moving: np.ndarray, fixed: np.ndarray) -> bool:
-    """Return whether the points match as a mirror image but not as they are."""
+    """Return whether the points match only as a mirror image."""
     dof = 3 * len(moving) - 6
     before = _squares(moving, fixed)
     return _explains(before, _squares(moving, fixed, handedness=-1), 3, dof, 1, fixed)
@@ -57,10 +57,10 @@ def mirrored(points: np.ndarray) -> np.ndarray:
 
 
 def find_order(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray | None:
-    """Return the (n,) int order in which the moving points match, or None where theirs does.
+    """Return the order, (n,) int, in which the moving points match, or None if they already do.
 
-    Tried are two points exchanged, the list turned around, and the list begun elsewhere. An order
-    that still leaves a poor fit is no explanation.
+    Candidates are two exchanged points, the reversed list, and the rotated list. An order with a
+    poor fit is not returned.
     """
     exchanges, others = _exchanges(moving, fixed), _other_orders(len(moving))
     orders = np.concatenate([exchanges, others])
@@ -77,9 +77,9 @@ def find_order(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray | None:
 
 
 def find_bad_touches(moving: np.ndarray, fixed: np.ndarray) -> tuple[int, ...]:
-    """Return the rows of the few points that do not fit the others (which fit each other).
+    """Return the rows of the few points that do not match the others.
 
-    Points are left out one at a time, and in pairs where two bad touches cover each other up.
+    Points are left out one at a time, or in pairs if two bad touches mask each other.
     """
     bad: tuple[int, ...] = ()
     while len(bad) < len(moving) // 4:
@@ -98,7 +98,7 @@ def rigid_fre(moving: np.ndarray, fixed: np.ndarray) -> float:
 
 
 def is_poor_fit(moving: np.ndarray, fixed: np.ndarray) -> bool:
-    """Return whether the best rigid fit leaves more than a fifth of the points' extent."""
+    """Return whether the FRE of the best rigid fit exceeds a fifth of the points' extent."""
     return rigid_fre(moving, fixed) > POOR_FIT * float(np.linalg.norm(extents(fixed)))
 
 
@@ -141,7 +141,7 @@ def _other_orders(count: int) -> np.ndarray:
 def _both_fit(moving: np.ndarray, fixed: np.ndarray, order: np.ndarray, squares: float) -> bool:
     """Return whether two exchanged points fit as well as the others.
 
-    One bad touch beyond another fiducial also gains by an exchange, but does not fit after it.
+    One bad touch beyond another fiducial also gains by an exchange, but does not fit afterwards.
     """
     kept = (order == np.arange(len(order))).astype(float)
     left = int(kept.sum())

@@ -1,9 +1,8 @@
 """The fiducial localization error (FLE) that explains the residuals of a registration.
 
-Without further knowledge it is taken as isotropic. Where the tip is stopped by the skin, the error
-across the skin may differ from the error along it; where the surface's normals are known, the sizes
-of both parts are estimated from the residuals, and neither is assumed to be the smaller one. That
-matters: fiducials on one side of a head fix its tilt by their errors across the skin.
+By default it is isotropic. Where the tip is stopped by the skin, the error across the skin may
+differ from that along it; with known surface normals both are estimated from the residuals. This
+matters: for fiducials on one side of a head, the errors across the skin determine its tilt.
 """
 
 from __future__ import annotations
@@ -37,10 +36,10 @@ class LocalizationError:
 
 
 def degrees_of_freedom(registration: Registration) -> int:
-    """Return how many residual coordinates are left after the fit: 3N minus its parameters.
+    """Return the residual degrees of freedom: 3N minus the parameters of the fit.
 
     Raises:
-        InputError: none is left, so that the residuals say nothing.
+        InputError: there are none, so the residuals carry no information.
     """
     count = len(registration.labels)
     dof = 3 * count - PARAMETERS[registration.kind]

@@ -1,12 +1,12 @@
-"""What error to expect at a target: TRE from the residuals of a registration.
+"""The expected error at a target: TRE from the residuals of a registration.
 
-The fiducial localization error (FLE) is taken as independent, unbiased and normal. FRE tells the
-size of FLE over the whole set; it does not predict the TRE of a single case (Fitzpatrick 2009),
-which is why an interval goes with every expectation.
+The fiducial localization error (FLE) is assumed to be independent, unbiased and normal. FRE
+reflects the size of FLE over the whole set; it does not predict the TRE of a single case
+(Fitzpatrick 2009), so each expectation has an interval.
 
-An offset that all touches share, as of a tip that is not where the program believes it, passes into
-the TRE in full and leaves every residual as it is. No registration can see it, so that an
-assumption has to stand for it: its standard deviation on each axis, `COMMON_BIAS_SD_MM`.
+An offset common to all touches, for example of a wrongly calibrated tip, adds fully to the TRE and
+changes no residual. No registration can detect it, so its standard deviation on each axis is an
+assumption, `COMMON_BIAS_SD_MM`.
 """
 
 from __future__ import annotations

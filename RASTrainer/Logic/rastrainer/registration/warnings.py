@@ -1,4 +1,4 @@
-"""Warnings about points that can be registered but look wrong, each in a sentence of its own."""
+"""Warnings about points that can be registered but look wrong."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ class RegistrationWarning:
 def find_warnings(
     moving: np.ndarray, fixed: np.ndarray, kind: str, labels: tuple[str, ...]
 ) -> tuple[RegistrationWarning, ...]:
-    """Return what looks wrong with points that passed `check_points`.
+    """Return warnings about points that passed `check_points`.
 
-    All but flatness is judged on rigid fits whatever the kind, since a similarity fit hides a wrong
-    scale and an affine one a mirror. Each fault found is corrected before looking for the next.
+    Except for flatness they are based on rigid fits, since a similarity fit hides a wrong scale and
+    an affine one a mirror. Each detected fault is corrected before searching for the next.
     """
     warnings: list[RegistrationWarning] = []
     for which, points in (("moving", moving), ("fixed", fixed)):

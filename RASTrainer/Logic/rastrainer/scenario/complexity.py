@@ -1,15 +1,13 @@
-"""How demanding a task is: one index from four things that make touching a row of fiducials hard.
+"""How demanding a task is: one index of four difficulties in touching a series of fiducials.
 
-    index = L / 100 mm + T / 90° + H + R / 90°
+index = L / 100 mm + T / 90° + H + R / 90°
 
-    L  length of the path over the surface from the first fiducial to the last, mm
-    T  turning: how much the path changes its direction at the fiducials between, degrees
-    H  hidden: how many fiducials the default (close-up) view does not show
-    R  re-orientation: how much the tool has to be turned to stay opposite to the skin, degrees
+L is the length in mm of the path over the surface from the first to the last fiducial; T the total
+turning of the path at the fiducials between, in degrees; H the number of fiducials hidden in the
+default (close-up) view; R the total rotation of the tool to stay normal to the skin, in degrees.
 
-Each unit is about one more thing to do: a hand's width to travel, one corner, one change of the
-view, one quarter turn of the tool. The weights are therefore 1; they are a stated convention, not
-a measured effort.
+Each unit is about one more action: a hand's width of travel, one corner, one change of the view,
+one quarter turn of the tool. The weights of 1 are a convention, not a measured effort.
 """
 
 from __future__ import annotations
@@ -60,13 +58,13 @@ class Complexity:
 def complexity(
     fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph, eye: np.ndarray
 ) -> Complexity:
-    """Return how demanding it is to touch `fiducials` in their order.
+    """Return the complexity of touching `fiducials` in order.
 
     Args:
         fiducials: (n, 3) float, on the surface, RAS mm.
         mesh: the head, RAS mm.
-        graph: the ways over that mesh.
-        eye: (3,) float, where the default view looks from, RAS mm.
+        graph: the paths over that mesh.
+        eye: (3,) float, the position of the default view, RAS mm.
     """
     fiducials = np.asarray(fiducials, dtype=float)
     normals = np.array([outward_normal(mesh, point) for point in fiducials])
@@ -88,15 +86,15 @@ def complexity(
 def turns_deg(
     before: np.ndarray, at: np.ndarray, after: np.ndarray, normals: np.ndarray
 ) -> np.ndarray:
-    """Return how much ways turn at points, seen along the skin's normals there, degrees (n,).
+    """Return the turning of paths at points, seen along the skin's normals there, degrees (n,).
 
-    A way that runs straight over the curved skin does not turn. Shapes (n, 3).
+    A path straight over curved skin does not turn. Shapes (n, 3).
     """
     return angles_deg(_in_plane(at - before, normals), _in_plane(after - at, normals))
 
 
 def is_hidden(point: np.ndarray, normal: np.ndarray, mesh: HeadMesh, eye: np.ndarray) -> bool:
-    """Return whether a view from `eye` cannot show the number at `point`; all (3,)."""
+    """Return whether the number at `point` is hidden from `eye`; all (3,)."""
     angle = angles_deg(normal[None], (eye - point)[None])[0]
     return bool(angle > GRAZING_DEG) or hides(mesh, eye, point)
 

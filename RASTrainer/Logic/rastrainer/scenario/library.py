@@ -1,4 +1,4 @@
-"""The scenarios at hand: those that come with RASTrainer and those in the user's folder."""
+"""The available scenarios: those of RASTrainer and those in the user's folder."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _PNG_START = struct.Struct(">8s4x4sII")
 
 @dataclass(frozen=True)
 class ListedScenario:
-    """One line of a list of scenarios.
+    """An entry in a list of scenarios.
 
     Attributes:
-        name, title: of the scenario; the folder's name where it cannot be used.
-        folder: where it is.
-        preview: path of its picture, a PNG; None where it has none that can be shown.
-        problem: a sentence that says why it cannot be used, empty where it can.
+        name, title: of the scenario; the folder's name if it is unusable.
+        folder: its folder.
+        preview: path of its picture, a PNG; None if missing or unusable.
+        problem: why it is unusable; empty otherwise.
     """
 
     name: str
@@ -36,21 +36,21 @@ class ListedScenario:
 
 
 def user_library() -> Path:
-    """Return the folder of the user's own scenarios; it need not exist."""
+    """Return the folder of the user's scenarios, which may not exist."""
     return Path.home() / "RASTrainer" / "scenarios"
 
 
 def list_scenarios(
     libraries: Iterable[Path], list_one: Callable[[Path], ListedScenario] | None = None
 ) -> list[ListedScenario]:
-    """Return the scenarios in these folders, each below its own folder, by title.
+    """Return the scenarios in the subfolders of these folders, by title.
 
-    One that cannot be used is listed with its problem. Of two of the same name, which commands
-    could not tell apart, the first folder's counts.
+    Unusable ones are listed with their problem. Of two with the same name, the first folder's is
+    listed.
 
     Args:
         libraries: folders of folders.
-        list_one: lists the scenario of a folder; `list_folder` when left out.
+        list_one: lists the scenario of a folder; by default `list_folder`.
     """
     folders = [
         path.parent
@@ -63,7 +63,7 @@ def list_scenarios(
 def list_folders(
     folders: Iterable[Path], list_one: Callable[[Path], ListedScenario] | None = None
 ) -> list[ListedScenario]:
-    """Return the scenarios of these folders themselves; otherwise as `list_scenarios`."""
+    """Return the scenarios in these folders themselves, otherwise like `list_scenarios`."""
     listed: dict[str, ListedScenario] = {}
     for folder in folders:
         entry = (list_one or list_folder)(folder)
@@ -72,7 +72,7 @@ def list_folders(
 
 
 def list_folder(folder: Path) -> ListedScenario:
-    """Return the scenario of a folder; one that cannot be used says why."""
+    """Return the entry of a folder, with its problem if unusable."""
     try:
         scenario = load_scenario(folder)
     except InputError as error:
@@ -83,7 +83,7 @@ def list_folder(folder: Path) -> ListedScenario:
 
 
 def _is_picture(path: Path) -> bool:
-    """Return whether a file begins as a PNG of a size that every view can show."""
+    """Return whether a file starts as a PNG of a size that every view supports."""
     try:
         if path.stat().st_size > MAX_PICTURE_BYTES:
             return False

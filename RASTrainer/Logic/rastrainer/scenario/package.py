@@ -1,4 +1,4 @@
-"""A scenario as one zip file: packed, and unpacked from a file that nobody has checked."""
+"""Pack scenarios as zip files, and unpack untrusted ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MAX_PACKED_BYTES = 64_000_000
 MAX_BYTES = 100_000_000
 MAX_FILES = 64
 MAX_TRIANGLES = 100_000
-"""More than what is built here has (60,000); what the views and the collisions can carry."""
+"""More than in our own meshes (60,000); the limit of views and collision checks."""
 
 UNPACKING, CHECKING = "Unpacking the scenario", "Checking the scenario"
 UNPACKED_SHARE = 0.5
@@ -34,12 +34,12 @@ _DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
 
 def pack(folder: Path, package: Path) -> Path:
-    """Write a scenario's folder as one zip file; the same scenario gives the same bytes.
+    """Write a scenario as a zip file; the same scenario gives the same bytes.
 
-    What lies in the folder and belongs to no scenario stays out.
+    Other files in the folder are left out.
 
     Raises:
-        InputError: the scenario cannot be used, or the file is there already or cannot be written.
+        InputError: the scenario is unusable, or the file exists or cannot be written.
     """
     scenario, package = checked_scenario(folder), Path(package)
     if package.exists():
@@ -64,18 +64,17 @@ def pack(folder: Path, package: Path) -> Path:
 
 
 def unpack(package: Path, library: Path, progress: Progress = lambda _step, _share: None) -> Path:
-    """Unpack a scenario into a new folder of `library`, named as the scenario, and return it.
+    """Unpack a scenario into a new folder of `library` named like it, and return the folder.
 
-    Nothing is left behind where the package cannot be used.
+    If that fails, nothing is left behind.
 
     Args:
         package: the zip file.
         library: folder of folders.
-        progress: told the step's name and the share of the work done; may raise to cancel.
+        progress: receives the step's name and the share of work done; may raise to cancel.
 
     Raises:
-        InputError: the file is no package of a scenario, holds what no scenario holds, is larger
-            than a scenario may be, or the scenario is there already.
+        InputError: the file is not a valid package, is too large, or the scenario exists already.
     """
     package, library = Path(package), Path(library).absolute()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
@@ -94,10 +93,10 @@ def unpack(package: Path, library: Path, progress: Progress = lambda _step, _sha
 
 
 def checked_scenario(folder: Path) -> Scenario:
-    """Load a scenario and look into its meshes and its volume.
+    """Load a scenario and check its meshes and volume.
 
     Raises:
-        InputError: something of it cannot be used.
+        InputError: it is unusable.
     """
     scenario = load_scenario(folder)
     for path in filter(None, (scenario.head_mesh, scenario.skull_mesh)):
@@ -170,7 +169,7 @@ def _check_member(package: Path, info: zipfile.ZipInfo) -> None:
 def _extract_member(
     package: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path, left: int
 ) -> int:
-    """Write one member and return how many bytes the next may have; its header is not believed."""
+    """Write one member and return the remaining bytes allowed; its declared size is ignored."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with archive.open(info) as packed, path.open("xb") as file:
         while chunk := packed.read(_CHUNK):
@@ -185,7 +184,7 @@ def _checked(package: Path, folder: Path) -> Scenario:
     try:
         return checked_scenario(folder)
     except InputError as error:
-        # The folder that is about to vanish tells people nothing.
+        # Remove the temporary folder from the message.
         sentence = str(error).replace(f"{folder.resolve()}/", "").replace(f"{folder}/", "")
         raise InputError(f"{package} cannot be used: {sentence}") from None
 
