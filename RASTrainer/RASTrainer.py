@@ -100,7 +100,7 @@ class RASTrainerParameterNode:
 
 
 class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
-    """Wires the panels to the logic; what they do stands in `rastrainer.panels`."""
+    """Wires the panels to the logic; they are in `rastrainer.panels`."""
 
     def __init__(self, parent=None) -> None:
         ScriptedLoadableModuleWidget.__init__(self, parent)
@@ -202,7 +202,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
 
 class RASTrainerLogic(ScriptedLoadableModuleLogic):
-    """What the module can do without its widgets; the parts stand in `rastrainer.slicer`."""
+    """What the module can do without its widgets; the parts are in `rastrainer.slicer`."""
 
     def __init__(self) -> None:
         from rastrainer.panels.application import callSoon
@@ -267,7 +267,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         showRegistration(slicer.mrmlScene, registration, moving, fixed)
         self.assertLess(np.abs(worldPoints(moving) - fixedPoints).max(), 1e-6)
 
-    def test_anAbsentSimulatorIsToldAndTheSceneMayBeCleared(self):
+    def test_anAbsentSimulatorIsReportedAndTheSceneMayBeCleared(self):
         from rastrainer.slicer.link.heartbeat import LinkState
 
         logic = RASTrainerLogic()

@@ -76,11 +76,11 @@ class HeadlessCommand(vtk.vtkObject):
         self._status = status
 
     def IsInProgress(self) -> bool:
-        """Tell whether the command was sent and neither answered nor given up."""
+        """Return whether the command was sent and neither answered nor given up."""
         return self._status == self.CommandWaiting
 
     def IsCompleted(self) -> bool:
-        """Tell whether the command was answered or given up; False for one never sent."""
+        """Return whether the command was answered or given up; False for one never sent."""
         return self._status not in (self.CommandUnknown, self.CommandWaiting)
 
     def setResponse(self, content: WireText, metaData: Mapping[str, WireText]) -> None:
@@ -98,7 +98,7 @@ class HeadlessCommand(vtk.vtkObject):
         return self._responseMetaData.get(key, "")
 
     def GetSuccessful(self) -> bool:
-        """Tell whether the answer says SUCCESS in its metadata; its content is not asked."""
+        """Return whether the answer says SUCCESS in its metadata; its content does not matter."""
         return self.GetResponseMetaDataElement(STATUS_KEY) == SUCCESS
 
     def GetErrorMessage(self) -> WireText:
@@ -110,7 +110,7 @@ class HeadlessCommand(vtk.vtkObject):
 class OutgoingCommand:
     """A command on its way.
 
-    The real connector keeps what a command says, and tells its events to the object that was made
+    The real connector keeps what a command says, and reports its events to the object that was made
     in Python, whether or not that still lives.
     """
 

@@ -2,7 +2,7 @@
 
 It makes the very nodes that the real connector makes, and has its oddities: the latest message of
 a device wins, the order across devices is lost, time stamps are dropped, and a lost connection is
-told only after the next one.
+reported only after the next one.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._outgoing.append(OutgoingCommand(command.commandId, deadline, weakref.ref(command)))
 
     def PeriodicProcess(self) -> None:
-        """Put into the scene what has arrived, and tell the observers.
+        """Put what has arrived into the scene, and notify the observers.
 
         Does nothing while there is no connection: Slicer's timer does not call it then.
         """

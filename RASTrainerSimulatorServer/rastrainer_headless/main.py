@@ -6,7 +6,7 @@ Every line on standard output is one JSON object with the key `event`:
 
     status  state, sentence, remedy              the link, whenever it changes
     point   label, count, positionMm             a touch has appeared in the scene
-    removed count                                touches have gone: taken back, or a new trial began
+    removed count                                touches were undone, or a new trial started
     trial   results                              a trial is registered, scored and kept; the same
                                                  object is a line of results.jsonl
     problem sentence                             something is wrong with a trial or the images
@@ -53,7 +53,7 @@ class TrialsMissingError(RASTrainerError):
 
 
 class HeadlessHost:
-    """Plays the part of Slicer's application: owns the scene, calls whoever is due.
+    """Replaces Slicer's application: owns the scene and calls what is due.
 
     Attributes:
         application: the scene and what it needs.
@@ -81,16 +81,16 @@ class HeadlessHost:
         )
         self._aborted = AbortedTrialsLogic(self.link, lambda: _openStudy(output), self._work)
         self._aborted.kept.connect(
-            lambda trial: tell("aborted", trialId=trial.trial_id, reason=trial.reason)
+            lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         self.link.statusChanged.connect(self._tellStatus)
         self.link.pointsChanged.connect(self._tellPoints)
         self._presenter.trialScored.connect(self._tellTrial)
         for source in (self._presenter, self._aborted, self._images):
-            source.problemFound.connect(lambda sentence: tell("problem", sentence=sentence))
+            source.problemFound.connect(lambda sentence: printEvent("problem", sentence=sentence))
 
     def run(self, count: int, timeoutS: float) -> TrialAnalysis:
-        """Wait until so many trials are scored, and return the last one.
+        """Wait until a number of trials are scored, and return the last one.
 
         Raises:
             TrialsMissingError: they did not come in time.
@@ -119,14 +119,18 @@ class HeadlessHost:
         self.link.disconnect()
 
     def _tellStatus(self, status: LinkStatus) -> None:
-        tell("status", state=status.state.value, sentence=status.sentence, remedy=status.remedy)
+        printEvent(
+            "status", state=status.state.value, sentence=status.sentence, remedy=status.remedy
+        )
 
     def _tellPoints(self, node: Any) -> None:
         labels, positions = labelsOf(node), localPoints(node)
         for row in range(self._touches, len(labels)):
-            tell("point", label=labels[row], count=row + 1, positionMm=positions[row].tolist())
+            printEvent(
+                "point", label=labels[row], count=row + 1, positionMm=positions[row].tolist()
+            )
         if len(labels) < self._touches:
-            tell("removed", count=len(labels))
+            printEvent("removed", count=len(labels))
         self._touches = len(labels)
 
     def _tellTrial(self, analysis: TrialAnalysis) -> None:
@@ -134,14 +138,14 @@ class HeadlessHost:
         appendResults(self._output, results)
         self.latest = analysis
         self.scored += 1
-        tell("trial", results=results)
+        printEvent("trial", results=results)
 
 
 def _openStudy(folder: Path) -> Study:
     return Study.open(folder / STUDY_FILE, make_folder=True)
 
 
-def tell(event: str, **values: Any) -> None:
+def printEvent(event: str, **values: Any) -> None:
     """Write one line of JSON to standard output."""
     print(json.dumps({"event": event, **values}, allow_nan=False), flush=True)
 
@@ -182,7 +186,7 @@ def _run(arguments: argparse.Namespace) -> None:
     finally:
         host.close()
     files = writeOutput(arguments.output, host.application, scenario, latest)
-    tell("output", **files, study=str(arguments.output / STUDY_FILE))
+    printEvent("output", **files, study=str(arguments.output / STUDY_FILE))
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -122,7 +122,7 @@ def _writePicture(path: Path, scenario: Scenario, analysis: TrialAnalysis) -> No
     task = scenario.task(analysis.record.task)
     expected = analysis.expected_tre
     low, high = expected.interval_mm
-    # Whoever recorded the trial may not know where the head was.
+    # The recording program may not know where the head was.
     true = "" if analysis.truth is None else f", true TRE {analysis.truth.true_tre_mm:.2f} mm"
     title = (
         f"{task.title}: rigid registration of {len(task.labels)} touched points, "

@@ -39,7 +39,7 @@ Received = Callable[[int, wire.Header, bytes], None]
 
 
 class PeerSockets:
-    """Keeps one connection to a server, or listens for many clients, on threads of its own.
+    """Keeps one connection to a server, or listens for many clients, on separate threads.
 
     Args:
         listens: True for a server, False for a client.
@@ -47,7 +47,7 @@ class PeerSockets:
         port: TCP port.
         received: called on a receiving thread with the peer's number and each raw message.
         changed: called on a thread whenever it becomes known that a peer is there, or that the
-            last one has gone; Slicer too finds out only every 100 ms.
+            last one has left; Slicer too finds out only every 100 ms.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""From where a picture shows a head, and where the labels of its points stand."""
+"""From where a picture shows a head, and where the labels of its points are."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ _COST_OF_OVERLAP = 10.0
 def placeLabels(
     anchors: np.ndarray, sizes: np.ndarray, obstacles: np.ndarray, gap: float
 ) -> Sequence[Side]:
-    """Return on which side of its anchor each label stands.
+    """Return on which side of its anchor each label is.
 
     The labels are placed one after the other, each where it covers the least.
 

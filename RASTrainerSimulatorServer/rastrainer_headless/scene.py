@@ -31,7 +31,7 @@ class HeadlessScene:
         self._markupsLogic = slicer.vtkSlicerMarkupsLogic()
         self._markupsLogic.SetMRMLApplicationLogic(self._applicationLogic)
         self._markupsLogic.SetMRMLScene(self.scene)
-        # Whoever opens a saved scene finds the images in the slice views.
+        # In a saved scene the slice views show the images.
         self._sliceLogics = [self._sliceLogic(name, axes) for name, axes in SLICES.items()]
         # It shows of each Sequence what its browser has chosen.
         self._sequencesLogic = slicer.vtkSlicerSequencesLogic()

@@ -24,7 +24,7 @@ def test_commands_are_handed_over_a_few_a_turn_in_their_order(arrivals, told):
     for number in range(3 * COMMANDS_A_TURN):
         arrivals.keepCommand("Known", json.dumps({"number": number}))
     for turn in range(1, 4):
-        arrivals.handOverCommands()
+        arrivals.emitCommands()
         assert len(told) == turn * COMMANDS_A_TURN
     assert [each["number"] for each in told] == list(range(3 * COMMANDS_A_TURN))
 
@@ -33,7 +33,7 @@ def test_long_commands_are_handed_over_fewer_a_turn(arrivals, told):
     for _ in range(4):
         arrivals.keepCommand("Known", json.dumps({"text": CHARACTERS_A_TURN * "x"}))
     for turn in range(1, 5):
-        arrivals.handOverCommands()
+        arrivals.emitCommands()
         assert len(told) == turn
 
 
@@ -41,7 +41,7 @@ def test_of_a_flood_no_more_is_kept_than_can_wait(arrivals, told):
     for number in range(10 * MOST_KEPT):
         arrivals.keepCommand("Known", json.dumps({"number": number}))
     for _ in range(10 * MOST_KEPT):
-        arrivals.handOverCommands()
+        arrivals.emitCommands()
     assert [each["number"] for each in told] == list(range(MOST_KEPT))
 
 
@@ -49,7 +49,7 @@ def test_unknown_commands_count_as_well(arrivals, told):
     for _ in range(COMMANDS_A_TURN):
         arrivals.keepCommand("Unknown", "{}")
     arrivals.keepCommand("Known", "{}")
-    arrivals.handOverCommands()
+    arrivals.emitCommands()
     assert told == []
-    arrivals.handOverCommands()
+    arrivals.emitCommands()
     assert told == [{}]

@@ -13,7 +13,7 @@ WELL = LinkObservation(
     isWanted=True,
     isOpen=True,
     silenceS=0.5,
-    isHeard=True,
+    hasHeartbeat=True,
     peerVersion=PROTOCOL_VERSION,
 )
 
@@ -60,10 +60,10 @@ def found(peer):
             "No simulator has connected",
             "connects to this computer",
         ),
-        (replace(WELL, isHeard=False), LinkState.GREETING, "waiting for its first", ""),
+        (replace(WELL, hasHeartbeat=False), LinkState.GREETING, "waiting for its first", ""),
         (replace(WELL, silenceS=5.2), LinkState.STALE, "silent for 5 s", "restart"),
         (
-            replace(WELL, isHeard=False, silenceS=5.0),
+            replace(WELL, hasHeartbeat=False, silenceS=5.0),
             LinkState.STALE,
             "not a RASTrainer simulator",
             "host and port",

@@ -42,7 +42,7 @@ def assetsFolder(moduleFile: Path) -> Path:
 
 
 def callSoon(work: Callable[[], None]) -> None:
-    """Call `work` as soon as what is being done now is over."""
+    """Call `work` in the next turn of the event loop."""
     qt.QTimer.singleShot(0, work)
 
 
@@ -120,7 +120,7 @@ def askWhereToSave(caption: str, proposed: str, kind: str) -> Path | None:
     if chosen.lower().endswith(suffix):
         return Path(chosen)
     path = Path(chosen + suffix)
-    # The dialog has asked only about the name without the suffix.
+    # The dialog has checked only the name without the suffix.
     question = _("{path} is there already. Replace it?").format(path=path)
     if path.exists() and not slicer.util.confirmYesNoDisplay(toolTip(question), caption):
         return None

@@ -64,7 +64,7 @@ class CancelableWork:
         connectAsPressed(button, lambda: self.cancel if self.isUnderWay else start)
 
     def cancel(self) -> None:
-        """Cancel what is under way, as soon as it reports its progress."""
+        """Cancel what is under way, when it next reports its progress."""
         self._isCanceled = True
 
     def _progress(self, step: str, share: float) -> None:

@@ -80,7 +80,7 @@ def _spinBox(name: str, limits: tuple[float, float], value: float) -> Any:
     box.objectName = name
     box.minimum, box.maximum = limits
     box.decimals = 1
-    # Three stand in a row: they are not to be as wide as the widest number they could show.
+    # Three share a row: they must not be as wide as the widest number.
     box.minimumWidth = NARROWEST
     box.value = value
     return box
@@ -97,7 +97,7 @@ class NewScenarioPanel:
         self._session = session
         self._maker = session.scenarioMaker
         self._setUp = SetUpForm(ui.setUpGroupBox)
-        self._work = CancelableWork(self._tell, self._showProgress, self._showUsable)
+        self._work = CancelableWork(self._showMessage, self._showProgress, self._showUsable)
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
         self._work.connectButton(ui.makeScenarioButton, self.make)
         ui.previewHeadButton.connect("clicked()", self.preview)
@@ -124,7 +124,7 @@ class NewScenarioPanel:
             application.GetSelectionNode().SetActiveVolumeID(volume.GetID())
             application.PropagateVolumeSelection()
             self._ui.scanComboBox.setCurrentNode(volume)
-            self._tell(_("{name} is in the scene.").format(name=volume.GetName()))
+            self._showMessage(_("{name} is in the scene.").format(name=volume.GetName()))
 
     def _takeShownVolume(self, isFolded: bool) -> None:
         """Choose the volume that the slice views show where none is chosen."""
@@ -141,7 +141,7 @@ class NewScenarioPanel:
                     "This head is found. Change the threshold or the cut and find it again, or "
                     "change its segment in the Segment Editor; then make the scenario."
                 )
-                self._tell(" ".join([text, *warnings]))
+                self._showMessage(" ".join([text, *warnings]))
                 fitThreeDViews()
 
     def check(self) -> None:
@@ -155,7 +155,7 @@ class NewScenarioPanel:
             )
             if warnings is not None:
                 text = _("Set-up, plan and fiducials can be used.")
-                self._tell(" ".join([text, *warnings]))
+                self._showMessage(" ".join([text, *warnings]))
 
     def make(self) -> None:
         """Make the scenario and use it."""
@@ -169,7 +169,7 @@ class NewScenarioPanel:
         """Choose the new scenario, show it, and have the simulator take it."""
         self._session.scenarioMade.emit(scenario.name)
         text = _("{title} is made and chosen above.").format(title=scenario.title)
-        self._tell(" ".join([text, *warnings]))
+        self._showMessage(" ".join([text, *warnings]))
 
     def _wanted(self) -> tuple[Any, NewScenarioOptions]:
         ui = self._ui
@@ -189,7 +189,7 @@ class NewScenarioPanel:
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:
-            self._tell(step)
+            self._showMessage(step)
         self._ui.newScenarioProgressBar.value = round(100 * share)
 
     def _showUsable(self, *_arguments: Any) -> None:
@@ -219,7 +219,7 @@ class NewScenarioPanel:
         )
         ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not isAtWork
 
-    def _tell(self, sentence: str) -> None:
+    def _showMessage(self, sentence: str) -> None:
         setSentence(self._ui.newScenarioText, sentence)
 
 

@@ -27,10 +27,10 @@ from rastrainer.trial.analysis import TrialAnalysis
 
 
 class SectionFolding:
-    """Folds and opens whenever the work goes on to another section, and leaves all alone between.
+    """Folds and opens sections whenever the workflow moves to another one, and only then.
 
-    So what the user opens or folds by hand stays so until then. The sections of which no step is
-    the next, such as Scenario and Plan, are the user's alone.
+    So what the user opens or folds stays so until then. Sections without a next step, such as
+    Scenario and Plan, are never changed.
     """
 
     def __init__(self, ui: Any) -> None:
@@ -46,7 +46,7 @@ class SectionFolding:
             button.collapsed = each is not section
 
     def open(self, section: Section) -> None:
-        """Open a section, which may have been folded by hand."""
+        """Open a section, which the user may have folded."""
         self._sections[section].collapsed = False
 
 
@@ -124,7 +124,7 @@ class NextStepPanel:
         self.showState()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show where the session stands; called about ten times a second."""
+        """Show the state of the session; called about ten times a second."""
         now = self._situation()
         if now != self._seen:
             self._seen, self._step = now, nextStep(now)
@@ -187,7 +187,7 @@ class NextStepPanel:
             self._trainee = trainees.chosen
             self._hasPracticed = self._hasNewResult = self._isResultShown = False
         self._studyStep, self._repeatSentence = None, ""
-        # The section Trainees tells what is wrong with the study.
+        # The section Trainees shows what is wrong with the study.
         with contextlib.suppress(InputError):
             self._hasTrainees = bool(trainees.trainees())
             self._hasPracticed = self._hasPracticed or bool(trainees.history())
@@ -198,7 +198,7 @@ class NextStepPanel:
         self.showState()
 
     def _lookAtSetup(self, _error: str = "") -> None:
-        # It stands in a file, which is not read ten times a second.
+        # It is in a file, which is not to be read ten times a second.
         self._needsSetup = self._session.simulator.needsSetup
         self.showState()
 
@@ -209,7 +209,7 @@ class NextStepPanel:
         self.showState()
 
     def _takeResult(self, analysis: TrialAnalysis) -> None:
-        # The sections show it each in a turn of its own; only then is there something to look at.
+        # Each section shows it in a separate turn; only then is there something to look at.
         self._session.work.later(lambda: self._noteResult(analysis.record.trainee))
 
     def _noteResult(self, trainee: str) -> None:
@@ -222,7 +222,7 @@ class NextStepPanel:
         self.showState()
 
     def _noteScoreSeen(self, isFolded: bool) -> None:
-        """Take a result for seen whose section was opened by hand."""
+        """Treat a result as seen when the user opens its section."""
         if not isFolded and self._hasNewResult:
             self._hasNewResult, self._isResultShown = False, True
             self.showState()

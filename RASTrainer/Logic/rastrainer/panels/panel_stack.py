@@ -1,4 +1,4 @@
-"""The panels of the module, one a workflow step, each from a `.ui` file of its own."""
+"""The panels of the module, one a workflow step, each from a separate `.ui` file."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """What others wrote, made fit to be shown: never HTML, never wider or longer than a panel.
 
 A peer, a file or a user may send thousands of characters without a space, or tags: a label shows
-them as they stand, wrapped, and the first few hundred of them.
+them as they are, wrapped, and the first few hundred of them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def buttonTitle(text: str) -> str:
 
 
 def toolTip(text: str) -> str:
-    """Return a tool tip, or a question, that Qt shows as it stands, wrapped.
+    """Return a tool tip, or a question, that Qt shows as it is, wrapped.
 
     Qt takes what looks like HTML for HTML, and wraps nothing else: what may be taken for it, or is
     long, is given as HTML of which nothing is a tag.

@@ -110,7 +110,7 @@ class PlanPanel:
                 self._session.scenarioMade.emit(scenario.name)
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the plan as it stands; called about ten times a second."""
+        """Show the plan; called about ten times a second."""
         plan, problem = self._read()
         self._logic.follow(plan)
         ui = self._ui

@@ -113,7 +113,9 @@ class RegistrationPanel:
 
     def _show(self) -> None:
         ui, comparison = self._ui, self._logic.comparison
-        setSentence(ui.registrationText, _told(comparison) if comparison else self._logic.problem)
+        setSentence(
+            ui.registrationText, _summary(comparison) if comparison else self._logic.problem
+        )
         setSentence(ui.treText, _treText(comparison) if comparison else "")
         ui.treText.toolTip = toolTip(INTERVAL_NOTE)
         fits = [] if comparison is None else _fitRows(comparison)
@@ -212,7 +214,7 @@ class RegistrationPanel:
         return apply
 
 
-def _told(comparison: Comparison) -> str:
+def _summary(comparison: Comparison) -> str:
     pairs = comparison.pairs
     sentence = _("{count} pairs are registered.").format(count=len(pairs.labels))
     if pairs.missing:

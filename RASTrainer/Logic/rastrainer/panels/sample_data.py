@@ -64,7 +64,7 @@ def downloadSample(scene: Any, logic: Any, name: str, progress: Progress) -> Any
         raise InputError(_("This Slicer's Sample Data has no {name}.").format(name=name))
     kept = Path(scene.GetCacheManager().GetRemoteCacheDirectory(), source.fileNames[0])
     if not kept.is_file():
-        inBackground(lambda _tell: _checkReachable(source.uris[0], name), progress)
+        inBackground(lambda _report: _checkReachable(source.uris[0], name), progress)
     volumes = [node for node in logic.downloadSamples(name) if node is not None]
     if not volumes:
         raise InputError(_notBrought(name))

@@ -29,8 +29,10 @@ class ScenarioPanel:
         self._session = session
         self._logic = session.scenario
         self._work = CancelableWork(self._showHeadMessage, self._showProgress, self._showUsable)
-        self._writing = CancelableWork(self._tell, lambda _step, _share: None, self._showUsable)
-        self._adding = CancelableWork(self._tell, self._showAdding, self._showUsable)
+        self._writing = CancelableWork(
+            self._showMessage, lambda _step, _share: None, self._showUsable
+        )
+        self._adding = CancelableWork(self._showMessage, self._showAdding, self._showUsable)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)
         for combo in (ui.scenarioComboBox, ui.taskComboBox):
@@ -43,10 +45,10 @@ class ScenarioPanel:
         self._adding.connectButton(ui.importScenarioButton, self.importScenario)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         session.link.statusChanged.connect(self._showUsable)
-        session.training.answered.connect(self._tell)
+        session.training.answered.connect(self._showMessage)
         session.scenarioMade.connect(self.continueWith)
         session.images.shown.connect(self._frameImages)
-        session.images.problemFound.connect(self._tell)
+        session.images.problemFound.connect(self._showMessage)
         self._fill(session.settings.get(SCENARIO))
 
     def close(self) -> None:
@@ -55,10 +57,10 @@ class ScenarioPanel:
         self._writing.cancel()
         self._adding.cancel()
         self._session.link.statusChanged.disconnect(self._showUsable)
-        self._session.training.answered.disconnect(self._tell)
+        self._session.training.answered.disconnect(self._showMessage)
         self._session.scenarioMade.disconnect(self.continueWith)
         self._session.images.shown.disconnect(self._frameImages)
-        self._session.images.problemFound.disconnect(self._tell)
+        self._session.images.problemFound.disconnect(self._showMessage)
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
@@ -73,7 +75,9 @@ class ScenarioPanel:
         with slicer.util.tryWithErrorDisplay(_("The scenario was not loaded.")):
             scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
             self._session.training.loadScenario(scenario.name)
-            self._tell(_("The simulator is asked to load {title}.").format(title=scenario.title))
+            self._showMessage(
+                _("The simulator is asked to load {title}.").format(title=scenario.title)
+            )
 
     def showRobot(self, shown: bool) -> None:
         """Show the robot in the 3D view, or hide it."""
@@ -107,7 +111,7 @@ class ScenarioPanel:
             )
             if added is not None:
                 self._fill(added.name)
-                self._tell(_("{title} is added.").format(title=added.title))
+                self._showMessage(_("{title} is added.").format(title=added.title))
 
     def exportScenario(self) -> None:
         """Write the chosen scenario as a zip file."""
@@ -115,7 +119,7 @@ class ScenarioPanel:
             name = chosenData(self._ui.scenarioComboBox)
             keepsFace = not self._ui.removeFaceCheckBox.checked
             keepsNames = not self._ui.removeNamesCheckBox.checked
-            # A file that is called as the patient would tell the name, too.
+            # A file named after the patient would reveal the name, too.
             proposed = f"{name}.zip" if keepsNames else "head.zip"
             path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
             if path is not None:
@@ -126,7 +130,7 @@ class ScenarioPanel:
                     )
                 )
                 if taken is not None:
-                    self._tell(_("{path} is written.").format(path=path) + f" {taken}")
+                    self._showMessage(_("{path} is written.").format(path=path) + f" {taken}")
 
     def continueWith(self, name: str) -> None:
         """Choose a scenario that has just been made, show it, and have the simulator take it."""
@@ -147,7 +151,7 @@ class ScenarioPanel:
             self._showHeadMessage(f"{step}: {100 * share:.0f} %")
 
     def _showAdding(self, step: str, _share: float) -> None:
-        self._tell(step)
+        self._showMessage(step)
 
     def _showHeadMessage(self, sentence: str) -> None:
         setText(self._ui.otherHeadText, sentence)
@@ -177,7 +181,7 @@ class ScenarioPanel:
         self._ui.taskComboBox.enabled = isUsable
         self._showUsable()
         if not isUsable:
-            self._tell(_("There is no scenario.") if entry is None else entry.problem)
+            self._showMessage(_("There is no scenario.") if entry is None else entry.problem)
             return
         scenario = self._logic.find(name)
         tasks = [(task.title, task.name) for task in scenario.tasks]
@@ -199,7 +203,7 @@ class ScenarioPanel:
         scenario = self._logic.find(chosenData(self._ui.scenarioComboBox))
         task = scenario.task(chosenData(self._ui.taskComboBox))
         self._session.chooseTask(task.name, task.title)
-        self._tell(
+        self._showMessage(
             _("{count} fiducials, complexity {complexity:.2f}; target: {target}.").format(
                 count=len(task.labels), complexity=task.complexity, target=scenario.target_name
             )
@@ -235,6 +239,6 @@ class ScenarioPanel:
             _("Choose a model or a volume of the scene first."),
         )
 
-    def _tell(self, sentence: str) -> None:
+    def _showMessage(self, sentence: str) -> None:
         if sentence:
             setText(self._ui.scenarioText, sentence)

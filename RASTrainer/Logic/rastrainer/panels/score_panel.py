@@ -1,4 +1,4 @@
-"""The section Score: a trial's scores and their parts, its motion, and how it stands."""
+"""The section Score: a trial's scores and their parts, its motion, and other trials beside it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class ScorePanel:
         self._ui = ui
         self._session = session
         self._trainees = session.trainees
-        self._work = CancelableWork(self._tell, self._showProgress, self._showUsable)
+        self._work = CancelableWork(self._showMessage, self._showProgress, self._showUsable)
         self._newTrial = ""
         self._worst = ""
         ui.trialComboBox.connect("activated(int)", self._showTrial)
@@ -71,7 +71,7 @@ class ScorePanel:
         self._session.replay.feedbackFound.disconnect(self._showFeedback)
 
     def showTables(self) -> None:
-        """Show what stands here as tables of the scene, or give the user's layout back."""
+        """Show the section's content as tables of the scene, or give the user's layout back."""
         if not self._ui.showTablesButton.checked:
             self._session.layout.giveBack(TABLES)
             return
@@ -83,7 +83,9 @@ class ScorePanel:
             showStandings(slicer.mrmlScene, self._standings(trial))
             showMotion(slicer.mrmlScene, motionRows(trial))
             showTable(self._session.layout, showScore(slicer.mrmlScene, rows))
-            self._tell(_("Score, Comparison and Motion metrics are tables of the scene now."))
+            self._showMessage(
+                _("Score, Comparison and Motion metrics are tables of the scene now.")
+            )
 
     def exportScores(self) -> None:
         """Write all trials of the study as a table."""
@@ -98,7 +100,7 @@ class ScorePanel:
                         "{count} trials are written to {path}. Trainees left out because they did "
                         "not agree to research: {leftOut}."
                     )
-                    self._tell(text.format(count=written[0], path=path, leftOut=written[1]))
+                    self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
 
     def writeReport(self) -> None:
         """Write the report of the whole study into a folder, and open it."""
@@ -109,11 +111,11 @@ class ScorePanel:
                 study = self._session.studyPath
                 page = self._work.run(
                     lambda report: inBackground(
-                        lambda _tell: _reportOn(study, Path(folder)), report
+                        lambda _report: _reportOn(study, Path(folder)), report
                     )
                 )
                 if page is not None:
-                    self._tell(_("The report is {path}.").format(path=page))
+                    self._showMessage(_("The report is {path}.").format(path=page))
                     qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
 
     def replay(self) -> None:
@@ -130,7 +132,7 @@ class ScorePanel:
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
     def showState(self) -> None:
-        """Show where the replay stands, which plays by itself, and whether tables are shown."""
+        """Show the time of the replay, and whether tables are shown."""
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
             setSentence(self._ui.replayText, self._session.replay.sentence)
@@ -149,7 +151,7 @@ class ScorePanel:
         try:
             history = self._trainees.history()
         except InputError as error:
-            self._tell(str(error))
+            self._showMessage(str(error))
             return
         entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
         entries.reverse()
@@ -170,7 +172,7 @@ class ScorePanel:
             trial = self._trial()
             beside = [] if trial is None else self._standings(trial)
         except InputError as error:
-            self._tell(str(error))
+            self._showMessage(str(error))
             return
         scores = [] if trial is None else scoreRows(trial)
         ctps = [] if trial is None else ctpsRows(trial, self._session.cohort)
@@ -188,7 +190,7 @@ class ScorePanel:
             ((row.title, row.text) for row in motion),
             [row.note for row in motion],
         )
-        self._tell(
+        self._showMessage(
             _("Choose a trainee with a scored trial.")
             if trial is None
             else _("{trainee}, {task}, {mode}").format(
@@ -198,7 +200,7 @@ class ScorePanel:
         self._showFeedback()
 
     def _showFeedback(self) -> None:
-        """Show what there is to say about the trial, as soon as that is known."""
+        """Show the feedback on the trial when it is known."""
         sentences, self._worst = [], ""
         try:
             trial = self._trial()
@@ -250,7 +252,7 @@ class ScorePanel:
         if step:
             setSentence(self._ui.replayText, f"{step}: {100 * share:.0f} %")
 
-    def _tell(self, sentence: str) -> None:
+    def _showMessage(self, sentence: str) -> None:
         setText(self._ui.scoreMessageText, sentence)
 
     def _trial(self) -> StoredTrial | None:

@@ -1,4 +1,4 @@
-"""The panels on a study of their own, for the module's self tests: no user's study is touched."""
+"""The panels on a separate study, for the module's self tests: no user's study is changed."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class SelfTestFixture:
         self._panels.showState()
 
     def clearScene(self) -> None:
-        """Close the scene, and tell the session as the module's widget does."""
+        """Close the scene, and notify the session as the module's widget does."""
         slicer.mrmlScene.Clear()
         self.session.sceneWasCleared()
         self.process()

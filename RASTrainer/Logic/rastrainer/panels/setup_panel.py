@@ -1,4 +1,4 @@
-"""The section Set-up: where the simulator comes from, what it takes, and that it goes again."""
+"""The section Set-up: where the simulator comes from, its size, and its removal."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class SetupPanel:
         """Start the set-up."""
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be set up.")):
             self._ui.setupLogEdit.clear()
-            self._simulator.beginSetup(
+            self._simulator.startSetup(
                 self._ui.indexLineEdit.text, self._ui.wheelsPathLineEdit.currentPath
             )
 
@@ -89,7 +89,7 @@ class SetupPanel:
         ui, setup = self._ui, self._simulator.setup
         setText(ui.setupText, self._sentence())
         isFetching = setup.isRunning and not setup.progress.isInstalling
-        # Nought of nought shows that something is going on.
+        # A maximum of 0 shows that work is under way.
         ui.setupProgressBar.maximum = setup.progress.count if isFetching else 0
         ui.setupProgressBar.value = setup.progress.done if isFetching else 0
 

@@ -113,7 +113,7 @@ class StudyPanel:
         )
 
     def showState(self) -> None:
-        """Show what goes on by itself: the time of a trial run or a break, and the connection."""
+        """Show what changes without a signal: connection, and time of a trial run or a break."""
         progress = self._progress
         step = None if progress is None else progress.next_step
         self._warn()
@@ -160,13 +160,13 @@ class StudyPanel:
             ui.stepsProgressBar.value = len(progress.entries)
             fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])
         step = None if progress is None else progress.next_step
-        asked = step if step is not None and step.kind is StepKind.QUESTIONNAIRE else None
-        ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = asked is not None
-        if asked is None:
+        questionnaire = step if step is not None and step.kind is StepKind.QUESTIONNAIRE else None
+        ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = questionnaire is not None
+        if questionnaire is None:
             self._form.show(None, None)
         else:
-            key = (self._session.trainees.chosen, asked.name)
-            self._form.show(key, find_questionnaire(asked.questionnaire))
+            key = (self._session.trainees.chosen, questionnaire.name)
+            self._form.show(key, find_questionnaire(questionnaire.questionnaire))
         isAborted = progress is not None and bool(progress.unexplained)
         ui.repeatStepButton.visible = isAborted
         ui.startStepButton.visible = step is not None and step.kind in TRIALS and not isAborted

@@ -109,7 +109,9 @@ class TraineesPanel:
         if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The trainee was not exported.")):
                 count = self._logic.export(path)
-                self._say(_("{count} trials are written to {path}."), count=count, path=path)
+                self._showMessage(
+                    _("{count} trials are written to {path}."), count=count, path=path
+                )
 
     def exportHistory(self) -> None:
         """Write the trials of the chosen trainee as a table."""
@@ -118,7 +120,9 @@ class TraineesPanel:
         if path is not None:
             with slicer.util.tryWithErrorDisplay(_("The history was not exported.")):
                 count = self._logic.exportHistory(path)
-                self._say(_("{count} trials are written to {path}."), count=count, path=path)
+                self._showMessage(
+                    _("{count} trials are written to {path}."), count=count, path=path
+                )
 
     def deleteTrainee(self) -> None:
         """Delete the chosen trainee for good, after asking."""
@@ -134,7 +138,7 @@ class TraineesPanel:
                 text = _("{name} is deleted with {trials} trials and {journals} journals.").format(
                     name=name, trials=erased.trials, journals=erased.journals
                 )
-                self._say("{text}", text=" ".join((text, *erased.warnings)))
+                self._showMessage("{text}", text=" ".join((text, *erased.warnings)))
 
     def showLearningCurve(self) -> None:
         """Show score and time over the trials as a plot, or give the user's layout back."""
@@ -155,7 +159,7 @@ class TraineesPanel:
             found = self._logic.calibration()
             chart = showCalibration(slicer.mrmlScene, found)
             showChart(self._session.layout, chart, CALIBRATION)
-            self._say("{text}", text=" ".join(found.sentences()))
+            self._showMessage("{text}", text=" ".join(found.sentences()))
 
     def showState(self) -> None:
         """Show whether a plot is shown; called about ten times a second."""
@@ -178,11 +182,11 @@ class TraineesPanel:
             trainee, history = self._logic.chosenTrainee(), self._logic.history()
             aborted = self._logic.aborted()
         except InputError as error:
-            self._say("{error}", error=error)
+            self._showMessage("{error}", error=error)
             self._isProblemShown = True
             return
         if self._isProblemShown:
-            self._say("")
+            self._showMessage("")
         entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
@@ -205,7 +209,7 @@ class TraineesPanel:
         ):
             setUsable(button, bool(history), tip, hasTrials)
         if trainee is not None:
-            self._say(
+            self._showMessage(
                 _("{name}, since {day}. Trials: {count}. {aborted}"),
                 name=trainee.pseudonym,
                 count=len(history),
@@ -213,14 +217,14 @@ class TraineesPanel:
                 aborted=_aborted(aborted),
             )
         elif not ui.traineeText.text:
-            self._say(_("Choose who trains, or create a new trainee."))
+            self._showMessage(_("Choose who trains, or create a new trainee."))
         fillTable(
             ui.historyTable,
             (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
             [trial.record.started_utc for trial in history],
         )
 
-    def _say(self, sentence: str, **values: Any) -> None:
+    def _showMessage(self, sentence: str, **values: Any) -> None:
         self._isProblemShown = False
         setText(self._ui.traineeText, sentence.format(**values).rstrip())
 

@@ -63,16 +63,16 @@ class TrainingPanel:
         ui.abortButton.connect("clicked()", self.abort)
         self._listening = (
             (self._logic.changed, self.showState),
-            (self._logic.answered, self._tell),
-            (session.trials.problemFound, self._tell),
-            (session.aborted.problemFound, self._tell),
+            (self._logic.answered, self._showMessage),
+            (session.trials.problemFound, self._showMessage),
+            (session.aborted.problemFound, self._showMessage),
             (session.trainees.changed, self.showState),
             (session.taskChosen, self.showState),
             (session.link.statusChanged, self.showState),
         )
         for signal, slot in self._listening:
             signal.connect(slot)
-        self._tell("")
+        self._showMessage("")
         self._moveSlices()
         self.showState()
 
@@ -115,7 +115,7 @@ class TrainingPanel:
         slices.followsTool = self._ui.slicesToolCheckBox.checked
 
     def showState(self, *_arguments: Any) -> None:
-        """Show where the trial stands; called about ten times a second."""
+        """Show the state of the trial; called about ten times a second."""
         ui, progress, session = self._ui, self._logic.progress, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
@@ -185,7 +185,7 @@ class TrainingPanel:
         shown = "–" if clearance is None else f"{fixed(clearance, 1)} mm, {words}"
         setText(self._ui.clearanceText, shown)
 
-    def _tell(self, sentence: str) -> None:
+    def _showMessage(self, sentence: str) -> None:
         setSentence(self._ui.trainingMessageText, sentence)
 
 

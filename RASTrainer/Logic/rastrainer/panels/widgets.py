@@ -26,12 +26,12 @@ LINK_COLORS = {
 
 
 def setLight(label: Any, color: str) -> None:
-    """Show a colored dot in a label of its own; words beside it say the same."""
+    """Show a colored dot in a label; words beside it say the same."""
     label.text = f'<span style="color:{color}">●</span>'
 
 
 def setText(label: Any, text: str) -> None:
-    """Show what anyone may have written; what is too long stands whole in the tool tip."""
+    """Show what anyone may have written; what is too long is shown in full in the tool tip."""
     shown = wrappable(shortened(text, LONGEST_TEXT))
     if label.text != shown:
         label.text = shown

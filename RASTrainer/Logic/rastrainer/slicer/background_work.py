@@ -1,12 +1,12 @@
-"""Work that takes long leaves the main thread: a function of plain data runs in a worker thread.
+"""Long work runs in a worker thread, as a function of plain data.
 
-It touches no node, no widget and no connection to the study but its own. What it returns is handed
-over on the main thread, which then shows it.
+It touches no node, no widget and no connection to the study but its own. Its result is
+delivered on the main thread, which then shows it.
 
 Slicer starts PythonQt without support of threads: its main thread keeps Python's lock while Qt
-waits for events, and a worker stands still. `giveTime` lets it run, for moments too short to be
-felt; whoever has a timer calls it often while there is work. Only Python's own code and numpy's
-give way in between: filters of VTK keep the lock to their end, and belong into another process.
+waits for events, and a worker cannot run. `giveTime` lets it run for moments too short to notice; a
+timer calls it often while there is work. Only Python's own code and numpy's release the lock in
+between: VTK's filters keep it to their end and belong in another process.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from rastrainer.slicer.signal import Signal
 T = TypeVar("T")
 
 TIME_S = 0.02
-"""So long the main thread waits for a worker at a time."""
+"""How long the main thread waits for a worker at a time."""
 PERIOD_MS = 40
-"""So often a timer does it: about half of the time is the worker's."""
+"""Period of the timer that does so: about half of the time is the worker's."""
 SWITCH_INTERVAL_S = 0.0002
-"""So soon a worker gives Python's lock back to the main thread that wants it."""
+"""How soon a worker returns Python's lock to a main thread that wants it."""
 CLOSING_S = 1.0
-"""So long closing waits for what is under way."""
+"""How long closing waits for running work."""
 
 
 class _Workers:
@@ -42,8 +42,7 @@ class _Workers:
 
     It looks for no cycles of garbage: that would happen in a worker's thread, where wrappers of
     VTK's and Qt's objects must not die, and among all that Slicer holds it takes tenths of a
-    second, which nothing interrupts. So it is the main thread that lets Python look again: what is
-    overdue is done by whoever allows it.
+    second, which nothing interrupts. So the main thread lets Python collect again.
 
     And a worker gives Python's lock back soon: numpy gives it away in each call of LAPACK, so that
     the main thread would wait Python's usual 5 ms hundreds of times in one registration.
@@ -55,7 +54,7 @@ class _Workers:
         self._interval_s = sys.getswitchinterval()
 
     def begin(self) -> None:
-        """A worker begins; only the main thread calls this, as the next."""
+        """Note that a worker starts; called by the main thread only, as `end`."""
         if self._count == 0:
             self._wasEnabled = gc.isenabled()
             gc.disable()
@@ -64,7 +63,7 @@ class _Workers:
         self._count += 1
 
     def end(self) -> None:
-        """A worker has ended, or nobody waits for it any more."""
+        """Note that a worker has ended, or that nobody waits for it any more."""
         self._count -= 1
         if self._count:
             return
@@ -77,12 +76,12 @@ _WORKERS = _Workers()
 
 
 class Job(Generic[T]):
-    """One piece of work in a thread of its own, begun at once; the main thread looks after it."""
+    """One piece of work in a thread, started at once and supervised by the main thread."""
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._work = work
         self._outcome: Future[T] = Future()
-        self._isLookedAfter = True
+        self._isSupervised = True
         self._thread = threading.Thread(target=self._run, daemon=True)
         _WORKERS.begin()
         self._thread.start()
@@ -96,18 +95,18 @@ class Job(Generic[T]):
         return isDone
 
     def giveTime(self, seconds: float = TIME_S) -> None:
-        """Let the thread run, and return as soon as it has ended."""
+        """Let the thread run, and return when it has ended or the time is over."""
         with workersTurn():
             self._thread.join(seconds)
 
     def leave(self) -> None:
-        """Look after the thread no more: it has ended, or nobody waits for it."""
-        if self._isLookedAfter:
-            self._isLookedAfter = False
+        """Stop supervising the thread: it has ended, or nobody waits for it."""
+        if self._isSupervised:
+            self._isSupervised = False
             _WORKERS.end()
 
     def result(self) -> T:
-        """Return what the work has returned, or raise what it has raised, once it is done."""
+        """Return what finished work has returned, or raise what it has raised."""
         return self._outcome.result(timeout=0)
 
     def _run(self) -> None:
@@ -125,10 +124,10 @@ class _Waiting:
 
 
 class BackgroundWork:
-    """Does one piece of work after the other; results come by `process`, in the same order.
+    """Runs one piece of work after the other; `process` delivers the results in this order.
 
     Attributes:
-        began: emits nothing, when there is work after there was none.
+        began: emits nothing when there is work after there was none.
     """
 
     def __init__(self) -> None:
@@ -140,7 +139,7 @@ class BackgroundWork:
 
     @property
     def isBusy(self) -> bool:
-        """Whether there is anything that `process` has not yet handed over."""
+        """Whether there is anything that `process` has not delivered yet."""
         return self._underWay is not None or bool(self._waiting or self._slices)
 
     def do(
@@ -149,7 +148,7 @@ class BackgroundWork:
         take: Callable[[T], None],
         refuse: Callable[[Exception], None] = lambda _error: None,
     ) -> None:
-        """Have something done, unless closed; it is begun when what came before is handed over.
+        """Run `work`, unless closed; it starts when earlier results have been delivered.
 
         Args:
             work: runs in a thread; see the module for what it may touch.
@@ -161,12 +160,12 @@ class BackgroundWork:
             return
         wasBusy = self.isBusy
         self._waiting.append(_Waiting(work, take, refuse))
-        self._beginNext()
+        self._startNext()
         if not wasBusy:
             self.began.emit()
 
     def later(self, slice_: Callable[[], None]) -> None:
-        """Have a function called on the main thread by a later `process`, one in each."""
+        """Have a later `process` call a function on the main thread, one each time."""
         if self._isClosed:
             return
         wasBusy = self.isBusy
@@ -175,29 +174,29 @@ class BackgroundWork:
             self.began.emit()
 
     def giveTime(self) -> None:
-        """Let what is under way run for a moment, unless the main thread has what was put off."""
+        """Let running work continue for a moment, unless functions are postponed."""
         if self._underWay is not None and not self._slices:
             self._underWay[0].giveTime()
 
     def process(self) -> None:
-        """Call what was put off till later, one function at a time; hand over what is done."""
+        """Call one postponed function, or deliver a finished result."""
         if self._slices:
             try:
                 self._slices.popleft()()
             finally:
-                self._beginNext()
+                self._startNext()
             return
         if self._underWay is None or not self._underWay[0].isDone:
             return
         job, ended = self._underWay
         self._underWay = None
         try:
-            self._handOver(job, ended)
+            self._deliver(job, ended)
         finally:
-            self._beginNext()
+            self._startNext()
 
     def close(self) -> None:
-        """Wait a moment for what is under way, hand it over, and do nothing more."""
+        """Wait briefly for running work, deliver it, and do nothing more."""
         self._isClosed = True
         self._waiting.clear()
         self._slices.clear()
@@ -209,13 +208,13 @@ class BackgroundWork:
         job.leave()
         self._underWay = None
 
-    def _beginNext(self) -> None:
-        """Begin what waits, after what is put off: both at once would share Python's lock."""
+    def _startNext(self) -> None:
+        """Start waiting work after postponed functions: both at once would share Python's lock."""
         if self._waiting and self._underWay is None and not self._slices:
             waiting = self._waiting.popleft()
             self._underWay = Job(waiting.work), waiting
 
-    def _handOver(self, job: Job[Any], ended: _Waiting) -> None:
+    def _deliver(self, job: Job[Any], ended: _Waiting) -> None:
         try:
             result = job.result()
         except Exception as error:
@@ -227,24 +226,24 @@ class BackgroundWork:
 
 
 def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
-    """Return what `work` returns; meanwhile `progress` is told of it many times a second.
+    """Return what `work` returns, calling `progress` many times a second meanwhile.
 
     Args:
-        work: is given what it tells its progress; is broken off there once `progress` has raised.
+        work: called with a function to report its progress to, which raises once `progress` has.
         progress: may let the application draw, and may raise to cancel.
     """
-    told: list[tuple[str, float]] = [("", 0.0)]
+    reported: list[tuple[str, float]] = [("", 0.0)]
     isCanceled = threading.Event()
 
-    def tell(step: str, share: float) -> None:
-        told.append((step, share))
+    def report(step: str, share: float) -> None:
+        reported.append((step, share))
         if isCanceled.is_set():
             raise _BrokenOffError
 
-    job = Job(lambda: work(tell))
+    job = Job(lambda: work(report))
     try:
         while not job.isDone:
-            progress(*told[-1])
+            progress(*reported[-1])
             job.giveTime()
     except BaseException:
         isCanceled.set()

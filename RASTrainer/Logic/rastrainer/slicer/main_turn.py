@@ -1,7 +1,7 @@
-"""Turns of the main thread, in which a worker that asks stands aside.
+"""Turns of the main thread, during which workers pause.
 
-Both would share Python's lock: numpy and sqlite give it away in the midst of what the main thread
-does, and each time it has to be waited for. What would take the main thread 40 ms takes 150 then.
+Both share Python's lock: numpy and sqlite release it in the middle of the main thread's work, which
+then waits for it each time. What would take the main thread 40 ms takes 150 then.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 LONGEST_S = 0.5
-"""So long a worker stands aside; a turn may last as long as a dialog is open."""
+"""How long a worker pauses at most; a turn may last as long as a dialog is open."""
 
 
 class _Turns:
-    """Whose turn it is; only the main thread changes that."""
+    """Whose turn it is; changed by the main thread only."""
 
     def __init__(self) -> None:
         self.depth = 0
@@ -28,7 +28,7 @@ _TURNS = _Turns()
 
 @contextmanager
 def mainTurn() -> Iterator[None]:
-    """Have workers stand aside in a `with` statement of the main thread; they may be nested."""
+    """Pause workers in a `with` statement of the main thread; may be nested."""
     _TURNS.depth += 1
     _TURNS.isWorkers.clear()
     try:
@@ -41,7 +41,7 @@ def mainTurn() -> Iterator[None]:
 
 @contextmanager
 def workersTurn() -> Iterator[None]:
-    """Let workers go on in a `with` statement of the main thread, in the midst of its turn, too."""
+    """Let workers run in a `with` statement of the main thread, even during its turn."""
     _TURNS.isWorkers.set()
     try:
         yield
@@ -51,5 +51,5 @@ def workersTurn() -> Iterator[None]:
 
 
 def giveWay() -> None:
-    """Wait in a worker until it is no turn of the main thread's, for half a second at most."""
+    """Wait in a worker until the main thread's turn is over, half a second at most."""
     _TURNS.isWorkers.wait(LONGEST_S)

@@ -24,7 +24,7 @@ class Signal:
 
     @property
     def listeners(self) -> tuple[Callable[..., Any], ...]:
-        """Who is told, in this order."""
+        """The connected callables, in this order."""
         return tuple(self._listeners)
 
     def emit(self, *values: Any) -> None:
@@ -56,6 +56,6 @@ class ErrorGuard:
             return None
 
     def emit(self, what: str, signal: Signal, *values: Any) -> None:
-        """Call every listener of a signal, whichever of them fail."""
+        """Call every listener of a signal, even if some fail."""
         for listener in signal.listeners:
             self.run(what, listener, *values)

@@ -1,4 +1,4 @@
-"""Make the draft of a head out of a volume, in a process of its own.
+"""Make the draft of a head from a volume.
 
     python -m rastrainer.slicer.head VOLUME -o DIR [--threshold T] [--cut S] [--no-skull]
         [--no-volume]

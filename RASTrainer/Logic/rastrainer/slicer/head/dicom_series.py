@@ -18,14 +18,14 @@ MOST_FILES = 4000
 MOST_BYTES = 2_000_000_000
 FEWEST_SLICES = 8
 EVEN_WITHIN = 0.1
-"""Steps between slices may differ by so much of a step: more means that one is missing."""
+"""Share of a step by which steps may differ; more means that a slice is missing."""
 
 _SERIES_TAG = "0020|000e"
 
 
 @dataclass(frozen=True)
 class _Slice:
-    """One file: values (i, j) and IJKToRAS (4, 4) of its own."""
+    """One file: values (i, j) and IJKToRAS (4, 4)."""
 
     values: np.ndarray
     ijkToRas: np.ndarray
@@ -123,7 +123,7 @@ _SEQUENCE = b"SQ"
 
 
 def isCutDicom(path: Path) -> bool:
-    """Tell whether a DICOM file ends before what it announces (PS3.5, 7.1, 7.5 and A.4).
+    """Return whether a DICOM file ends before what it announces (PS3.5, 7.1, 7.5 and A.4).
 
     Readers ask for as much memory as an element says it has: 4 GB for a few odd bytes.
     """
@@ -132,7 +132,7 @@ def isCutDicom(path: Path) -> bool:
 
 
 def _elementsFit(content: bytes) -> bool:
-    """Tell whether each element ends within the file, as far as they can be followed.
+    """Return whether each element that can be followed ends within the file.
 
     Sequences and their items are entered. Pixels in pieces, big-endian and deflated data sets and
     what is no data set are not followed.
@@ -161,7 +161,7 @@ def _elementsFit(content: bytes) -> bool:
 def _element(content: bytes, at: int, isExplicit: bool) -> tuple[int, int, bool]:
     """Return where an element's value begins, its length, and whether elements are in it.
 
-    The value of what has no known kind, where one must be told, begins where the element does.
+    An element of unknown kind, where the kind is required, begins where its value does.
     """
     kind = content[at + 4 : at + 6]
     if content.startswith(_ITEM_GROUP, at) or not isExplicit:
@@ -180,7 +180,7 @@ def _arePixelsCut(content: bytes) -> bool:
     begin = content.rfind(_PIXEL_DATA) + len(_PIXEL_DATA)
     if begin < len(_PIXEL_DATA):
         return False
-    # With its kind told, two bytes of it and two of nothing come before the length.
+    # With an explicit kind, its two bytes and two reserved ones precede the length.
     begin += 4 if content[begin : begin + 2] in (b"OB", b"OW") else 0
     if begin + 4 > len(content):
         return True

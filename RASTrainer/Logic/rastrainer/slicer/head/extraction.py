@@ -1,4 +1,4 @@
-"""The whole way from a volume to a head that the simulator can train on."""
+"""From a volume to a head that the simulator can train on."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def extractHead(
     Args:
         volume: T1-weighted MRI or CT of a head.
         settings: what to choose otherwise than usual.
-        progress: told each step's name and the share of the work done; may raise to cancel.
+        progress: called with each step's name and the share of the work done; may raise to cancel.
 
     Raises:
         InputError: there is no head in the volume, or no closed surface could be made of it.

@@ -10,7 +10,7 @@ import numpy as np
 SPACING_MM = 1.0
 """Of the voxels."""
 BELOW_BASE_MM = 3.0
-"""So far a segment goes on below the base: its own end is not yet felt where the base is cut."""
+"""How far a segment continues below the base, so that its end does not affect the cut."""
 
 
 @dataclass(frozen=True)

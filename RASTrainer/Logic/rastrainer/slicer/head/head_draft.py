@@ -46,7 +46,7 @@ def makeDraft(
         volume: T1-weighted MRI or CT of a head.
         settings: what to choose otherwise than usual.
         hasSkull: whether the skull is wanted too.
-        progress: told each step's name and the share of the work done; may raise to cancel.
+        progress: called with each step's name and the share of the work done; may raise to cancel.
         segment: the head; None finds it in the volume.
         headMade: given the draft without its skull and the warnings, before the skull is made.
         hasVolume: whether the images are to be part of the draft.
@@ -61,8 +61,8 @@ def makeDraft(
     draft = HeadDraft(mesh, _headMethod(found, segment is not None))
     if hasVolume:
         progress("Preparing the images", 0.8)
-        images, told = imageOf(volume, found)
-        draft = replace(draft, method=f"{draft.method} {told}", volume=images)
+        images, method = imageOf(volume, found)
+        draft = replace(draft, method=f"{draft.method} {method}", volume=images)
     headMade(draft, warnings)
     if hasSkull:
         progress("Making the skull", 0.85)
@@ -146,7 +146,7 @@ def _checkSpacing(volume: Volume) -> list[str]:
     axes = volume.ijkToRas[:3, :3]
     spacing = np.linalg.norm(axes, axis=0)
     if not np.isfinite(volume.ijkToRas).all() or spacing.min() <= 0:
-        raise InputError("The volume does not tell where it lies in the patient.")
+        raise InputError("The volume does not say where it lies in the patient.")
     if abs(np.linalg.det(axes / spacing)) < 0.1:
         raise InputError("The volume's axes do not span a space: its orientation is damaged.")
     extent = spacing * volume.values.shape

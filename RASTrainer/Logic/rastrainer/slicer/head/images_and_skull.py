@@ -43,21 +43,21 @@ def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
     if head.isCt:
         units = np.rint(np.clip(np.where(near, values, CT_AIR), *HOUNSFIELD)).astype(np.int16)
         low, high = HOUNSFIELD
-        told = f"Images: CT, 1 mm, Hounsfield units from {low:g} to {high:g}."
-        return HeadVolume(units, gridToRas, CT_WINDOW, CT_LEVEL), told
-    grays, told = _grays(values, volume.values, body)
+        method = f"Images: CT, 1 mm, Hounsfield units from {low:g} to {high:g}."
+        return HeadVolume(units, gridToRas, CT_WINDOW, CT_LEVEL), method
+    grays, method = _grays(values, volume.values, body)
     white = max(2.0, float(np.quantile(grays[body], WHITE_QUANTILE)))
-    return HeadVolume(grays, gridToRas, white, white / 2.0), told
+    return HeadVolume(grays, gridToRas, white, white / 2.0), method
 
 
 def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, str]:
-    """Return an MRI's values as uint8, and a sentence on what they stand for."""
+    """Return an MRI's values as uint8, and a sentence on what they mean."""
     low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
     if low >= 0 and source.max() <= _MOST_GRAY and np.array_equal(source, np.rint(source)):
         return np.rint(values).astype(np.uint8), "Images: MRI, 1 mm, its own values, 0 to 255."
     scaled = np.clip((values - low) * (_MOST_GRAY / max(high - low, 1e-30)), 0.0, _MOST_GRAY)
-    told = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
-    return np.rint(scaled).astype(np.uint8), told
+    method = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
+    return np.rint(scaled).astype(np.uint8), method
 
 
 CT_BONE = 300.0
@@ -65,7 +65,7 @@ CT_BONE = 300.0
 
 CT_NOISE_MM = 0.7
 SCALP_MM = 7.0
-"""From the skin to the skull where MRI cannot tell: a usual thickness, not the patient's."""
+"""From the skin to the skull, which MRI does not show: a usual thickness, not the patient's."""
 
 TRIANGLES = 30_000
 

@@ -15,8 +15,8 @@ CT_AIR, CT_SKIN = -1000.0, -475.0
 
 CT_LOW_QUANTILE, CT_LOW = 0.02, -500.0
 TAIL_QUANTILE, TAIL_FACTOR = 0.999, 1.5
-"""Values so many times above that quantile are few and bright (vessels, metal): they are clipped,
-or they alone would count as tissue."""
+"""Values above that multiple of the quantile are few and bright (vessels, metal). They are clipped;
+otherwise they alone would count as tissue."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tis
 
 
 def isHounsfield(values: np.ndarray) -> bool:
-    """Tell whether an image has a CT's values: much of it is air at about −1000."""
+    """Return whether an image has a CT's values: much of it is air at about −1000."""
     return bool(np.quantile(values[::2, ::2, ::2], CT_LOW_QUANTILE) < CT_LOW)
 
 
@@ -78,7 +78,7 @@ TREND_LENGTH = 5
 """Over how many voxels the trend of an outline is measured."""
 
 FASTEST_TREND = 2.0
-"""An outline shrinks by at most so many voxels a voxel at the image's edge, and never grows."""
+"""Most voxels by which an outline shrinks per voxel at the image's edge; it never grows."""
 
 ROUNDING = 1 / 6
 """Voxels per square voxel by which it shrinks ever faster, so that what is cut ends rounded."""
@@ -120,7 +120,7 @@ def _signedDistance(sliceLevel: np.ndarray) -> np.ndarray | None:
     if not inside.any():
         return None
     margin = 12
-    # Repeated edges: where the head goes on beyond this slice's own edge, there is no outline.
+    # Repeated edges: where the head continues beyond this slice's own edge, there is no outline.
     padded = np.pad(inside, margin, mode="edge")
     distance = ndimage.distance_transform_edt(padded) - ndimage.distance_transform_edt(~padded)
     crop = (slice(margin, -margin),) * 2

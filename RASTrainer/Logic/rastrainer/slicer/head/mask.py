@@ -62,7 +62,7 @@ def _filled(mask: np.ndarray) -> np.ndarray:
 def closedByBall(mask: np.ndarray, radius: float) -> np.ndarray:
     """Return the morphological closing of a mask by a ball (radius in voxels).
 
-    The mask is taken to go on below the image, where the neck does.
+    The mask is assumed to continue below the image, as the neck does.
     """
     margin = int(np.ceil(radius)) + 1
     padded = np.pad(mask, [(margin, margin), (margin, margin), (0, margin)])
@@ -75,7 +75,7 @@ def closedByBall(mask: np.ndarray, radius: float) -> np.ndarray:
 def depthInside(mask: np.ndarray, most: float) -> np.ndarray:
     """Return each voxel's distance to the outside, in voxels, where it is at most `most`.
 
-    Deeper voxels have more than `most`; the neck goes on below the image.
+    Deeper voxels have more than `most`; the neck continues below the image.
     """
     margin = int(np.ceil(most))
     padded = np.pad(mask, [(0, 0), (0, 0), (margin, 0)], mode="edge")
@@ -85,7 +85,7 @@ def depthInside(mask: np.ndarray, most: float) -> np.ndarray:
 def squaredDistances(mask: np.ndarray, most: float) -> np.ndarray:
     """Return the squared distance of each voxel to the mask, uint16, exact up to `most` voxels.
 
-    Farther voxels have more than `most` squared. Axis by axis, so many times faster than
+    Farther voxels have more than `most` squared. Axis by axis, which is much faster than
     `ndimage.distance_transform_edt`, whose result is exact however far a voxel is.
     """
     reach = int(most)
@@ -131,7 +131,7 @@ _BY_CORNER = [_touching(offset, 3) for offset in _OFFSETS]
 
 @lru_cache(maxsize=1 << 20)
 def isSimple(neighbors: int) -> bool:
-    """Tell whether the middle voxel of 3×3×3 may be removed without a change of topology.
+    """Return whether the middle voxel of 3×3×3 may be removed without a change of topology.
 
     Args:
         neighbors: the 26 neighbors that are set, one bit each; the body is connected through faces,
@@ -145,7 +145,7 @@ def isSimple(neighbors: int) -> bool:
 
 
 def _isOne(members: int, wanted: int, touching: list[int]) -> bool:
-    """Tell whether all `wanted` bits are connected with each other through `members`."""
+    """Return whether `members` connects all `wanted` bits with each other."""
     reached = frontier = wanted & -wanted
     while frontier:
         lowest = frontier & -frontier
@@ -164,7 +164,7 @@ def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
         body: (i, j, k) bool, contains `wanted`.
         wanted: (i, j, k) bool.
     """
-    # A border of one voxel lets every voxel have 26 neighbors; the neck goes on below.
+    # A border of one voxel lets every voxel have 26 neighbors; the neck continues below.
     sides, below = [(1, 1), (1, 1), (0, 1)], [(0, 0), (0, 0), (1, 0)]
     padded = np.pad(np.pad(body, sides), below, mode="edge")
     keep = np.pad(np.pad(wanted, sides), below, mode="edge")

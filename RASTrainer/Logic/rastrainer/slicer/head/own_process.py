@@ -1,4 +1,4 @@
-"""Heads and scenarios, each made in a process of its own.
+"""Heads and scenarios, made in separate processes.
 
 VTK's filters would keep Slicer's window from answering, so the head is made by a Python beside it:
 the function and its arguments go there and its result comes back as files in a private folder.
@@ -37,7 +37,7 @@ LOGIC = Path(__file__).parents[3]
 def inOwnProcess(
     python: Path, function: str, progress: Progress, *arguments: Any, **named: Any
 ) -> Any:
-    """Return what `function(*arguments, **named, progress=…)` returns in a process of its own.
+    """Return what `function(*arguments, **named, progress=…)` returns in a separate process.
 
     It waits, so it is called in a thread. Where that process lacks a package, the function runs
     in this thread.
@@ -45,7 +45,7 @@ def inOwnProcess(
     Args:
         python: that runs it.
         function: `module:name`; what it takes and returns can be pickled.
-        progress: told what the function tells; may raise to break it off.
+        progress: called with what the function reports; may raise to cancel it.
         arguments: of the function, besides its `progress`.
 
     Raises:
@@ -118,21 +118,21 @@ def planScenario(
     """Make a head, have the simulator plan on it, and return warnings, one sentence each.
 
     Args:
-        make: makes the head with its warnings, such as `makeDraft`, in a thread of its own.
+        make: makes the head with its warnings, such as `makeDraft`, called in a worker thread.
         folder: to be made; must be new or empty.
         words: further arguments of `rastrainer scenario tasks`, such as `--title TITLE`; with
             `--check` nothing is made.
         command: words that run `rastrainer` of the simulator's Python.
-        progress: told each step's name and the share of the work done, many times a second; it may
-            let the application draw, and may raise to cancel: then nothing is left behind.
+        progress: called with each step's name and the share of the work done, many times a
+            second; it may let the application draw, and may raise to cancel: nothing is left then.
 
     Raises:
         InputError: the volume, the folder or the simulator's program cannot be used.
     """
     with tempfile.TemporaryDirectory() as temporary:
 
-        def makeAndWrite(tell: Progress) -> list[str]:
-            draft, warnings = make(tell)
+        def makeAndWrite(report: Progress) -> list[str]:
+            draft, warnings = make(report)
             write_draft(Path(temporary), draft)
             return warnings
 

@@ -112,7 +112,7 @@ def forSegment(settings: HeadSettings) -> HeadSettings:
 
 
 def _inAir(bare: Volume) -> Volume:
-    """Return a segment with air around it, but below, where its neck goes on.
+    """Return a segment with air around it, but below, where the neck continues.
 
     The segment's image ends where the segment does.
     """

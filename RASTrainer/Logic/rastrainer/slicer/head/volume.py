@@ -60,12 +60,12 @@ def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
 
 
 def asFloat(volume: Volume) -> Volume:
-    """Return a volume of its own whose values are of type float32."""
+    """Return a copy of a volume with values of type float32."""
     return Volume(volume.values.astype(np.float32), volume.ijkToRas)
 
 
 def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
-    """Return the (4, 4) matrix, mm, of the transforms that a node stands under.
+    """Return the (4, 4) matrix, mm, of a node's parent transforms.
 
     Raises:
         InputError: they are not linear.
@@ -74,7 +74,7 @@ def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
     if parent is not None:
         if not parent.IsTransformToWorldLinear():
             raise InputError(
-                f"{node.GetName()} stands under the transform {parent.GetName()}, which is not "
+                f"{node.GetName()} has the parent transform {parent.GetName()}, which is not "
                 "linear: harden it, or take it off."
             )
         parent.GetMatrixTransformToWorld(matrix)
@@ -112,7 +112,7 @@ def onRasGrid(volume: Volume, spacingMm: float) -> Volume:
     """Return the volume on a cubic grid whose axes run to the right, anterior and superior.
 
     The grid of an oblique volume begins at the middle of its lowest slice, which is repeated below,
-    so that the neck goes on to a flat base; what else the volume does not cover is air.
+    so that the neck continues to a flat base; what else the volume does not cover is air.
     """
     indices = np.array(np.meshgrid(*[(0, n - 1) for n in volume.values.shape])).reshape(3, -1).T
     corners = indices @ volume.ijkToRas[:3, :3].T + volume.ijkToRas[:3, 3]
@@ -153,7 +153,7 @@ def lowestSlice(volume: Volume) -> tuple[int, int]:
 
 
 def _repeated(volume: Volume, axis: int, end: int, downMm: float) -> Volume:
-    """Return the volume with the slice at one end repeated for so much of height."""
+    """Return the volume with the slice at one end repeated over a height."""
     count = int(np.ceil(downMm / abs(volume.ijkToRas[2, axis]) - 1e-6))
     widths = [(0, 0)] * 3
     widths[axis] = (count, 0) if end == 0 else (0, count)
@@ -168,7 +168,7 @@ _DIMENSIONS, _BITS, _IMAGE_BEGINS = 40, 72, 108
 
 
 def isCutNifti(path: Path) -> bool:
-    """Tell whether a `.nii` or `.nii.gz` file ends too early; of no NIfTI file nothing is told."""
+    """Return whether a `.nii` or `.nii.gz` file ends too early; False for any other file."""
     opened = gzip.open if path.suffix == ".gz" else open
     try:
         with opened(path, "rb") as file:

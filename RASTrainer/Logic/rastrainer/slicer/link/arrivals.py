@@ -1,4 +1,4 @@
-"""Hands over what the simulator has sent: nodes that changed, and commands."""
+"""Emits what the simulator has sent: nodes that changed, and commands."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from rastrainer.slicer.scene.link_nodes import (
 from rastrainer.slicer.signal import ErrorGuard, Signal
 
 MOST_KEPT = 256
-"""Commands that wait; whoever sends more than can be handled is to send them again, as the
-simulator does with trials and answers until they are acknowledged."""
+"""Most commands that wait. A sender of more has to repeat them, as the simulator does with trials
+and answers until they are acknowledged."""
 COMMANDS_A_TURN, CHARACTERS_A_TURN = 16, 200_000
-"""So much is handed over before the application may do something else."""
+"""What is processed before the application may do something else."""
 
 
 class Arrivals:
-    """Reads what has arrived; what cannot be read is logged, and keeps nothing else back."""
+    """Reads what has arrived; what cannot be read is logged and does not stop the rest."""
 
     def __init__(
         self,
@@ -36,7 +36,7 @@ class Arrivals:
         stateChanged: Signal,
         commands: Mapping[str, Signal],
     ) -> None:
-        """`commands` gives for the name of each known command which signal emits its content."""
+        """`commands` maps the name of each known command to the signal that emits its content."""
         self._scene = scene
         self._guard = guard
         self._pointsChanged = pointsChanged
@@ -49,18 +49,18 @@ class Arrivals:
     def keepCommand(self, name: str | bytes, content: str | bytes) -> None:
         """Keep a command until it can be handled; inside VTK, where nothing may raise.
 
-        Where too many wait already, it is left out.
+        It is dropped if too many wait already.
         """
         if len(self._commands) < MOST_KEPT:
             self._commands.append((name, content))
 
-    def handOverNodes(self) -> None:
-        """Tell of points and state that are not those of the last call."""
-        self._guard.run("The touched points", self._handOverPoints)
-        self._guard.run("The simulator's state", self._handOverState)
+    def emitNodes(self) -> None:
+        """Emit points and state that differ from those of the last call."""
+        self._guard.run("The touched points", self._emitPoints)
+        self._guard.run("The simulator's state", self._emitState)
 
-    def handOverCommands(self) -> None:
-        """Tell of the commands that were kept, in their order; of many, the rest comes later."""
+    def emitCommands(self) -> None:
+        """Emit the kept commands in their order; of many, the rest follows later."""
         characters = 0
         for _turn in range(min(len(self._commands), COMMANDS_A_TURN)):
             if characters > CHARACTERS_A_TURN:
@@ -69,24 +69,24 @@ class Arrivals:
             characters += len(content)
             name = shownText(name)
             if name in self._signals:
-                self._handOver(content, name, self._signals[name])
+                self._emitContent(content, name, self._signals[name])
             else:
                 logging.warning("The simulator sent the unknown command %.40s.", name)
 
-    def _handOverPoints(self) -> None:
+    def _emitPoints(self) -> None:
         node = capturedPointsNode(self._scene)
         points = _snapshot(node)
         if points != self._points:
             self._points = points
             self._guard.emit("The touched points", self._pointsChanged, node)
 
-    def _handOverState(self) -> None:
+    def _emitState(self) -> None:
         text = simStateNode(self._scene).GetText()
         if text and text != self._stateText:
             self._stateText = text
-            self._handOver(text, DeviceName.SIM_STATE, self._stateChanged)
+            self._emitContent(text, DeviceName.SIM_STATE, self._stateChanged)
 
-    def _handOver(self, text: str | bytes, name: str, signal: Signal) -> None:
+    def _emitContent(self, text: str | bytes, name: str, signal: Signal) -> None:
         try:
             value = decode_json_object(decodedText(text))
         except InputError as error:

@@ -1,7 +1,7 @@
-"""Keeps one connector in the scene and connected, and knows how the simulator is.
+"""Keeps one connector in the scene and connected, and knows the state of the simulator.
 
-The scene may be cleared of the connector, the simulator restarted, the line cut without a word:
-`follow`, which is called about ten times a second, finds out and makes it good.
+The scene may be cleared of the connector, the simulator restarted, or the line cut silently:
+`follow`, called about ten times a second, notices and reconnects.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ def desktopKit() -> ConnectorKit | None:
 
 CONNECTOR_NAME = "RASTrainerLink"
 NOWHERE = 0
-"""The port that the connector is given once it is connected: nobody can listen there. By itself it
-would connect again 0.1 s after a loss, to whatever has the simulator's port by then."""
+"""The port that the connector is given once it is connected: nobody can listen there. Otherwise
+it would reconnect 0.1 s after a loss, to whatever has the simulator's port by then."""
 CONNECT_WITHIN_S = 1.0
-"""How long the connector may connect to a simulator that has answered; then it is asked again."""
+"""How long the connector may connect to a simulator that has answered; then it is tested again."""
 
 
 class SlicerConnection:
@@ -88,7 +88,7 @@ class SlicerConnection:
         self._address: tuple[str, int] | None = None
         self._isListening = False
         self._connectsUntil = 0.0
-        self._isHeard = False
+        self._hasHeartbeat = False
         self._lastSign = 0.0
         self._heartbeatTime: int | None = None
 
@@ -106,13 +106,13 @@ class SlicerConnection:
                 finding=self._search.finding,
                 isOpen=self.isOpen,
                 silenceS=self._clock() - self._lastSign,
-                isHeard=self._isHeard,
+                hasHeartbeat=self._hasHeartbeat,
                 peerVersion=self.peerVersion,
             )
         )
 
     def begin(self, address: tuple[str, int], isListening: bool) -> None:
-        """Want a connection: to the address, or from whoever connects to its port."""
+        """Request a connection: to the address, or from any client of its port."""
         self.end()
         self.kit = self._findKit()
         self._address = address
@@ -120,13 +120,13 @@ class SlicerConnection:
         self._search.begin()
 
     def end(self) -> None:
-        """Want no connection any more."""
+        """Stop requesting a connection."""
         self._address = None
         self._search.end()
         self._dropConnector()
 
     def follow(self) -> bool:
-        """Make good what was lost; return whether the connection has just been opened."""
+        """Restore what was lost; return whether the connection has just been opened."""
         if self._address is None or self.kit is None:
             return False
         wasOpen = self.isOpen
@@ -142,7 +142,7 @@ class SlicerConnection:
             return False
         if not wasOpen:
             self._noteOpened()
-        self._hearHeartbeat()
+        self._readHeartbeat()
         if self._clock() - self._lastSign > RECONNECT_AFTER_S:
             # Half-open: nothing will ever come over this connection again, if anything ever did.
             if self.connector is not None:
@@ -152,7 +152,7 @@ class SlicerConnection:
         return self.isOpen and not wasOpen
 
     def _connect(self, host: str, port: int, isLost: bool) -> None:
-        """Let the connector connect, or listen; to a simulator alone, so look for one first."""
+        """Let the connector connect or listen; only to a simulator, so search for one first."""
         if self._clock() < self._connectsUntil and not isLost:
             return
         if self._isListening:
@@ -188,15 +188,15 @@ class SlicerConnection:
         self._connectsUntil = self._clock() + CONNECT_WITHIN_S
 
     def _noteOpened(self) -> None:
-        """Begin with a connection that has just been opened."""
-        self._isHeard = False
+        """Note that a connection has just been opened."""
+        self._hasHeartbeat = False
         self.peerVersion = None
         self._lastSign = self._connectsUntil = self._clock()
         if self.connector is not None and not self._isListening:
             self.connector.SetServerPort(NOWHERE)
 
     def _makeConnector(self) -> Any:
-        """Return the connector, new in the scene; only where there is a kit."""
+        """Return a new connector in the scene; requires a kit."""
         assert self.kit is not None
         self.connector = connector = self.kit.makeConnector()
         connector.SetName(CONNECTOR_NAME)
@@ -219,12 +219,12 @@ class SlicerConnection:
         self.connector = None
         self._heartbeatTime = None
 
-    def _hearHeartbeat(self) -> None:
+    def _readHeartbeat(self) -> None:
         node = findIncomingNode(self.connector, DeviceName.SIM_SERVER)
         if node is None or node.GetMTime() == self._heartbeatTime:
             return
         self._heartbeatTime = node.GetMTime()
-        self._isHeard = True
+        self._hasHeartbeat = True
         self._lastSign = self._clock()
         self.peerVersion = node.GetSubCode()
 

@@ -1,4 +1,4 @@
-"""Whether the simulator is there and well, in words, and what to do where it is not.
+"""State of the simulator and its link in words, and what to do about it.
 
 An open connection proves little: it may be half open, or lead to another program. The simulator
 therefore sends a heartbeat every second, with the version of its protocol.
@@ -19,7 +19,7 @@ RECONNECT_AFTER_S = 10.0
 
 
 class LinkState(str, Enum):
-    """Where the link stands."""
+    """State of the link."""
 
     OFF = "off"
     NOT_INSTALLED = "not installed"
@@ -43,16 +43,16 @@ class LinkStatus:
 
 @dataclass(frozen=True)
 class LinkObservation:
-    """What is known of the link.
+    """Observed facts about the link.
 
     Attributes:
         address: as the user gave it, such as `127.0.0.1:18944`.
-        isWanted: the user has asked for a connection.
+        isWanted: the user has requested a connection.
         isListening: the simulator is to connect to this side.
-        finding: who answers there; None while nobody was asked, or the answer is awaited.
+        finding: what answers there; None before the test has a result.
         isOpen: there is a TCP connection.
         silenceS: seconds since the last heartbeat, or since the connection was opened.
-        isHeard: a heartbeat has come over this connection.
+        hasHeartbeat: a heartbeat has come over this connection.
         peerVersion: version of the simulator's protocol; None as long as it is not known.
     """
 
@@ -62,7 +62,7 @@ class LinkObservation:
     finding: ProbeResult | None = None
     isOpen: bool = False
     silenceS: float = 0.0
-    isHeard: bool = False
+    hasHeartbeat: bool = False
     peerVersion: int | None = None
 
 
@@ -76,7 +76,7 @@ def judge(link: LinkObservation) -> LinkStatus:
         return _wrongVersion(link.peerVersion)
     if link.silenceS > STALE_AFTER_S:
         return _stale(link)
-    if not link.isHeard:
+    if not link.hasHeartbeat:
         return LinkStatus(
             LinkState.GREETING,
             _("{address} answers; waiting for its first heartbeat.").format(address=link.address),
@@ -111,7 +111,7 @@ def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
 
 
 def lookingAt(address: str) -> LinkStatus:
-    """Return the status while it is asked who answers."""
+    """Return the status during the test of what answers."""
     sentence = _("Looking for a simulator at {address}.").format(address=address)
     return LinkStatus(LinkState.LOOKING, sentence)
 
@@ -141,7 +141,7 @@ def _wrongVersion(theirs: int) -> LinkStatus:
 
 
 def _stale(link: LinkObservation) -> LinkStatus:
-    if not link.isHeard:
+    if not link.hasHeartbeat:
         return LinkStatus(
             LinkState.STALE,
             _("What answers at {address} is not a RASTrainer simulator.").format(

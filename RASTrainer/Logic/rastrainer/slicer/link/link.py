@@ -2,7 +2,7 @@
 
 Everything happens in `process`, which the host calls about ten times a second: nodes are polled
 rather than observed, since any of them may be deleted at any time. Only answers and commands are
-handed over sooner, where the host lends a hand.
+processed sooner, if the host supports it.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ from rastrainer.slicer.scene.link_nodes import prepareNodes
 from rastrainer.slicer.signal import ErrorGuard, Signal
 
 CallSoon = Callable[[Callable[[], None]], None]
-"""Has something called in the host's next turn."""
+"""Calls a function in the host's next turn."""
 
 
 def neverSoon(_work: Callable[[], None]) -> None:
-    """Leave it to the next `process`: the host has no turns."""
+    """Do nothing: the next `process` will do it."""
 
 
 POSES_HZ = 30.0
-"""How often poses are asked for; software graphics renders them 20 times a second at best."""
+"""Requested rate of poses; software graphics renders them 20 times a second at best."""
 
 
 class Link:
-    """Sends commands, and hands over what the simulator tells.
+    """Sends commands, and emits what the simulator reports.
 
     Attributes:
         statusChanged: emits the new `LinkStatus`.
@@ -68,8 +68,8 @@ class Link:
             findKit: returns what makes the connector; None where it is not installed.
             client: name of this side, sent to the simulator.
             clock: seconds that only rise.
-            callSoon: has something called in the host's next turn, so that answers and commands
-                need not wait for the next `process`; it is called from inside VTK.
+            callSoon: calls a function in the host's next turn, so that answers and commands need
+                not wait for the next `process`; it is called from inside VTK.
         """
         self.statusChanged = Signal()
         self.opened = Signal()
@@ -96,7 +96,7 @@ class Link:
             },
         )
         self._connection = SlicerConnection(scene, findKit, self._keepCommand, clock)
-        self._pending = PendingCommands(self._guard, clock, self._hurry)
+        self._pending = PendingCommands(self._guard, clock, self._processSoon)
         self._wantsPoses = False
         self._preparedConnector: Any | None = None
         self._status = self._connection.status
@@ -120,7 +120,7 @@ class Link:
         """Connect to a simulator, and again whenever the connection is lost.
 
         Raises:
-            InputError: no host, or a port that is none.
+            InputError: no host, or the port is not valid.
         """
         self._begin(checkedAddress(host, port), isListening=False)
 
@@ -128,7 +128,7 @@ class Link:
         """Wait for a simulator that was started with `--connect`.
 
         Raises:
-            InputError: a port that is none.
+            InputError: the port is not valid.
         """
         checkPort(port)
         self._begin(("", port), isListening=True)
@@ -136,13 +136,13 @@ class Link:
     def testConnection(
         self, host: str, port: int, onFound: Callable[[LinkStatus], None]
     ) -> LinkStatus:
-        """Ask once who answers at an address; `onFound` is called by a later `process`.
+        """Test once what answers at an address; `onFound` is called by a later `process`.
 
         Returns:
-            What to say meanwhile.
+            The status to show meanwhile.
 
         Raises:
-            InputError: no host, or a port that is none.
+            InputError: no host, or the port is not valid.
         """
         return self._test.begin(*checkedAddress(host, port), onFound)
 
@@ -152,9 +152,9 @@ class Link:
         self.process()
 
     def wantPoses(self, areWanted: bool) -> None:
-        """Have the simulator send where the arm is while it moves, or nothing of it.
+        """Have the simulator send poses while the arm moves, or none.
 
-        Slicer renders all its views for each pose, whoever looks: want them while somebody does.
+        Slicer renders all its views for each pose, so request them only while somebody looks.
         """
         if areWanted != self._wantsPoses:
             self._wantsPoses = areWanted
@@ -182,7 +182,7 @@ class Link:
         self._pending.send(Request(name, content, timeoutS, onReply), self._transmit)
 
     def process(self) -> None:
-        """Do what is due: connect, judge the heartbeat, hand over what has arrived."""
+        """Connect, judge the heartbeat, and emit what has arrived."""
         self._isCallDue = False
         if self._scene.IsBatchProcessing():
             return
@@ -196,8 +196,8 @@ class Link:
         self._emitStatus()
         self._pending.poll(self.isOpen, self._transmit)
         if self.connector is not None:
-            self._arrivals.handOverNodes()
-        self._arrivals.handOverCommands()
+            self._arrivals.emitNodes()
+        self._arrivals.emitCommands()
 
     def _begin(self, address: tuple[str, int], isListening: bool) -> None:
         self._connection.begin(address, isListening)
@@ -219,19 +219,19 @@ class Link:
     def _keepCommand(self, name: str | bytes, content: str | bytes) -> None:
         """Keep a command of the simulator until it can be handled: this is inside VTK."""
         self._arrivals.keepCommand(name, content)
-        self._guard.run("A command's event", self._hurry)
+        self._guard.run("A command's event", self._processSoon)
 
-    def _hurry(self) -> None:
-        """See to it that what has arrived is handed over soon; called from inside VTK."""
+    def _processSoon(self) -> None:
+        """Have what has arrived processed soon; called from inside VTK."""
         if not self._isCallDue:
             self._isCallDue = True
-            self._callSoon(self._handOverArrivals)
+            self._callSoon(self._processArrivals)
 
-    def _handOverArrivals(self) -> None:
+    def _processArrivals(self) -> None:
         self._isCallDue = False
         if not self._scene.IsBatchProcessing():
             self._pending.poll(self.isOpen, self._transmit)
-            self._arrivals.handOverCommands()
+            self._arrivals.emitCommands()
 
     def _sayHello(self, isFirst: bool) -> None:
         """Greet the simulator and ask for poses; later again, to ask for others."""

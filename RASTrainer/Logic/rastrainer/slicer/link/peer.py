@@ -1,4 +1,4 @@
-"""Who answers at an address, recognized from the first bytes, and what to do about it."""
+"""What answers at an address, recognized from its first bytes, and what to do about it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ProbeResult:
 
     Attributes:
         peer: who it is.
-        ip: address that was asked, four numbers; empty where the host has none.
+        ip: tested IPv4 address; empty if the host has none.
         version: of the simulator's protocol; 0 where it is no simulator.
     """
 
@@ -59,7 +59,7 @@ def sentenceOf(peer: Peer, address: str) -> str:
 
 
 def remedyOf(peer: Peer) -> str:
-    """Return what to do about it; nothing where it is a simulator."""
+    """Return what to do about it; empty if it is a simulator."""
     if peer is Peer.NOBODY:
         return _("Start the simulator, or correct the host and port.")
     if peer is Peer.UNKNOWN_HOST:
@@ -82,7 +82,7 @@ def _nameOf(peer: Peer) -> str:
 
 
 MOST_BYTES = 64 * 1024
-"""What is listened to; a simulator's heartbeat comes among the first hundreds."""
+"""Most bytes read; a simulator's heartbeat comes among the first hundreds."""
 MOST_STATUS_BYTES = 4096
 
 _HEADERS = (b"\0\1", b"\0\2")

@@ -18,7 +18,7 @@ from rastrainer.slicer.translation import _
 OnReply = Callable[[Reply], None]
 
 MOST_AT_ONCE = 16
-"""Commands that wait for their answers; so many the simulator carries out at once."""
+"""Most commands without an answer; the simulator carries out as many at once."""
 SENDING_S = 0.01
 """How long may be sent in one turn: to send blocks while the simulator does not read."""
 
@@ -30,7 +30,7 @@ class Request:
     Attributes:
         name: of the command.
         content: its arguments, JSON.
-        timeoutS: how long its answer is waited for once it is sent.
+        timeoutS: how long to wait for its answer after sending it.
         onReply: called with the reply.
     """
 
@@ -48,7 +48,7 @@ class _Sent:
 
 
 class PendingCommands:
-    """Sends commands a few at a time, and hands over their answers.
+    """Sends commands a few at a time, and delivers their answers.
 
     An answer is noted at the connector's event, from which `arrived` is called, inside VTK: it must
     do no more than see to it that `poll` is called soon, in another turn. The regular `poll` finds
@@ -72,7 +72,7 @@ class PendingCommands:
         self._refused: list[tuple[OnReply, Reply]] = []
 
     def send(self, request: Request, transmit: Callable[[Request], Any]) -> None:
-        """Send a command in its turn; the reply is handed over by `poll`, never from here.
+        """Send a command in its turn; `poll` delivers the reply, never this method.
 
         `transmit` makes the connector's command of a request, and sends it.
         """
@@ -80,11 +80,11 @@ class PendingCommands:
         self._sendSome(transmit)
 
     def refuse(self, onReply: OnReply, sentence: str) -> None:
-        """Let the next `poll` say why a command was not sent."""
+        """Have the next `poll` report why a command was not sent."""
         self._refused.append((onReply, Reply(False, sentence)))
 
     def poll(self, isOpen: bool, transmit: Callable[[Request], Any]) -> None:
-        """Hand over the replies that have come, or will not come any more; send what waits."""
+        """Deliver replies that have come or will not come any more; send what waits."""
         self._sendingS = 0.0
         replies, self._refused = self._refused, []
         sent, self._sent = self._sent, []
@@ -95,7 +95,7 @@ class PendingCommands:
             else:
                 replies.append((item.request.onReply, reply))
                 self._abandoned.append(item.command)
-        # The connector may still report on one that was given up: it must live until then.
+        # The connector may still report on an abandoned one: it must live until then.
         self._abandoned = [command for command in self._abandoned if command.IsInProgress()]
         if isOpen:
             self._sendSome(transmit)

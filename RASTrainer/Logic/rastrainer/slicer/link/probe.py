@@ -1,4 +1,4 @@
-"""Looks an address up and asks once who answers there, without ever waiting.
+"""Looks an address up and tests once what answers there, without blocking.
 
 Slicer's connector must never meet anything but a simulator: OpenIGTLink's client takes whatever
 comes for a message, and ends Slicer over the sizes that it reads from, say, a web page.
@@ -51,7 +51,7 @@ class AddressLookup:
 
 
 def lookUp(host: str) -> AddressLookup:
-    """Begin to look a host up, or join the look-up of it that is still running."""
+    """Start looking a host up, or join a running look-up of it."""
     lookup = _running.get(host)
     if lookup is None or lookup.process() is not None:
         lookup = _running[host] = AddressLookup(host)
@@ -102,7 +102,7 @@ class _Connection:
             self._socket.close()
 
     def isReady(self, waitS: float) -> bool:
-        """Return whether it has connected, or, once asked, whether something has arrived."""
+        """Return whether it has connected or, after the question, something has arrived."""
         return bool(self._selector.select(waitS))
 
     def isRefused(self) -> bool:
@@ -177,7 +177,7 @@ class Probe:
         return None if self._connection.begin(self._ip, self._port) else Peer.NOBODY
 
     def _converse(self, connection: _Connection) -> Peer | None:
-        """Ask as soon as there is a connection, then listen."""
+        """Send the question when there is a connection, then listen."""
         if not self._isAsked:
             if not connection.isReady(_WAIT_S):
                 return None

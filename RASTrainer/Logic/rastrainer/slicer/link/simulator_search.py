@@ -1,4 +1,4 @@
-"""Asks who answers at an address: until it is a simulator, or once as a test."""
+"""Tests what answers at an address: until it is a simulator, or once."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ class SimulatorSearch:
         self._next = 0.0
 
     def begin(self) -> None:
-        """Forget what was found, and ask at once."""
+        """Forget the last finding, and test at once."""
         self.end()
         self.finding = None
         self._next = self._clock()
 
     def end(self) -> None:
-        """Ask no more."""
+        """Stop testing."""
         if self._probe is not None:
             self._probe.close()
             self._probe = None
 
     def process(self, host: str, port: int) -> ProbeResult | None:
-        """Ask where it is due; return the simulator that has just answered, else None."""
+        """Test when it is due; return the simulator that has just answered, else None."""
         if self._probe is None:
             if self._clock() < self._next:
                 return None
@@ -71,7 +71,7 @@ class ConnectionCheck:
         self._onFound: Callable[[LinkStatus], None] = lambda _status: None
 
     def begin(self, host: str, port: int, onFound: Callable[[LinkStatus], None]) -> LinkStatus:
-        """Begin to ask; `onFound` is called by a later `process`. Return what to say meanwhile."""
+        """Start a test; a later `process` calls `onFound`. Return the status to show meanwhile."""
         if self._probe is not None:
             self._probe.close()
         self._probe = Probe(host, port, self._clock)
@@ -80,7 +80,7 @@ class ConnectionCheck:
         return lookingAt(self._address)
 
     def process(self) -> None:
-        """Tell who answers, once that is known."""
+        """Report what answers when that is known."""
         finding = None if self._probe is None else self._probe.process()
         if finding is not None:
             self._probe = None
@@ -89,7 +89,7 @@ class ConnectionCheck:
 
 
 def checkedAddress(host: str, port: int) -> tuple[str, int]:
-    """Return an address that can be asked.
+    """Return a valid address.
 
     Raises:
         InputError: no host, or a port that is none.

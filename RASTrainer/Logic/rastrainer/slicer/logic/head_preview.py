@@ -44,7 +44,7 @@ def findSkin(
 
     def find(report: Progress) -> tuple[HeadBody, HeadMesh, list[str]]:
         found, skin, warnings = inOwnProcess(python, FIND_SKIN, report, image, settings)
-        # Whoever shows the segment finds them made.
+        # Computed here rather than when the segment is shown.
         _ = found.labels
         return found, skin, warnings
 
@@ -125,7 +125,7 @@ class HeadPreview:
                 node.SetDisplayVisibility(visible)
 
     def _node(self, className: str, role: str, name: str) -> Any:
-        """Return a node that stands under no transform: what is found is where it is shown."""
+        """Return a node without a transform, so that it is shown where it was found."""
         node = findOrAddNode(self._scene, className, role, name)
         node.SetAndObserveTransformNodeID(None)
         return node

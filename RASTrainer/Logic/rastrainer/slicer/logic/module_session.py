@@ -182,7 +182,7 @@ class ModuleSession:
         return Study.open(self.studyPath, make_folder=True)
 
     def chooseStudy(self, path: Path) -> None:
-        """Continue with the study of another file, which is begun where there is none.
+        """Continue with the study of another file, which is created if missing.
 
         Raises:
             InputError: the file is no study, or cannot be used; the present one stays.
@@ -259,7 +259,7 @@ class ModuleSession:
         return self.link.isOpen and self.training.progress.isOpen
 
     def _showTrainees(self) -> None:
-        """Let each panel show what is new in the study, in a turn of its own."""
+        """Let each panel show what is new in the study, in a separate turn."""
         for listener in self.trainees.changed.listeners:
             self.work.later(listener)
 

@@ -1,6 +1,6 @@
 """What comes next in a session: the one thing to do now, and the section that belongs to it.
 
-From an empty Slicer to a score it leads by one button; each step can be done in its section, too.
+One button leads from an empty Slicer to a score; each step can also be done in its section.
 """
 
 from __future__ import annotations
@@ -65,11 +65,11 @@ class NextStep:
 
 @dataclass(frozen=True)
 class WorkflowState:
-    """Where a session stands.
+    """State of a session.
 
     Attributes:
         link: how the link is.
-        program: where the simulator's process stands, as far as Slicer has started it.
+        program: state of the simulator's process, if Slicer has started it.
         programSentence: what happened to it last.
         needsSetup: the simulator has to be set up before it can be started here.
         isBeingSetUp: that is under way.

@@ -36,7 +36,7 @@ class PlanOnImages:
         entry: (3,) float, RAS, where a trajectory begins; None where only a point is planned.
         targetWorld: (3,) float, where the registration puts the target.
         entryWorld: (3,) float, or None.
-        expected: the error to expect there; None where the registration cannot tell.
+        expected: the error to expect there; None if the registration cannot predict it.
     """
 
     name: str
@@ -47,7 +47,7 @@ class PlanOnImages:
     expected: TargetError | None
 
     def isAsGood(self, other: PlanOnImages) -> bool:
-        """Tell whether what holds for this plan holds for the other: they mean the same places."""
+        """Return whether both plans mean the same places, so that an answer applies to both."""
         if (self.entry is None) != (other.entry is None):
             return False
         mine = (self.target, self.targetWorld, self.entry, self.entryWorld)
@@ -63,8 +63,8 @@ class PlanLogic:
         changed: emits nothing, whenever the answers below have changed.
         isReachable: whether the robot can carry the plan out; None before it is answered.
         sentence: what was last said about the plan.
-        trueErrorMm: how far the registration puts the target from where it is; None as long as
-            the simulator has not revealed it.
+        trueErrorMm: how far the registration puts the target from where it is; None until
+            the simulator has revealed it.
         points: that are placed, removed and brought back.
     """
 
@@ -144,12 +144,12 @@ class PlanLogic:
         self.changed.emit()
 
     def takeTruth(self, analysis: TrialAnalysis) -> None:
-        """Know where the head of the trial really was: from now on, true errors are known."""
+        """Take the true pose of the trial's head, from which true errors follow."""
         self._headToWorld = None if analysis.truth is None else analysis.truth.matrix
         self._updateTrueError()
 
     def forgetTruth(self) -> None:
-        """Know nothing of the head of the trial that has just begun, nor of its plan."""
+        """Forget the head and the plan of the trial before the one that has just started."""
         self._headToWorld = self._sent = self.isReachable = self.trueErrorMm = None
         self.sentence = ""
         self.changed.emit()

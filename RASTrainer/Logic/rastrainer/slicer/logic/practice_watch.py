@@ -16,7 +16,7 @@ from rastrainer.study.protocol.steps import Step, StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 
 KEPT_EVERY_S = 5.0
-"""What a crash may cost of the time that a trial run was practiced."""
+"""Most practice time that a crash may lose."""
 CLOCK_STEP_S = 0.001
 """Resolution of the trial's time as the simulator sends it."""
 
@@ -66,11 +66,11 @@ class PracticeWatch:
             return
         (name, _mode), seconds = self._practicing, self._seen - self._kept
         self._kept = self._seen
-        asked = self._asked()
-        if asked is None:
+        requested = self._requestedStep()
+        if requested is None:
             self._left = KEPT_EVERY_S
             return
-        progress, step = asked
+        progress, step = requested
         try:
             study = StudyProgress(self._trainees.study)
             study.practice(name, step.name, seconds)
@@ -102,8 +102,8 @@ class PracticeWatch:
         self._practicing, self._seen = practicing, elapsedS
         # What was played before our time may have been counted by the Slicer before this one.
         self._kept = elapsedS if self._isFirstSight else 0.0
-        asked = self._asked()
-        self._left = KEPT_EVERY_S if asked is None else asked[0].practice_left_s
+        requested = self._requestedStep()
+        self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s
 
     def _end(self) -> None:
         self.keep()
@@ -111,10 +111,10 @@ class PracticeWatch:
         if ended is not None:
             self._changed(ended[0])
 
-    def _asked(self) -> tuple[Progress, Step] | None:
-        """Return the progress of who practices, and the trial run that the study asks for.
+    def _requestedStep(self) -> tuple[Progress, Step] | None:
+        """Return the progress of the practicing trainee, and the trial run that the study requests.
 
-        None where it asks for no such run.
+        None if it requests no such run.
         """
         if self._practicing is None:
             return None
@@ -127,5 +127,5 @@ class PracticeWatch:
         step = None if progress is None else progress.next_step
         if progress is None or step is None:
             return None
-        isAsked = (step.kind, step.mode) == (StepKind.TRIAL_RUN, mode)
-        return (progress, step) if isAsked else None
+        isRequested = (step.kind, step.mode) == (StepKind.TRIAL_RUN, mode)
+        return (progress, step) if isRequested else None

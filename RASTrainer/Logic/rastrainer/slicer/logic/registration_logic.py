@@ -59,23 +59,23 @@ class Comparison:
 class RegistrationLogic:
     """Registers two lists of the scene whenever one of them changes.
 
-    Nodes are looked for anew at every turn: any of them may be deleted at any time.
+    Nodes are searched in every turn: any of them may be deleted at any time.
 
     Attributes:
         changed: emits nothing, whenever `comparison` or `problem` has changed.
         comparison: the present fits; None where there are none.
         problem: why there are none, a sentence; empty otherwise.
         leaveOneOut: of the shown fit, how far each touch lies from where the other pairs put it,
-            mm; None where they are too few to tell.
+            mm; None if they are too few.
         kind: of the fit that the transform and the arrows show.
         isHeadColored: the head shows the target error to expect.
     """
 
     def __init__(self, scene: Any, work: BackgroundWork | None = None) -> None:
-        """Without `work` everything is done here and now.
+        """Without `work` everything is done at once.
 
         With it, a head that is new is prepared in the background, and what follows from a changed
-        list is worked out in a turn of its own, and shown in the next: all in one is long.
+        list is computed in one turn and shown in the next, as both take long.
         """
         self.changed = Signal()
         self.comparison: Comparison | None = None
@@ -221,7 +221,7 @@ class RegistrationLogic:
         work.later(lambda: self._showIfPresent(comparison))
 
     def _showIfPresent(self, comparison: Comparison | None) -> None:
-        """Show what was worked out a turn ago, unless it was done again or its lists are gone."""
+        """Show the result of the last turn, unless it is outdated or its lists were removed."""
         if self.comparison is comparison:
             areGone = comparison is not None and None in (self.moving(), self.fixed())
             if not areGone:
@@ -242,7 +242,7 @@ class RegistrationLogic:
         """Return the error to expect with a fit at a place, (3,) float, RAS mm.
 
         Raises:
-            InputError: the fit has too few points to tell.
+            InputError: the fit has too few points.
         """
         return target_error(fit, position, self._errorOnSkin(fit))
 

@@ -64,7 +64,7 @@ class ReplayLogic:
             findScenario: gives the scenario of a name, in any thread.
             records: folder of journals.
             robot: folder of the URDF.
-            isTrialOpen: tells whether the scene shows a trial that is being played.
+            isTrialOpen: returns whether the scene shows a trial that is being played.
         """
         self.feedbackFound = Signal()
         self.shown = Signal()
@@ -76,11 +76,11 @@ class ReplayLogic:
         self._records = records
         self._robot = robot
         self._known: tuple[str, TrialFeedback | Exception] | None = None
-        self._asked = ""
+        self._requestedId = ""
         self._until: float | None = None
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
-        """Return what there is to say about a trial; None while that is worked out.
+        """Return the feedback on a trial; None while it is being prepared.
 
         Raises:
             InputError: its scenario is not here, or it cannot be registered.
@@ -90,19 +90,19 @@ class ReplayLogic:
             if isinstance(self._known[1], Exception):
                 raise self._known[1]
             return self._known[1]
-        if self._asked != trialId:
-            self._asked = trialId
+        if self._requestedId != trialId:
+            self._requestedId = trialId
 
             def take(found: TrialFeedback | Exception) -> None:
-                if self._asked == trialId:
+                if self._requestedId == trialId:
                     self.takeFeedback(trialId, found)
 
             self._work.do(lambda: self._judge(trial), take, take)
         return None
 
     def takeFeedback(self, trialId: str, feedback: TrialFeedback | Exception) -> None:
-        """Take what is known of a trial without having looked for it."""
-        self._known, self._asked = (trialId, feedback), ""
+        """Take feedback on a trial that was prepared elsewhere."""
+        self._known, self._requestedId = (trialId, feedback), ""
         self.feedbackFound.emit()
 
     def retryFeedback(self) -> None:
@@ -133,13 +133,13 @@ class ReplayLogic:
     ) -> None:
         """Show again how the worst touch came about; otherwise as `show`."""
         if self._known is None or self._known[0] != trial.record.trial_id:
-            judged = inBackground(lambda _tell: self._judge(trial), progress)
+            judged = inBackground(lambda _report: self._judge(trial), progress)
             self.takeFeedback(trial.record.trial_id, judged)
         feedback = self.feedback(trial)
         interval = None if feedback is None else feedback.worst.replay_s
         if interval is None:
             trialId = trial.record.trial_id
-            inBackground(lambda _tell: find_track(self._records, trialId, giveWay), progress)
+            inBackground(lambda _report: find_track(self._records, trialId, giveWay), progress)
             raise InputError(_("The journal does not say when the worst touch was made."))
         self._put(trial, progress)
         goTo(self._scene, interval[0])
@@ -147,7 +147,7 @@ class ReplayLogic:
 
     @property
     def sentence(self) -> str:
-        """Where the replay stands; empty where there is none."""
+        """Time and clearance of the replay; empty if there is none."""
         now = moment(self._scene)
         if now is None:
             return ""
@@ -179,7 +179,7 @@ class ReplayLogic:
         stopReplay(self._scene)
         isThere = isReplayOf(self._scene, record.trial_id)
         track, chain, scenario = inBackground(
-            lambda _tell: (
+            lambda _report: (
                 None if isThere else find_track(self._records, record.trial_id, giveWay),
                 readArmChain(self._robot / URDF),
                 self._findScenario(record.scenario),

@@ -25,9 +25,9 @@ LONGEST_STEM = 30
 
 
 class ScenarioCache:
-    """Reads scenarios when they are asked for, anew where they were built anew.
+    """Reads scenarios when they are needed, and again after they were rebuilt.
 
-    `refresh` looks what has come since. Any thread may ask.
+    `refresh` finds new ones. May be used in any thread.
     """
 
     def __init__(self, *folders: Path) -> None:
@@ -63,7 +63,7 @@ class ScenarioCache:
         return line
 
     def refresh(self) -> None:
-        """Look anew at the next question."""
+        """List and read again when needed next."""
         self._listed = None
         self._scenarios.clear()
 
@@ -121,7 +121,7 @@ def _stamp(folder: Path) -> int:
 
 
 def _fileStamps(folder: Path) -> tuple:
-    """Return what tells whether any file of a scenario has changed."""
+    """Return a value that changes with any file of a scenario."""
     stamps = []
     for path in sorted(folder.rglob("*")):
         with contextlib.suppress(OSError):

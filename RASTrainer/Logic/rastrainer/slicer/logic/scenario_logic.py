@@ -103,14 +103,14 @@ class ScenarioLogic:
         return model, warnings
 
     def setRobotShown(self, shown: bool) -> None:
-        """Show the robot, which follows the link by itself, or hide it.
+        """Show the robot, which follows the link, or hide it.
 
         Raises:
             InputError: its files cannot be used.
         """
         if shown:
             showRobot(self._scene, self._robotFolder)
-            # At once, so that the views can be moved to where it stands.
+            # At once, so that the views can be moved to it.
             followPlacement(self._scene)
         setRobotVisible(self._scene, shown)
 
@@ -129,7 +129,7 @@ class ScenarioFiles:
     """
 
     def __init__(self, simulator: SimulatorLogic, cache: ScenarioCache, library: Path) -> None:
-        """Scenarios come into the folder `library`, each into a folder of its own."""
+        """Scenarios come into the folder `library`, each into a separate folder."""
         self._simulator = simulator
         self._cache = cache
         self._library = library

@@ -32,7 +32,7 @@ SOURCE = "The volume {name} in 3D Slicer."
 
 @dataclass(frozen=True)
 class NewScenarioOptions:
-    """What is wanted of a scenario besides its volume.
+    """Options of a new scenario besides its volume.
 
     Attributes:
         title: for people; empty takes the volume's name.
@@ -42,7 +42,7 @@ class NewScenarioOptions:
         cutMm: height (S) of the flat base; None finds it.
         hasSkull: whether the skull is wanted.
         hasVolume: whether the scenario carries the images.
-        setUp: how the head stands before the robot.
+        setUp: how the head is placed before the robot.
         targets: a `vtkMRMLMarkupsFiducialNode` of planned targets, or None.
         trajectory: a `vtkMRMLMarkupsLineNode` from the entry to the target, or None.
         isHandPlaced: whether the scene's own point lists of 15 are the tasks, in their order.
@@ -63,7 +63,7 @@ class NewScenarioOptions:
 
 @dataclass(frozen=True)
 class _Planned:
-    """What the simulator is asked for.
+    """What the simulator is to make.
 
     Attributes:
         title: of the scenario.
@@ -97,7 +97,7 @@ class ScenarioMaker:
             scene: the scene.
             simulator: whose program plans the tasks.
             cache: of the scenarios that there are.
-            library: into which they come, each into a folder of its own.
+            library: into which they come, each into a separate folder.
             python: runs the process that makes the head.
         """
         self._scene = scene
@@ -175,7 +175,7 @@ class ScenarioMaker:
 
     @contextmanager
     def _planned(self, volumeNode: Any, options: NewScenarioOptions) -> Iterator[_Planned]:
-        """Yield what the simulator is asked for; its files are there as long as the context."""
+        """Yield what the simulator is to make; its files exist within the context."""
         from rastrainer.slicer.head.volume import imageOfNode
 
         image, settings = imageOfNode(_chosen(volumeNode)), _settings(options)
@@ -228,7 +228,7 @@ def _settings(options: NewScenarioOptions) -> HeadSettings:
 
 
 def _tasks(lists: list[Any], folder: Path) -> list[str]:
-    """Return the arguments for fiducials that are placed by hand, whose files go into `folder`."""
+    """Return the arguments for manually placed fiducials, whose files go into `folder`."""
     paths = [folder / f"task-{index}.mrk.json" for index in range(len(lists))]
     for path, node in zip(paths, lists, strict=True):
         write_markups(path, PointList(labelsOf(node), worldPoints(node)))

@@ -89,15 +89,15 @@ class SimulatorLogic:
             self._link.disconnect()
             self.program.stop()
 
-    def beginSetup(self, index: str = "", wheels: str = "") -> None:
-        """Begin to set the simulator up.
+    def startSetup(self, index: str = "", wheels: str = "") -> None:
+        """Start setting the simulator up.
 
         Args:
             index: address of a package index; pip's own where empty.
             wheels: a folder of wheels to install from without network; empty asks the index.
 
         Raises:
-            InputError: it cannot begin.
+            InputError: it cannot start.
         """
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before it is set up anew."))
@@ -114,7 +114,7 @@ class SimulatorLogic:
         self.setup.remove()
 
     def process(self) -> None:
-        """Hand on what pip and the simulator say."""
+        """Forward the output of pip and the simulator."""
         self.setup.process()
         self.program.process()
         self.running.process()
@@ -129,7 +129,7 @@ class SimulatorLogic:
 
     def _followProgram(self) -> None:
         if self.program.state is ProgramState.FAILED:
-            # One that has begun in the meantime may be why.
+            # One that was started in the meantime may be why.
             self.running.look()
 
 

@@ -100,9 +100,9 @@ def toolTip(scene: Any) -> np.ndarray | None:
 
 
 def _nextPoint(status: TrialStatus, fixed: Any | None) -> tuple[str, ...]:
-    """Return what tells the next point of a running trial from others; empty where none is shown.
+    """Return a key of the next point of a running trial; empty if none is shown.
 
-    The fiducials of a trial that has just begun come a moment later than its first point.
+    The fiducials of a trial that has just started come a moment later than its first point.
     """
     if fixed is None or status.phase not in OPEN_PHASES or not status.nextPoint:
         return ()

@@ -32,9 +32,9 @@ TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
 class StudyLogic:
     """What the Study panel does for the chosen trainee, and leading everybody who is enrolled.
 
-    All that is done stands in the study's file before anyone is informed, so that whoever opens it
-    again resumes where the trainee was. The simulator is sent what comes next for each trainee,
-    whoever is chosen here, so that its own menu begins nothing else. Trial runs and breaks end by
+    Everything done is in the study's file before anyone is informed, so that the trainee resumes
+    there when it is opened again. The simulator is sent what comes next for each trainee, also for
+    those not chosen here, so that its own menu starts nothing else. Trial runs and breaks end by
     themselves; `process` is to be called about ten times a second.
 
     Attributes:
@@ -115,7 +115,7 @@ class StudyLogic:
         return place
 
     def progress(self) -> Progress | None:
-        """Return where the chosen trainee stands; None for one who practices freely."""
+        """Return the chosen trainee's progress; None for one who practices freely."""
         name = self._trainees.chosen
         study = StudyProgress(self._trainees.study)
         if not name or study.protocol() is None or name not in study.enrolled():
@@ -140,7 +140,7 @@ class StudyLogic:
         self._training.start(self._trainees.chosen, task, mode)
 
     def offProtocolSentence(self) -> str:
-        """Return a sentence while an enrolled trainee plays what the study has not asked for."""
+        """Return a sentence while an enrolled trainee plays what the study has not requested."""
         trial = self._training.progress
         if not trial.isOpen or trial.trainee not in StudyProgress(self._trainees.study).enrolled():
             return ""
@@ -293,5 +293,5 @@ class StudyLogic:
             self._breaks[name] = end
 
     def _send(self, step: StudyStep) -> None:
-        # Without a connection nothing is sent; whoever connects is sent everything.
+        # Without a connection nothing is sent; a new connection is sent everything.
         self._link.send(CommandName.STUDY_STEP, step.arguments())

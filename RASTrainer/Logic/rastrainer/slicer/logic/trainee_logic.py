@@ -80,7 +80,7 @@ class TraineeLogic:
             self._study = self._version = None
 
     def hasChangedElsewhere(self) -> bool:
-        """Tell, about once a second, whether somebody else has changed the study meanwhile.
+        """Check, about once a second, whether another program has changed the study.
 
         Another Slicer may work with the same file; nobody waits for it here.
         """
@@ -93,7 +93,7 @@ class TraineeLogic:
         return version is not None and version != before
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        """Return those who train, and the archived ones too where asked for, by pseudonym."""
+        """Return those who train, optionally with the archived ones, by pseudonym."""
         listed = self.study.trainees()
         return (*listed, *self.study.trainees(archived=True)) if archived else listed
 
@@ -174,7 +174,7 @@ class TraineeLogic:
             InputError: nobody agreed, or the file cannot be written.
         """
 
-        def write(_tell: Progress) -> tuple[int, int]:
+        def write(_report: Progress) -> tuple[int, int]:
             with self._openPatiently() as study:
                 return write_histories(study, path)
 
@@ -190,7 +190,7 @@ class TraineeLogic:
             InputError: the study cannot be read.
         """
 
-        def read(_tell: Progress) -> TreCalibration:
+        def read(_report: Progress) -> TreCalibration:
             with self._openPatiently() as study:
                 everyone = (*study.trainees(), *study.trainees(archived=True))
                 histories = (study.history(trainee.pseudonym) for trainee in everyone)

@@ -1,4 +1,4 @@
-"""Starts and steers trials from Slicer, and shows the scene of the trial that is being played."""
+"""Starts and controls trials from Slicer, and shows the scene of the trial that is being played."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rastrainer.slicer.translation import _
 
 @dataclass(frozen=True)
 class TrialStatus:
-    """Where the simulator's trial stands.
+    """State of the simulator's trial.
 
     Attributes:
         trialId: UUID of the trial, empty where there is none.
@@ -96,7 +96,7 @@ class TrainingLogic:
 
     @property
     def progress(self) -> TrialStatus:
-        """Where the trial stands now; its time goes on between two messages."""
+        """State of the trial now; its time continues between two messages."""
         state = self._state
         elapsed = _number(state.get("elapsedS")) or 0.0
         if state.get("phase") == Phase.RUNNING.value:

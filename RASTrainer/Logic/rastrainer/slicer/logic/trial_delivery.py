@@ -45,14 +45,14 @@ class DeliveryQueue(Generic[T]):
         refusal: str,
         tooMany: str = "",
     ) -> None:
-        """Take in what is delivered from now on.
+        """Receive what is delivered from now on.
 
         Args:
             link: to the simulator.
             delivered: signal of the link that emits each delivery.
             work: in which trials are stored.
             store: returns what stores a delivery, called in the background.
-            accept: is given what that has returned, once the trial is acknowledged.
+            accept: is given what that has returned, after the trial was acknowledged.
             refusal: sentence about a trial that was not stored, with a place for its `{error}`.
             tooMany: sentence where too many trials wait; without it nothing is said.
         """
@@ -70,12 +70,12 @@ class DeliveryQueue(Generic[T]):
         delivered.connect(self._receive)
 
     def close(self) -> None:
-        """Stop listening to the link, and begin nothing more."""
+        """Stop listening to the link, and start nothing more."""
         self._delivered.disconnect(self._receive)
         self.forgetWaiting()
 
     def forgetWaiting(self) -> None:
-        """Leave undone what has not begun: the simulator offers it again, for another study."""
+        """Drop what has not started: the simulator offers it again, for another study."""
         self._waiting.clear()
         self._lastProblem = ""
 
@@ -86,7 +86,7 @@ class DeliveryQueue(Generic[T]):
             self.problemFound.emit(sentence)
 
     def _receive(self, delivery: Delivery) -> None:
-        """Let a delivered trial wait for its turn; what is left out is offered again."""
+        """Queue a delivered trial; what is dropped is offered again."""
         trialId = delivery.get("trialId")
         if any(waiting.get("trialId") == trialId for waiting in self._waiting):
             return
@@ -132,15 +132,15 @@ class DeliveryQueue(Generic[T]):
 
 
 class AbortedTrialsLogic:
-    """Stores the aborted trials that a link hands over.
+    """Stores the aborted trials of a link.
 
     Attributes:
-        kept: emits each `AbortedTrial` that comes in, once it is in the study.
+        kept: emits each received `AbortedTrial` when it is in the study.
         problemFound: emits a sentence about one that could not be kept.
     """
 
     def __init__(self, link: Link, openStudy: Callable[[], Study], work: BackgroundWork) -> None:
-        """Take in the trials of a link.
+        """Receive the trials of a link.
 
         Args:
             link: to the simulator.
@@ -160,11 +160,11 @@ class AbortedTrialsLogic:
         self.problemFound = self._queue.problemFound
 
     def close(self) -> None:
-        """Stop listening to the link, and begin nothing more."""
+        """Stop listening to the link, and start nothing more."""
         self._queue.close()
 
     def forgetWaiting(self) -> None:
-        """Leave undone what has not begun: the simulator offers it again, for another study."""
+        """Drop what has not started: the simulator offers it again, for another study."""
         self._queue.forgetWaiting()
 
     def _keep(self, delivery: Delivery) -> AbortedTrial:

@@ -35,20 +35,20 @@ from rastrainer.trial.record import TrialRecord
 
 
 class _Scoring(Enum):
-    """Where the scoring of a trial stands; it is begun again where neither is known."""
+    """State of a trial's scoring; without one, scoring starts again."""
 
     UNDER_WAY = "under way"
     DONE = "done"
 
 
 class TrialLogic:
-    """Takes in the trials that a link hands over.
+    """Receives the trials of a link.
 
     Attributes:
-        trialKept: emits each `TrialRecord` that comes in, once it is in the study.
-        trialScored: emits each `TrialAnalysis` with truth and score, once they are in the study.
+        trialKept: emits each received `TrialRecord` when it is in the study.
+        trialScored: emits each `TrialAnalysis` with truth and score, when they are in the study.
         problemFound: emits a sentence about a trial that could not be kept or scored.
-        received: UUIDs of the trials that came in and are safe, in their order.
+        received: UUIDs of the received trials that are in the study, in their order.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class TrialLogic:
         cohort: Sequence[Trial] = (),
         records: Path | None = None,
     ) -> None:
-        """Take in the trials of a link.
+        """Receive the trials of a link.
 
         Args:
             scene: the scene.
@@ -100,14 +100,14 @@ class TrialLogic:
         link.opened.connect(self._resume)
 
     def close(self) -> None:
-        """Stop listening to the link, and begin nothing more."""
+        """Stop listening to the link, and start nothing more."""
         self._queue.close()
         self._link.stateChanged.disconnect(self._followTraining)
         self._link.opened.disconnect(self._resume)
         self.forgetWaiting()
 
     def forgetWaiting(self) -> None:
-        """Leave undone what has not begun: the simulator offers it again, for another study."""
+        """Drop what has not started: the simulator offers it again, for another study."""
         self._queue.forgetWaiting()
         self._unscored.clear()
         self.received.clear()

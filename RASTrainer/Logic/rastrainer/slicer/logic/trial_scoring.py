@@ -1,8 +1,8 @@
 """From a trial's registration to its score, in the order in which nobody can cheat.
 
-First the registration is submitted, which makes it final; then the simulator tells the truth; then
-the score is made of it, sent, and kept. Wherever that is interrupted, the truth is not kept, and
-all of it is done again over the next connection, with the same outcome.
+The registration is submitted, which makes it final; the simulator reveals the truth; the score is
+computed, sent and stored. If that is interrupted, the truth is not stored, and all of it is done
+again over the next connection, with the same outcome.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.submission import registration_arguments, score_arguments
 
 ANSWER_TIMEOUT_S = 60.0
-"""Nobody waits for these answers, and what is given up would be asked for again only over the next
+"""Nobody waits for these answers, and what times out is requested again only over the next
 connection: a busy simulator gets the time it needs."""
 
 Score = Callable[[TrialAnalysis, Study, RevealedTruth], TrialAnalysis]

@@ -4,7 +4,7 @@ Slicer's Python is a launcher that starts the real one and passes no signal on, 
 was started is not to end what runs. On POSIX the program gets a session, and so a group, of its
 own, in which all that it starts stays. On Windows they are in one job object.
 
-Slicer's own end ends none of them by itself: a trial that runs outlives a crash of Slicer.
+The end of Slicer does not end them: a running trial survives a crash of Slicer.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ class ChildProcess:
 
     @property
     def exitStatus(self) -> int | None:
-        """The program's exit status; None while it runs, whatever has become of what it started."""
+        """The program's exit status; None while it runs, regardless of what it started."""
         return self._process.poll()
 
     def poll(self) -> bool:
@@ -206,7 +206,7 @@ class ChildProcess:
                 self._process.wait(LAST_OUTPUT_S)
 
     def abandon(self) -> None:
-        """Ask it to end, and look after its end in the background."""
+        """Ask it to end, and make sure that it does, in the background."""
         self.end()
         threading.Thread(target=self._finish, daemon=True).start()
 

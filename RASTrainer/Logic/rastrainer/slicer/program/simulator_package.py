@@ -94,7 +94,7 @@ class SimulatorPackage:
         return found.group(1)
 
     def origin(self) -> str:
-        """Return what tells this package from another's of the same version.
+        """Return what distinguishes this package from another of the same version.
 
         Empty where it is not known.
         """
@@ -165,7 +165,7 @@ class SetupSource:
     wheels: Path | None = None
 
     def pipArguments(self) -> list[str]:
-        """Return what stands between `pip install` and what is installed.
+        """Return the options of `pip install`.
 
         Raises:
             InputError: the folder holds no wheels, or the address is none.

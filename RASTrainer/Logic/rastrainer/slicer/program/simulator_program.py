@@ -22,7 +22,7 @@ _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: 
 
 
 class ProgramState(str, Enum):
-    """Where the simulator's process stands."""
+    """State of the simulator's process."""
 
     STOPPED = "stopped"
     STARTING = "starting"
@@ -35,14 +35,14 @@ class SimulatorProgram:
     """Starts and stops `rastrainer simulator`; `process` is to be called now and then.
 
     Attributes:
-        state: where the process stands.
-        port: on which it listens, once it is ready.
+        state: state of the process.
+        port: on which it listens when it is ready.
         sentence: what happened last, for people.
         pageAddresses: where a browser or a headset finds the simulator's page.
         fingerprint: SHA-256 of the certificate of the pages in the local network; empty without.
         kinematics: what computes the robot's, such as "Pinocchio 3.9.0"; empty while not known.
-        pairingCode: that a browser or a headset is let in for; only whoever started it knows.
-        ready: emits nothing, once it is.
+        pairingCode: that admits a browser or a headset; known only to the program that started it.
+        ready: emits nothing when it is ready.
         changed: emits nothing, whenever `state` or `sentence` has changed.
         pairingChanged: emits nothing, whenever an address or the code has.
         wroteLine: emits each line of its output.
@@ -118,11 +118,11 @@ class SimulatorProgram:
         self._showEnding()
 
     def process(self) -> None:
-        """Hand on its output, and notice that it is ready, is ending or has ended."""
+        """Forward its output, and notice that it is ready, is ending or has ended."""
         if self._child is None:
             return
         isOver, child = self._child.poll(), self._child
-        self._handOnLines(child)
+        self._forwardLines(child)
         if isOver:
             self._child = None
             self._noteEnd(child.exitStatus)
@@ -136,7 +136,7 @@ class SimulatorProgram:
         self._next = None
         if self._child is not None:
             self._child.close()
-            self._handOnLines(self._child)
+            self._forwardLines(self._child)
             self._child = None
             self._pair([], "")
             self._change(ProgramState.STOPPED, _("The simulator was stopped."))
@@ -162,7 +162,7 @@ class SimulatorProgram:
             )
 
     def _startNext(self) -> None:
-        """Start what was asked for while the former process was ending."""
+        """Start what was requested while the former process was ending."""
         command, self._next = self._next, None
         if command is None:
             return
@@ -171,7 +171,7 @@ class SimulatorProgram:
         except InputError as error:
             self._change(ProgramState.FAILED, str(error))
 
-    def _handOnLines(self, child: ChildProcess) -> None:
+    def _forwardLines(self, child: ChildProcess) -> None:
         for line in child.takeLines():
             self._lastLine = line or self._lastLine
             self.wroteLine.emit(line)

@@ -1,4 +1,4 @@
-"""Sets the simulator up in a folder of its own, by Slicer's own Python, once.
+"""Sets the simulator up in a private folder with Slicer's own Python, once.
 
 Nothing is installed into Slicer: `pip install --target` puts everything into a private folder that
 only the simulator's process looks into, and what the simulator never opens is taken out again. A
@@ -99,7 +99,7 @@ class SimulatorSetup:
             return None
 
     def begin(self, source: SetupSource) -> None:
-        """Begin to set up, in place of what is there.
+        """Start the set-up, replacing what is there.
 
         Raises:
             InputError: the simulator is missing in the module, there are no wheels, or the folder
@@ -138,7 +138,7 @@ class SimulatorSetup:
         self.changed.emit()
 
     def process(self) -> None:
-        """Hand on what pip says, trim what it has installed, and finish."""
+        """Forward the output of pip, trim what it has installed, and finish."""
         if self._child is None:
             return
         isOver, child = self._child.poll(), self._child

@@ -1,4 +1,4 @@
-"""Takes out of a private folder of packages what the simulator never opens; a program of its own.
+"""Removes what the simulator never opens from a private folder of packages; a separate program.
 
     private_words(python, FOLDER, "rastrainer.slicer.program.trim_packages", FOLDER)
 

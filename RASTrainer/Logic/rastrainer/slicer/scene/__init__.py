@@ -1,1 +1,1 @@
-"""What stands in the MRML scene."""
+"""The content of the MRML scene."""

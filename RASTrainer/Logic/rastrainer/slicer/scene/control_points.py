@@ -22,7 +22,7 @@ def labelsOf(node: Any) -> tuple[str, ...]:
 
 
 def labelOf(node: Any, index: int) -> str:
-    """Return the label of one point; a peer may have given it one that is no text."""
+    """Return the label of one point; a peer may have sent one that is not UTF-8."""
     return shownText(node.GetNthControlPointLabel(index))
 
 
@@ -56,14 +56,14 @@ MOST_LISTS = 6
 
 
 def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
-    """Return the lists that are taken, in the scene's order, and why others are left out.
+    """Return the usable lists, in the scene's order, and why others are left out.
 
     Args:
         scene: the scene.
         targets: the list of the planned targets, which are no fiducials; None where there is none.
 
     Raises:
-        InputError: there is no list of fifteen fiducials, or the labels of one are no order.
+        InputError: there is no list of fifteen fiducials, or its labels give no order.
     """
     taken: list[Any] = []
     leftOut = []
@@ -72,16 +72,18 @@ def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
             continue
         count = node.GetNumberOfDefinedControlPoints()
         if count != FIDUCIAL_COUNT or count != node.GetNumberOfControlPoints():
-            told = _("The point list {name} is left out: it has {count} placed points, not {all}.")
-            leftOut.append(told.format(name=node.GetName(), count=count, all=FIDUCIAL_COUNT))
+            reason = _(
+                "The point list {name} is left out: it has {count} placed points, not {all}."
+            )
+            leftOut.append(reason.format(name=node.GetName(), count=count, all=FIDUCIAL_COUNT))
         elif len(taken) == MOST_LISTS:
-            told = _("The point list {name} is left out: a scenario has at most {most} tasks.")
-            leftOut.append(told.format(name=node.GetName(), most=MOST_LISTS))
+            reason = _("The point list {name} is left out: a scenario has at most {most} tasks.")
+            leftOut.append(reason.format(name=node.GetName(), most=MOST_LISTS))
         else:
             taken.append(_checked(node))
     if not taken:
-        told = _("There is no point list of {count} fiducials in the scene.")
-        raise InputError(" ".join([told.format(count=FIDUCIAL_COUNT), *leftOut]))
+        problem = _("There is no point list of {count} fiducials in the scene.")
+        raise InputError(" ".join([problem.format(count=FIDUCIAL_COUNT), *leftOut]))
     return taken, leftOut
 
 

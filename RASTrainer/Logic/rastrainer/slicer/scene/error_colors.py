@@ -92,7 +92,7 @@ def colorHead(
         localization: of the touches; alike in all directions where left out.
 
     Raises:
-        InputError: the registration has too few points to tell.
+        InputError: the registration has too few points.
     """
     points = slicer.util.arrayFromModelPoints(model).astype(float)
     errors = expected_tre(registration, points, localization)

@@ -39,7 +39,7 @@ ENDS = 2
 
 @dataclass(frozen=True)
 class _Change:
-    """What was done to a node, and what takes it back; that tells whether there was anything."""
+    """A change of a node. `takeBack` undoes it and returns whether there was anything to undo."""
 
     nodeId: str
     takeBack: Callable[[Any], bool]
@@ -48,7 +48,7 @@ class _Change:
 class PlanPoints:
     """Adds points to plans and removes them; each change can be undone, the last one first.
 
-    Nothing that is placed is ever erased by placing more.
+    Placing more points never erases placed ones.
     """
 
     def __init__(self, scene: Any) -> None:
@@ -98,7 +98,7 @@ class PlanPoints:
         return bool(self._changes)
 
     def undo(self) -> None:
-        """Take the last placing or removal back, as far as its node is still there."""
+        """Undo the last placing or removal whose node still exists."""
         stopPlacing(self._scene)
         while self._changes:
             change = self._changes.pop()

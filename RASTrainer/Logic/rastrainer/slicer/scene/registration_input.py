@@ -18,8 +18,8 @@ from rastrainer.slicer.scene.control_points import labelsOf, localPoints, worldP
 from rastrainer.slicer.translation import _
 
 USUAL_FLE_MM = 1.0
-"""Of points that no localization error is stated for. Only ratios matter: the size of the errors is
-told from the residuals."""
+"""Localization error of points without a stated one. Only ratios matter: the size of the errors is
+estimated from the residuals."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Choices:
 
     Attributes:
         excluded: labels of pairs that are left out.
-        renamed: label as it stands in the moving list → label that it belongs to.
+        renamed: label in the moving list → label that it belongs to.
         fle: label → localization error, RMS length in mm, of points that do not have the usual one.
     """
 
@@ -83,7 +83,7 @@ class Pairs:
 def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
     """Return the pairs of two `vtkMRMLMarkupsNode`, by label where both lists are labeled.
 
-    Fixed points that were not touched yet are no fault: a trial may be running.
+    Fixed points that were not touched yet are allowed: a trial may be running.
 
     Raises:
         InputError: a list is empty, or its points do not pair up.
@@ -114,7 +114,7 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
 
 
 def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> tuple:
-    """Return what tells whether a list has changed: its labels and where its points are."""
+    """Return a value that changes with a list: its ID, labels and positions."""
     if node is None:
         return ()
     return node.GetID(), labelsOf(node), pointsOf(node).tobytes()

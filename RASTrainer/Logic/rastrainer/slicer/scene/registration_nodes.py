@@ -56,23 +56,23 @@ def showRegistration(scene: Any, registration: Registration, moving: Any, fixed:
 
 
 def rememberLists(transformNode: Any, moving: Any, fixed: Any) -> None:
-    """Let the transform remember the lists of points that it is made from."""
+    """Store in the transform which lists of points it was computed from."""
     transformNode.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
     transformNode.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
 
 
 def movingNode(transformNode: Any) -> Any | None:
-    """Return the list of touched points that the transform was made from, if it is still there."""
+    """Return the list of touched points that the transform was made from, if it still exists."""
     return transformNode.GetNodeReference(MOVING_REFERENCE)
 
 
 def fixedNode(transformNode: Any) -> Any | None:
-    """Return the list of fiducials that the transform was made from, if it is still there."""
+    """Return the list of fiducials that the transform was made from, if it still exists."""
     return transformNode.GetNodeReference(FIXED_REFERENCE)
 
 
 def isApplied(transformNode: Any) -> bool:
-    """Tell whether the touched points are shown on the head."""
+    """Return whether the touched points are shown on the head."""
     moving = movingNode(transformNode)
     return moving is not None and moving.GetTransformNodeID() == transformNode.GetID()
 
@@ -96,9 +96,9 @@ PLANNED = "planned"
 
 
 def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
-    """Put World where the scenario plans it, and return the WorldToHead transform.
+    """Place World as the scenario plans it, and return the WorldToHead transform.
 
-    A trial's head stands a little elsewhere, which only its registration tells.
+    The head of a trial is placed a little differently; only its registration shows where.
     """
     known = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     wasApplied = known is None or isApplied(known)
@@ -113,11 +113,11 @@ def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) ->
 
 
 def isPlanned(transform: Any) -> bool:
-    """Tell whether the transform is the planned place, and no registration."""
+    """Return whether the transform is the planned pose rather than a registration."""
     return transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
 
 
 def followPlacement(scene: Any) -> None:
-    """Let the robot stand where the touched points are shown: on the head, or in World."""
+    """Show the robot where the touched points are shown: at the head, or in World."""
     node = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     placeRobot(scene, node if node is not None and isApplied(node) else None)

@@ -31,8 +31,8 @@ class Shell(NamedTuple):
 def showRobot(scene: Any, folder: Path) -> None:
     """Show the robot of a folder, one model a link; called again, nothing is made twice.
 
-    The models hang under the nodes that the link fills (`Link0ToWorld` …), so that they move by
-    themselves. Links whose poses have not come yet stand where the robot's base is.
+    The models are transformed by the nodes that the link fills (`Link0ToWorld` …). Links
+    whose poses have not arrived yet are shown at the robot's base.
 
     Raises:
         InputError: the folder's URDF or a mesh cannot be used.
@@ -61,7 +61,7 @@ def showRobot(scene: Any, folder: Path) -> None:
 
 
 def placeRobot(scene: Any, worldTransform: Any | None) -> None:
-    """Let the robot follow its poses, and World stand where `worldTransform` puts it."""
+    """Let the robot follow its poses, with World placed by `worldTransform`."""
     for number, device in enumerate(DeviceName.LINK_TO_WORLD):
         pose = scene.GetFirstNode(device, "vtkMRMLLinearTransformNode")
         node = robotNode(scene, number)

@@ -14,7 +14,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
 from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.scenario_volume import wantVolume
+from rastrainer.slicer.scene.scenario_volume import requestVolume
 from rastrainer.slicer.scene.scene import (
     SCENARIO_ATTRIBUTE,
     TASK_ATTRIBUTE,
@@ -64,7 +64,7 @@ def showScenario(scene: Any, scenario: Scenario) -> None:
     """Show head, skull, targets and trajectory; called again, nothing is made twice.
 
     The images come later, by a `VolumeLoader`. The first point of the list of targets is the
-    scenario's own, at which the error is told.
+    scenario's own, at which the target error is reported.
 
     Raises:
         InputError: a mesh of the scenario cannot be used.
@@ -73,7 +73,7 @@ def showScenario(scene: Any, scenario: Scenario) -> None:
     _showSkull(scene, scenario)
     _showTargets(scene, scenario)
     _showTrajectory(scene, scenario)
-    wantVolume(scene, scenario)
+    requestVolume(scene, scenario)
 
 
 def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
@@ -125,8 +125,8 @@ def _showSkull(scene: Any, scenario: Scenario) -> None:
 
 
 def _fill(node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]) -> bool:
-    """Show a mesh of a scenario, and tell whether something else was shown."""
-    # Asked before every trial: the file is read only when it is not the one that is shown.
+    """Show a mesh of a scenario; return whether it was not shown before."""
+    # Called before every trial: the file is read only if it is not shown yet.
     stamp = stampOf(path)
     if isShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp):
         return False

@@ -1,4 +1,4 @@
-"""The images of a scenario as a volume node: wanted at once, and filled as soon as they are read.
+"""The images of a scenario as a volume node: requested at once, filled when they have been read.
 
 The node holds them itself, so that a saved scene carries them. It has no file of its own: Slicer's
 *Save* would offer to write over the scenario's.
@@ -38,7 +38,7 @@ FILE_ATTRIBUTE = "RASTrainer.volumeFile"
 """Of a node that is not filled yet: the file with its images."""
 
 
-def wantVolume(scene: Any, scenario: Scenario) -> None:
+def requestVolume(scene: Any, scenario: Scenario) -> None:
     """Let the scene have a node for the images of a scenario, or none where it has none.
 
     Called again, nothing is read twice: window, level and what the views show stay as they are.
@@ -62,16 +62,16 @@ def wantVolume(scene: Any, scenario: Scenario) -> None:
 def showImages(scene: Any) -> None:
     """Show the images of the scenario behind all else again, where others are."""
     node = findNode(scene, VOLUME, Role.HEAD_VOLUME)
-    if node is not None and not _asked(node):
+    if node is not None and not _requested(node):
         showAsBackground(scene, node)
 
 
 class VolumeLoader:
-    """Fills the node of `wantVolume`, and shows it behind all else in the slice views.
+    """Fills the node of `requestVolume`, and shows it behind all else in the slice views.
 
     Attributes:
-        shown: emits the node, once it is filled.
-        problemFound: emits a sentence where the images cannot be used; the node is gone then.
+        shown: emits the node when it has been filled.
+        problemFound: emits a sentence if the images cannot be used; the node is removed.
     """
 
     def __init__(self, scene: Any, work: BackgroundWork) -> None:
@@ -80,44 +80,44 @@ class VolumeLoader:
         self.problemFound = Signal()
         self._scene = scene
         self._work = work
-        self._asked: tuple[str, ...] = ()
+        self._requested: tuple[str, ...] = ()
 
     def process(self) -> None:
-        """Have images read that are wanted; called about ten times a second."""
+        """Start reading requested images; called about ten times a second."""
         node = findNode(self._scene, VOLUME, Role.HEAD_VOLUME)
-        asked = _asked(node)
-        if asked == self._asked:
+        requested = _requested(node)
+        if requested == self._requested:
             return
-        self._asked = asked
-        if not asked:
+        self._requested = requested
+        if not requested:
             return
         self._work.do(
-            lambda: read_nrrd(Path(asked[-1])),
-            lambda image: self._take(asked, *image),
-            lambda error: self._refuse(asked, error),
+            lambda: read_nrrd(Path(requested[-1])),
+            lambda image: self._take(requested, *image),
+            lambda error: self._refuse(requested, error),
         )
 
-    def _take(self, asked: tuple[str, ...], values: np.ndarray, ijkToRas: np.ndarray) -> None:
-        # In a cleared scene the next node has the same ID, and may ask for the same at once.
-        self._asked = ()
-        node = self._scene.GetNodeByID(asked[0])
-        if _asked(node) == asked:
+    def _take(self, requested: tuple[str, ...], values: np.ndarray, ijkToRas: np.ndarray) -> None:
+        # In a cleared scene the next node has the same ID, and may request the same at once.
+        self._requested = ()
+        node = self._scene.GetNodeByID(requested[0])
+        if _requested(node) == requested:
             node.RemoveAttribute(FILE_ATTRIBUTE)
             _fill(node, values, ijkToRas)
             showAsBackground(self._scene, node)
             self.shown.emit(node)
 
-    def _refuse(self, asked: tuple[str, ...], error: Exception) -> None:
-        self._asked = ()
-        node = self._scene.GetNodeByID(asked[0])
-        if _asked(node) == asked:
+    def _refuse(self, requested: tuple[str, ...], error: Exception) -> None:
+        self._requested = ()
+        node = self._scene.GetNodeByID(requested[0])
+        if _requested(node) == requested:
             self._scene.RemoveNode(node)
             if isinstance(error, InputError):
                 sentence = _("There are no images in the slice views: {problem}")
                 self.problemFound.emit(sentence.format(problem=error))
 
 
-def _asked(node: Any | None) -> tuple[str, ...]:
+def _requested(node: Any | None) -> tuple[str, ...]:
     """Return which images a node is to be filled with, empty where it is filled or not there."""
     if node is None or not node.GetAttribute(FILE_ATTRIBUTE):
         return ()

@@ -80,7 +80,7 @@ CONTENT_ATTRIBUTE = "RASTrainer.content"
 
 
 def isShown(node: Any, attribute: str, name: str, content: str) -> bool:
-    """Tell whether a node shows this content of this name."""
+    """Return whether a node shows this content of this name."""
     return (node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)) == (name, content)
 
 
@@ -91,7 +91,7 @@ def noteShown(node: Any, attribute: str, name: str, content: str) -> None:
 
 
 def stampOf(path: Path) -> str:
-    """Tell a file from what it was, without reading it; empty where there is none."""
+    """Return a stamp that changes with a file, without reading it; empty if there is none."""
     if not path.is_file():
         return ""
     status = path.stat()

@@ -1,4 +1,4 @@
-"""What is told about one trial: scores, parts, motion, and how it stands beside others."""
+"""One trial's scores with their parts, its motion, and its comparison with other trials."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from rastrainer.trial.scoring import (
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the score: what, how much, in which unit, and what there is to say about it.
+    """One line of the score: title, value, unit and note.
 
-    `more` is what there is to say beyond the note, for the tool tip.
+    `more` is added to the note in the tool tip.
     """
 
     title: str
@@ -99,7 +99,7 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
             ),
         ]
     rows.append(
-        Row(_("True TRE at the target"), trial.true_tre_mm, "mm", _("only a simulator can tell it"))
+        Row(_("True TRE at the target"), trial.true_tre_mm, "mm", _("only a simulator knows it"))
     )
     return rows
 
@@ -150,7 +150,7 @@ def _limit(value: float, unit: str) -> str:
 
 
 def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
-    """Return the scores of the publication, none where they cannot be told.
+    """Return the scores of the publication, none where they cannot be computed.
 
     Args:
         trial: with its results.
@@ -180,7 +180,7 @@ def standings(
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
-    Compared are trials of the same task and mode, scores with those of their own version.
+    Only trials of the same task and mode are compared, and only scores of the same version.
 
     Args:
         study: of the trial.

@@ -1,4 +1,4 @@
-"""Normals of the head's surface at fiducials: touches err otherwise along the skin than across."""
+"""Normals of the head's surface at fiducials: touch errors differ along and across the skin."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ SAME_HEAD_MM = 3.0
 
 
 class SkinNormals:
-    """Finds normals on a head model of the scene, each point of it once.
+    """Finds and remembers normals on a head model of the scene.
 
     Attributes:
-        found: emits nothing, whenever normals are known that were looked for in the background.
+        found: emits nothing when a search in the background has found normals.
     """
 
     def __init__(self, work: BackgroundWork | None = None) -> None:
@@ -42,7 +42,7 @@ class SkinNormals:
         registration: Registration,
         expected: np.ndarray | None = None,
     ) -> LocalizationError | None:
-        """Return the localization error of touches on the skin, told apart along and across it.
+        """Return the localization error of touches on the skin, separately along and across it.
 
         None where the fixed points do not all lie on the surface of the model, or are too few:
         then nothing is known but an error that is alike in all directions. None, too, until the

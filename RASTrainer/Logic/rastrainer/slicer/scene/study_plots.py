@@ -122,7 +122,7 @@ INSIDE = "true TRE, inside (mm)"
 OUTSIDE = "true TRE, outside (mm)"
 LOW, HIGH = "TRE from, 95 % (mm)", "TRE to, 95 % (mm)"
 ROOM = 1.5
-"""Of the plot's height to what it shows: the legend stands above, and hides no trial."""
+"""Of the plot's height to what it shows: the legend is above and hides no trial."""
 _DOTS = {
     INSIDE: (_("Inside"), (0.15, 0.4, 0.75)),
     OUTSIDE: (_("Outside"), (0.8, 0.15, 0.1)),

@@ -81,7 +81,7 @@ def showFits(
     Args:
         scene: the scene.
         fits: one a row.
-        targetErrors: of each fit, what to expect at the target; None where it tells nothing.
+        targetErrors: of each fit, what to expect at the target; None where it is not known.
     """
     known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
     return showTable(

@@ -21,7 +21,7 @@ SAMPLE_HZ = 10.0
 TRIAL_ATTRIBUTE = "RASTrainer.trial"
 """On a replay's browser: UUID of the trial."""
 STATES_A_SLICE = 50
-"""So many states go into the scene before the application may draw again."""
+"""States added to the scene before the application may draw again."""
 SAME_ROBOT_MM = 0.01
 TOOL_COLOR = (0.2, 0.45, 0.85)
 TOUCH_COLOR = (0.95, 0.55, 0.1)
@@ -41,7 +41,7 @@ def showReplay(
 ) -> Any:
     """Put a trial into the scene as a Sequence in place of the one before.
 
-    It has nodes of its own, so that a running simulator does not disturb it.
+    It uses separate nodes, so that a running simulator does not disturb it.
 
     Args:
         scene: the scene.
@@ -49,7 +49,7 @@ def showReplay(
         track: from its journal.
         chain: of the robot that it was recorded with.
         worldToHead: (4, 4) float, mm, registration of the trial.
-        rest: told the share of the work done after each slice of it; it may let the application
+        rest: called with the share of the work done after each slice; it may let the application
             draw, and may raise to cancel: then nothing is left behind.
 
     Returns:
@@ -107,7 +107,7 @@ def _fillScene(
         sequence.SetIndexName("time")
         sequence.SetIndexUnit("s")
         sequence.SetIndexType(sequence.NumericIndex)
-        # Whoever saves the states asks the scene that they are kept in for units.
+        # Saving the states needs units from the scene that contains them.
         sequence.GetSequenceScene().AddNode(slicer.vtkMRMLSelectionNode())
         for time, state in states:
             # The proxy becomes what the state is, with all its attributes.
@@ -117,7 +117,7 @@ def _fillScene(
             if done % STATES_A_SLICE == 0:
                 rest(done / total)
                 _checkIsThere(browser, sequence)
-        # Told of both at once, Slicer makes no proxy of its own.
+        # Notified of both at once, Slicer creates no proxy itself.
         wasModifying = browser.StartModify()
         browser.AddSynchronizedSequenceNode(sequence)
         browser.AddProxyNode(proxy, sequence, False)
@@ -163,7 +163,7 @@ def findReplay(scene: Any) -> Any | None:
 
 
 def isReplayOf(scene: Any, trialId: str) -> bool:
-    """Tell whether the replay that is in the scene is that of a trial, with all its nodes."""
+    """Return whether the scene contains the replay of this trial with all its nodes."""
     browser = findReplay(scene)
     parts = (
         ("vtkMRMLLinearTransformNode", _PLACE),
@@ -181,7 +181,7 @@ def isReplayOf(scene: Any, trialId: str) -> bool:
 
 
 def stopReplay(scene: Any) -> None:
-    """Let a replay that plays stand still."""
+    """Stop playback."""
     browser = findReplay(scene)
     if browser is not None:
         browser.SetPlaybackActive(False)
@@ -227,7 +227,7 @@ def _toolStates(tool: Any, poses: np.ndarray) -> Any:
 
 
 def _touchStates(touches: Any, trajectory: Trajectory) -> Any:
-    """Yield the touches so far, from the beginning and from each touch on."""
+    """Yield the touches made so far, at the start and at each touch."""
     made = trajectory.touches
     for count in range(len(made) + 1):
         state = type(touches)()

@@ -50,7 +50,7 @@ def showOnlyTouchesOf(scene: Any, scenario: str, task: str) -> None:
 
 
 def forgetStoredTouches(scene: Any) -> None:
-    """Empty the list if it holds a stored trial's touches: another trial has begun."""
+    """Empty the list if it holds a stored trial's touches: another trial has started."""
     node = capturedPointsNode(scene)
     if node.GetAttribute(STORED_ATTRIBUTE) == _stamp(node):
         node.RemoveAllControlPoints()
@@ -59,7 +59,7 @@ def forgetStoredTouches(scene: Any) -> None:
 
 
 def checkSameTask(moving: Any | None, fixed: Any | None) -> None:
-    """Check that two lists do not belong to two tasks; of a list of the user's nothing is known.
+    """Check that two lists do not belong to different tasks; a user's list belongs to none.
 
     Raises:
         InputError: they do.

@@ -47,7 +47,7 @@ def numbers(text: str) -> np.ndarray:
     """Return numbers between blanks, (n,) float.
 
     Raises:
-        ValueError: something else stands among them.
+        ValueError: the text contains something else.
     """
     return np.array([float(word) for word in text.split()])
 

@@ -56,7 +56,7 @@ class BorrowedLayout:
     def giveBack(self, purpose: str = "") -> None:
         """Show the user's layout again, if ours is shown (for this purpose, if one is given).
 
-        Whoever has chosen another layout meanwhile keeps that.
+        A layout that the user has chosen meanwhile stays.
         """
         node = self._node()
         if node is not None and self.purpose and purpose in ("", self._purpose):
