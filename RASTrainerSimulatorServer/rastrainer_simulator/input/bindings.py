@@ -13,7 +13,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
-from rastrainer_simulator.input.control_name import SITUATIONS, VIEW, ControlContext, ControlName
+from rastrainer_simulator.input.control_name import OF_VIEW, SITUATIONS, ControlContext, ControlName
 from rastrainer_simulator.input.inputs import BUTTONS, InputDevice, is_input
 
 Table = Mapping[ControlName, tuple[str, ...]]
@@ -160,8 +160,6 @@ _KEYBOARD: Mapping[str, tuple[str, ...]] = {
 }
 
 
-_ADDED_LATER = frozenset({ControlName.BEST_VIEW, *(name for pair in VIEW for name in pair)})
-"""Files of earlier versions do not know these, and may use their inputs for something else."""
 _SPARE = {
     InputDevice.GAMEPAD: BUTTONS,
     InputDevice.KEYBOARD: tuple(f"Key{letter}" for letter in string.ascii_uppercase),
@@ -226,7 +224,8 @@ def _read_table(values: dict[str, Any], device: InputDevice) -> Table:
         table[control] = _read_inputs(device, name, inputs)
     for control, usual in DEFAULT_BINDINGS.table(device).items():
         if control not in table:
-            is_new = control in _ADDED_LATER
+            # Earlier versions' files do not know these, and may use their inputs for others.
+            is_new = control in OF_VIEW
             table[control] = _free_inputs(device, table, control, usual) if is_new else usual
     return MappingProxyType({control: table[control] for control in ControlName})
 

@@ -65,6 +65,8 @@ VIEW = (
 )
 """Around to the right, higher and nearer: what moves the view while it is held."""
 
+OF_VIEW = frozenset({ControlName.BEST_VIEW, *(name for pair in VIEW for name in pair)})
+
 STICKS = frozenset(name for pair in (*TRANSLATION, *ROTATION) for name in pair)
 
 IN_MENUS = (

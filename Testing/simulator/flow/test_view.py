@@ -5,12 +5,14 @@ import json
 import numpy as np
 import pytest
 
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import StepKind
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.session.trial_view import turned
 from rastrainer_simulator.net.views.presenter import Hello
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.viewpoint.orbit import FRONT
 
 LEFT = OperatorInput((-1.0, 0.0, 0.0), operator="keyboard")
@@ -163,3 +165,20 @@ def test_the_journal_says_how_the_view_was_turned_and_whether_it_follows(by_hand
     assert views[-1]["azimuthDeg"] == 40.0
     assert views[-1]["zoom"] == 0.5
     assert not any(entry["follows"] or entry["isAutomatic"] for entry in views)
+
+
+def test_a_trial_with_a_view_that_turns_is_simulated_again_bit_by_bit(by_hand, outside):
+    by_hand.start("task-1")
+    for around in (25.0, -80.0, 160.0):
+        by_hand.presenter.on_orbit(1, around, 3.0, 0.9)
+        by_hand.hands.push(0.4, -0.7, 0.2, False)
+        by_hand.presenter.on_key(1, "KeyE", True, "")
+        by_hand.step(60)
+        by_hand.presenter.on_key(1, "KeyE", False, "")
+    by_hand.hands.push(0.0, 0.0, 0.0, False)
+    by_hand.submit("Abort")
+    (journal,) = outside.services.records.glob(f"*{SUFFIX}")
+    by_hand.until(lambda: '"aborted"' in journal.read_text(encoding="utf-8"), "the end")
+    report = replay(read_journal(journal), by_hand.loop.setup)
+    assert report.is_identical
+    assert report.compared["input"] > 100

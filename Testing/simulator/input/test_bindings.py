@@ -128,3 +128,19 @@ def test_a_browser_s_pad_has_the_inputs_of_sdl_s():
     sdl = gamepad_inputs([0.0] * len(AXES), [0.0] * len(BUTTONS))
     assert set(sdl) == GAMEPAD_INPUTS
     assert set(inputs) < GAMEPAD_INPUTS
+
+
+def test_a_file_of_an_earlier_version_keeps_its_inputs_and_the_view_takes_free_ones(tmp_path):
+    path = tmp_path / "controls.json"
+    of_view = {
+        "gamepad": {"touch": ["x"], "fine": ["leftshoulder"]},
+        "keyboard": {"undo": ["KeyB"]},
+    }
+    path.write_text(json.dumps({"formatVersion": 1, **of_view}), encoding="utf-8")
+    bindings = read_bindings(path)
+    assert bindings.gamepad[ControlName.TOUCH] == ("x",)
+    assert bindings.gamepad[ControlName.BEST_VIEW] not in ((), ("x",))
+    assert bindings.gamepad[ControlName.VIEW_LOWER] not in ((), ("leftshoulder",))
+    assert bindings.gamepad[ControlName.VIEW_LEFT] == ("dpleft",)
+    assert bindings.keyboard[ControlName.UNDO] == ("KeyB",)
+    assert len(bindings.keyboard[ControlName.BEST_VIEW]) == 1

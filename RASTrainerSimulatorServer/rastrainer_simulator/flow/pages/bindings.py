@@ -10,13 +10,14 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.control_name import IN_MENUS, STICKS, ControlName
+from rastrainer_simulator.input.control_name import IN_MENUS, OF_VIEW, STICKS, ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
 
 GROUPS = {
-    "work": tuple(name for name in ControlName if name not in STICKS and name not in IN_MENUS),
+    "work": tuple(name for name in ControlName if name not in (STICKS | OF_VIEW | {*IN_MENUS})),
     "movement": tuple(name for name in ControlName if name in STICKS),
+    "view": tuple(name for name in ControlName if name in OF_VIEW),
     "menus": IN_MENUS,
 }
 LISTEN_S = 10.0

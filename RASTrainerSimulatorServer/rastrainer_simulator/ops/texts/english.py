@@ -298,6 +298,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "bindings.group": "Controls for",
         "bindings.group.work": "Working",
         "bindings.group.movement": "Moving the tool",
+        "bindings.group.view": "The view",
         "bindings.group.menus": "Menus",
         "bindings.defaults": "Back to the defaults",
         "bindings.back": "Back",

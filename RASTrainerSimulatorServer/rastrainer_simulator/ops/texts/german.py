@@ -392,6 +392,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "bindings.group": "Steuerung für",
         "bindings.group.work": "Arbeiten",
         "bindings.group.movement": "Bewegen des Werkzeugs",
+        "bindings.group.view": "Die Ansicht",
         "bindings.group.menus": "Menüs",
         "bindings.defaults": "Zurück zum Anfang",
         "bindings.back": "Zurück",
