@@ -103,6 +103,19 @@ class TouchRule(str, Enum):
     WITHIN_RADIUS = "within radius"
 
 
+class Guidance(str, Enum):
+    """How the trainee is guided to the next point.
+
+    `WORDS`: distance and directions in words, and the arrow. `ARROW`: an arrow toward a point that
+    is out of sight. `FADING`: words in the trial run, the arrow in the first two tasks, then none.
+    """
+
+    FADING = "fading"
+    WORDS = "words"
+    ARROW = "arrow"
+    NONE = "none"
+
+
 class StepKind(str, Enum):
     """Kind of a step in a study."""
 
@@ -219,6 +232,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "questionnaire": Argument(text(), ""),
         "minutes": Argument(number(0, 43_200, "min"), 0.0),
         "over": Argument(number(0, 43_200, "min"), 0.0),
+        "guidance": Argument(one_of(*(choice.value for choice in Guidance)), ""),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

@@ -180,7 +180,7 @@ class Picture:
             is_error=is_free and state.get("touch") in TOUCH_ERRORS,
             ring=self._ring() if is_free else None,
             inset=self.viewports.inset_box if self.viewports.has_inset else None,
-            target=self._target() if is_free else None,
+            target=self._target() if is_free and screen.has_arrow else None,
             hovered=self.item_at_pointer(now),
             thumbnail=self._inbox.thumbnails.get(focused_picture(screen.menu)),
         )

@@ -34,6 +34,7 @@ def screen_from_json(value: Json) -> Screen:
         status=tuple(str(fact) for fact in value["status"]),
         hints=tuple(Hint(str(hint["control"]), str(hint["action"])) for hint in value["hints"]),
         language=str(value["language"]),
+        has_arrow=bool(value["has_arrow"]),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Guidance, Phase
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
@@ -17,6 +17,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import feedback_event, touch_feedback
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LocalizedText
+from rastrainer_simulator.record.view_report import GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import SimulationState, StepResult, TouchStage, TrialResult
 
@@ -126,6 +127,7 @@ class Flow:
             warnings=(*self._trial_screen.warnings(), *warnings),
             status=self._trial_screen.status(),
             hints=self._trial_screen.hints(),
+            has_arrow=self._trial_screen.guidance is not Guidance.NONE,
             language=session.preferences.language,
         )
 
@@ -167,6 +169,8 @@ class Flow:
         if training.trial_id and training.trial_id != previous_id:
             truth = self._control_loop.truth
             self._trial_screen.begin(*points_in_world(truth))
+            guidance = self._trial_screen.guidance
+            self._control_loop.note_display(GuidanceReport(guidance.value))
             session.view.begin(session.setup, truth, session.state)
             session.trainee = training.trainee
             session.mode = training.mode

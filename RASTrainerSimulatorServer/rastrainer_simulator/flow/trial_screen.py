@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, StepKind
+from rastrainer.protocol import TRIAL_RUN, CommandName, Guidance, Phase, StepKind
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.start import StartPage
@@ -36,9 +36,14 @@ DEPTH_STEP_MM = 0.5
 
 
 class TrialScreen:
-    """The instructions, warnings and hints of an open trial, and its controls."""
+    """The instructions, warnings and hints of an open trial, and its controls.
+
+    Attributes:
+        guidance: to the next point, in the present trial.
+    """
 
     def __init__(self, session: TrainingSession) -> None:
+        self.guidance = Guidance.NONE
         self._session = session
         self._points: dict[str, Vector] = {}
         self._center: Vector = (0.0, 0.0, 0.0)
@@ -93,6 +98,7 @@ class TrialScreen:
         self._is_beside = self._was_refused = self._is_practice_end_shown = False
         self._obstacle, self._is_within_reach = "", True
         self._practice_step, self._practice_end_s = None, None
+        self.guidance = self._session.guidance()
 
     def pressed(self, control: ControlName) -> None:
         """Do what a control is for while the arm is driven."""
@@ -187,7 +193,7 @@ class TrialScreen:
             self._clock(),
         ]
         target = self._points.get(training.next_point or "")
-        if target is not None:
+        if target is not None and self.guidance is Guidance.WORDS:
             facts.append(self._toward(target))
         return tuple(facts)
 

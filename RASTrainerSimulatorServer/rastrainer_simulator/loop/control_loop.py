@@ -30,11 +30,10 @@ from rastrainer_simulator.loop.rates import RateLimit, TrialLimits
 from rastrainer_simulator.loop.subscribers import PendingAnswers, Subscribers
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
-from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.durable_results import DurableResults
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
-from rastrainer_simulator.record.view_report import ViewReport
+from rastrainer_simulator.record.view_report import NotedReport
 from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
 from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
@@ -111,7 +110,7 @@ class ControlLoop:
         self._held = DurableResults(self._state.training)
         self._sticks = HANDS_OFF
         self._arrived: deque[OperatorCommand] = deque()
-        self._displayed: deque[DisplayReport | ViewReport] = deque()
+        self._displayed: deque[NotedReport] = deque()
         self._answers = PendingAnswers()
         limits = trial_limits or TrialLimits()
         self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
@@ -182,7 +181,7 @@ class ControlLoop:
         """Hold the sticks like this until the next call; the commands in it are ignored."""
         self._sticks = replace(sticks, commands=())
 
-    def note_display(self, report: DisplayReport | ViewReport) -> None:
+    def note_display(self, report: NotedReport) -> None:
         """Record in the trial's journal what is seen of it."""
         self._displayed.append(report)
 

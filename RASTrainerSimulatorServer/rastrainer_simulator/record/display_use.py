@@ -39,9 +39,14 @@ class DisplayReport:
 
 
 class DisplayUse:
-    """Adds up the reports of one trial."""
+    """Adds up the reports of one trial.
+
+    Attributes:
+        guidance: how the trainee is guided to the next point; "" where no screen shows it.
+    """
 
     def __init__(self) -> None:
+        self.guidance = ""
         self._last: DisplayReport | None = None
         self._shown = 0
         self._dropped = 0
@@ -53,13 +58,15 @@ class DisplayUse:
         self._dropped += report.dropped
 
     def summary(self) -> dict[str, str | float]:
-        """Return `display` of the trial's record: the last view, and all frames."""
+        """Return `display` of the trial's record: the last view, all frames, and the guidance."""
+        guidance = {"guidance": self.guidance} if self.guidance else {}
         if self._last is None:
-            return {}
+            return {**guidance}
         device = {"device": self._last.device} if self._last.device else {}
         return {
             "kind": self._last.view,
             **device,
+            **guidance,
             "refreshHz": self._last.refresh_hz,
             "shownFrames": self._shown,
             "droppedFrames": self._dropped,

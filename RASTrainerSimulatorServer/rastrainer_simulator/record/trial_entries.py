@@ -20,7 +20,7 @@ from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
 from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.view_report import ViewReport
+from rastrainer_simulator.record.view_report import GuidanceReport, NotedReport
 from rastrainer_simulator.state import (
     Event,
     EventKind,
@@ -123,6 +123,8 @@ class TrialEntries:
                 entries._utc[entry["simTime"] - dt] = entry["utc"]
             elif entry["kind"] == "display":
                 entries._display.add(DisplayReport.of(entry))
+            elif entry["kind"] == "guidance":
+                entries._display.guidance = entry["guidance"]
         entries._append(
             {
                 "kind": "continued",
@@ -173,10 +175,12 @@ class TrialEntries:
         # Of the whole tick: the tip may have touched the head after the command in it.
         return UnmeasuredRecord(self._record(state), self._recording.trajectory(), registered)
 
-    def add_display(self, report: DisplayReport | ViewReport, state: SimulationState) -> None:
+    def add_display(self, report: NotedReport, state: SimulationState) -> None:
         """Take note of what is seen, and how: it is recorded, but nothing follows from it."""
         if isinstance(report, DisplayReport):
             self._display.add(report)
+        elif isinstance(report, GuidanceReport):
+            self._display.guidance = report.guidance
         self._append(report.entry() | stamp(state.tick, state.sim_time))
 
     def _append(self, entry: dict[str, Any]) -> None:

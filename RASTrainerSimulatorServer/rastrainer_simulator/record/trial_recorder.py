@@ -13,12 +13,11 @@ from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.stamps import file_stamp, stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
-from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.view_report import ViewReport
+from rastrainer_simulator.record.view_report import NotedReport
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
 
@@ -112,7 +111,7 @@ class TrialRecorder:
         is_due = trial.entries.pending and result.state.tick % FLUSH_TICKS == 0
         return self._submit(trial, is_awaited=False) if is_due and not self._is_stuck else None
 
-    def note_display(self, report: DisplayReport | ViewReport, state: SimulationState) -> None:
+    def note_display(self, report: NotedReport, state: SimulationState) -> None:
         """Record what is seen of the trial, if one is open, and how it is drawn."""
         if self._open is not None and self._registering is None:
             self._open.entries.add_display(report, state)

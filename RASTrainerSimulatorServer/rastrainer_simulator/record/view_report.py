@@ -1,9 +1,11 @@
-"""How the trainee's view is turned during a trial, for its journal."""
+"""How the trainee's view is turned during a trial, and how it is guided, for its journal."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
+
+from rastrainer_simulator.record.display_use import DisplayReport
 
 DECIMALS = 2
 
@@ -36,3 +38,18 @@ class ViewReport:
             "isAutomatic": self.is_automatic,
             "follows": self.follows,
         }
+
+
+@dataclass(frozen=True)
+class GuidanceReport:
+    """How the trainee is guided to the next point in this trial: "words", "arrow" or "none"."""
+
+    guidance: str
+
+    def entry(self) -> dict[str, Any]:
+        """Return what goes into the journal, without its times."""
+        return {"kind": "guidance", "guidance": self.guidance}
+
+
+NotedReport = DisplayReport | ViewReport | GuidanceReport
+"""What is noted of how a trial is seen; the simulation does not depend on it."""

@@ -27,6 +27,7 @@ _NOT_SIMULATED = frozenset(
         "header",
         "display",
         "view",
+        "guidance",
         "stopped",
         "attempt",
         "registration",

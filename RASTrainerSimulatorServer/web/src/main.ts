@@ -208,7 +208,7 @@ export class Page {
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
     this.ring.show(model, state, this.flat.camera, isWorking);
-    this.arrow.show(model, this.flat.camera, isWorking ? state.next : null);
+    this.arrow.show(model, this.flat.camera, isWorking && this.screen?.has_arrow ? state.next : null);
     this.flat.draw(inset !== "");
     this.frames.drawn();
   }

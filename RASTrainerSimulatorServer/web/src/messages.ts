@@ -57,6 +57,7 @@ export interface Screen {
   readonly hints: readonly Hint[];
   readonly language: string;
   readonly is_stepped: boolean;
+  readonly has_arrow: boolean;
 }
 
 export type Triple = readonly [number, number, number];

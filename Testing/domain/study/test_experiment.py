@@ -185,6 +185,22 @@ def test_a_protocol_may_set_the_pass_mark():
         protocol(scoring=shipped["scoring"] | {"passMark": 0})
 
 
+def test_a_protocol_may_set_the_guidance_to_the_next_point(study):
+    assert "guidance" not in protocol().to_json()
+    own = protocol(guidance="arrow")
+    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    progress = StudyProgress(study)
+    progress.begin(own)
+    progress.enroll("T001")
+    progress.skip("T001", "hmd/before/ssq", "questionnaire sheets were missing")
+    step = StudyStep.of("T001", progress.progress("T001"), datetime.now(timezone.utc))
+    assert (step.kind, step.guidance) == ("trial-run", "arrow")
+    arguments = check_arguments(CommandName.STUDY_STEP, step.arguments())
+    assert StudyStep.from_arguments(arguments) == step
+    with pytest.raises(InputError, match="guidance must be one of fading, words, arrow, none"):
+        protocol(guidance="loud")
+
+
 def test_nothing_is_skipped_silently(study):
     progress = StudyProgress(study)
     progress.set_protocol(protocol())

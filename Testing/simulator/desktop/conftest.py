@@ -94,6 +94,7 @@ SCREEN = Screen(
     instruction=ScreenMessage("P07, touch point 2.", Tone.GOOD),
     status=("Task 1", "1 of 3", "00:12"),
     hints=(Hint("A", "Touch"), Hint("B", "Undo")),
+    has_arrow=True,
 )
 
 

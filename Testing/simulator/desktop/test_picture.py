@@ -1,6 +1,7 @@
 """What the window shows of what the simulator says, rendered for real but for a display."""
 
 import asyncio
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -133,6 +134,8 @@ def test_an_arrow_leads_to_a_target_out_of_sight_and_vanishes_when_it_is_seen(sh
     assert len(arrow) > 100
     assert arrow[:, 1].mean() < SIZE[0] / 10
     assert len(found(show()[:, : SIZE[0] // 5], YELLOW)) == 0
+    without = replace(SCREEN, has_arrow=False)
+    assert len(found(show(without, poses=aside)[:, : SIZE[0] // 3], YELLOW)) == 0
 
 
 def test_the_inset_shows_the_other_camera_in_a_white_frame_and_gives_way_to_a_menu(show):

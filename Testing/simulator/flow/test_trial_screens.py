@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+import pytest
+
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
@@ -194,8 +199,53 @@ def test_a_touch_that_is_too_far_is_refused_in_the_chosen_language_and_with_one_
     assert trainee.watcher.kinds.count("error") == 1
 
 
-def test_the_way_to_the_target_is_told_in_words(trainee):
+@pytest.mark.parametrize(
+    ("choice", "task", "guidance"),
+    [
+        ("fading", "trial-run", "words"),
+        ("fading", "task-1", "arrow"),
+        ("fading", "task-2", "arrow"),
+        ("fading", "task-3", "none"),
+        ("words", "task-5", "words"),
+        ("arrow", "trial-run", "arrow"),
+        ("none", "trial-run", "none"),
+    ],
+)
+def test_guidance_fades_from_task_to_task_unless_the_setting_says_otherwise(
+    trainee, outside, choice, task, guidance
+):
+    session = trainee.presenter._session
+    session.prefer(replace(session.preferences, guidance=choice))
+    trainee.start(task)
+    screen = trainee.presenter.screen
+    assert any("mm" in fact for fact in screen.status) is (guidance == "words")
+    assert screen.has_arrow is (guidance != "none")
+    trainee.step(30)
+    trainee.submit("Abort")
+    trainee.close()
+    trainee.loop.stop()
+    (path,) = outside.services.records.glob("*.journal")
+    (entry,) = read_journal(path).of_kind("guidance")
+    assert entry["guidance"] == guidance
+
+
+def test_a_study_sets_its_own_guidance(trainee, outside):
+    outside.services.study.take(StudyStep("P07", "trial", task="task-1", guidance="none"))
+    trainee.start("task-1", "P07")
+    assert not trainee.presenter.screen.has_arrow
+
+
+def test_guidance_cannot_change_during_a_trial(trainee):
     trainee.start("task-1")
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    assert not trainee.item("guidance").is_enabled
+
+
+def test_the_direction_to_the_target_is_shown_in_words_in_the_trial_run(trainee):
+    trainee.start("trial-run")
     target = trainee.loop.truth.in_world(trainee.loop.truth.fiducials["1"])
     away = sum((a - MM_PER_M * b) ** 2 for a, b in zip(target, trainee.tip, strict=True)) ** 0.5
     words = trainee.presenter.screen.status[3].split()

@@ -86,7 +86,7 @@ class TrialRecord:
         touch_rule: Which touches counted, a `TouchRule`; in older records the paper's.
         motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
         display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
-            `droppedFrames`; empty where no view reported it.
+            `droppedFrames`, and the `guidance` to the next point; empty where no view reported it.
     """
 
     trial_id: str

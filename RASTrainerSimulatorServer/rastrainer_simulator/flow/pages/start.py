@@ -5,7 +5,7 @@ from __future__ import annotations
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import ControlsPage, IntroductionPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.session.preferences import OF_THE_SIMULATION, OPTIONS
+from rastrainer_simulator.flow.session.preferences import OF_A_TRIAL, OPTIONS
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
 
 
@@ -80,7 +80,7 @@ class SettingsPage(SessionPage):
         self.session.prefer(self.session.preferences.stepped(item, direction))
 
     def _item(self, name: str) -> MenuItem:
-        waits = self.session.has_open_trial and name in OF_THE_SIMULATION
+        waits = self.session.has_open_trial and name in OF_A_TRIAL
         help_ = self.say("settings.waits") if waits else self.say(f"settings.{name} help")
         return self.choice(name, self._value(name), is_enabled=not waits, help=help_)
 

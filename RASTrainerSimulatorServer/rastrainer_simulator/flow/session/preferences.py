@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
-from rastrainer.protocol import TouchRule
+from rastrainer.protocol import TRIAL_RUN, Guidance, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
@@ -20,6 +20,8 @@ from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
 
 PREFERENCES_FILE = "preferences.json"
 MOST_BYTES = 2**14
+_ARROW_TASKS = 2
+"""How many tasks after the trial run have an arrow, where guidance fades."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -37,6 +39,7 @@ class Preferences:
         direction: who decides the tool's direction.
         touch: whether a touch has to be on the skin.
         view: when the view goes to each next point by itself: "practice" is outside of a study.
+        guidance: how the trainee is guided to the next point, unless a study says otherwise.
     """
 
     language: str = "en"
@@ -49,6 +52,7 @@ class Preferences:
     direction: str = ToolDirection.CLEAR.value
     touch: str = TouchRule.ON_SKIN.value
     view: str = "practice"
+    guidance: str = Guidance.FADING.value
 
     def stepped(self, name: str, direction: int) -> Preferences:
         """Return the preferences with one of them moved to its next or previous option."""
@@ -85,9 +89,11 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
     "direction": tuple(choice.value for choice in ToolDirection),
     "touch": tuple(rule.value for rule in TouchRule),
     "view": ("practice", "always", "never"),
+    "guidance": tuple(choice.value for choice in Guidance),
 }
 
 OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch")
+OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance")
 """Preferences that a running trial must not change: they are in its record."""
 
 
@@ -120,3 +126,13 @@ def write_preferences(path: Path, preferences: Preferences) -> None:
         raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
     write_text(path, json.dumps(dataclasses.asdict(preferences), indent=2) + "\n")
     keep_others_out(path)
+
+
+def faded_guidance(choice: str, task: str, order: Sequence[str]) -> Guidance:
+    """Return the guidance of a task: `choice` is a `Guidance`, `order` names all tasks."""
+    if choice != Guidance.FADING:
+        return Guidance(choice)
+    if task == TRIAL_RUN:
+        return Guidance.WORDS
+    tasks = [name for name in order if name != TRIAL_RUN]
+    return Guidance.ARROW if task in tasks[:_ARROW_TASKS] else Guidance.NONE

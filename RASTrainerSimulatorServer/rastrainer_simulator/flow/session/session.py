@@ -10,7 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
-from rastrainer.protocol import OPEN_PHASES, CommandName, Mode
+from rastrainer.protocol import OPEN_PHASES, CommandName, Guidance, Mode
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.study_step import StudyStep
@@ -22,6 +22,7 @@ from rastrainer_simulator.flow.session.own_score import OwnScore
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
+    faded_guidance,
     write_preferences,
 )
 from rastrainer_simulator.flow.session.progress import DoneTasks
@@ -255,6 +256,13 @@ class TrainingSession:
         if not found:
             raise InputError(self.texts.say("replay.no journal"))
         return TrialLoading(found[0], self._control_loop.setup)
+
+    def guidance(self) -> Guidance:
+        """Return how the trainee is guided in the present trial, by the study or the setting."""
+        training, step = self.training, self.study.step_of(self.training.trainee)
+        choice = step.guidance if step is not None and step.guidance else self.preferences.guidance
+        order = [task.name for task in self.scenario.tasks]
+        return faded_guidance(choice, training.task, order)
 
     def note_done(self) -> None:
         """Count the present trial's task as done."""

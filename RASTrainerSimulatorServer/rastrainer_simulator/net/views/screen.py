@@ -131,6 +131,7 @@ class Screen:
         language: BCP 47 tag of all texts.
         is_stepped: whether a headset's sticks step as in a menu, though none is open: while a trial
             is shown again.
+        has_arrow: whether a view shows an arrow toward a next point that is out of sight.
     """
 
     menu: Menu | None = None
@@ -140,6 +141,7 @@ class Screen:
     hints: tuple[Hint, ...] = ()
     language: str = "en"
     is_stepped: bool = False
+    has_arrow: bool = False
 
 
 def focused_picture(menu: Menu | None) -> str:

@@ -285,6 +285,13 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.view.practice": "By itself, except in a study",
         "settings.view.always": "By itself",
         "settings.view.never": "By its control only",
+        "settings.guidance": "Guidance to the next point",
+        "settings.guidance help": "Directions in words, an arrow, or neither. A study may set its "
+        "own. The record says which.",
+        "settings.guidance.fading": "Less from task to task",
+        "settings.guidance.words": "Words and arrow",
+        "settings.guidance.arrow": "Arrow",
+        "settings.guidance.none": "None",
         "settings.direction": "Direction of the tool",
         "settings.direction help": "Who decides where the tool points: the arm, you or the skin.",
         "settings.direction.free": "Free (position only)",

@@ -378,6 +378,13 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.view.practice": "Von selbst, außer in einer Studie",
         "settings.view.always": "Von selbst",
         "settings.view.never": "Nur auf Tastendruck",
+        "settings.guidance": "Führung zum nächsten Punkt",
+        "settings.guidance help": "Richtungen in Worten, ein Pfeil oder keins von beiden. Eine "
+        "Studie kann es selbst festlegen. Der Datensatz hält es fest.",
+        "settings.guidance.fading": "Von Aufgabe zu Aufgabe weniger",
+        "settings.guidance.words": "Worte und Pfeil",
+        "settings.guidance.arrow": "Pfeil",
+        "settings.guidance.none": "Keine",
         "settings.direction": "Richtung des Werkzeugs",
         "settings.direction help": "Wer bestimmt, wohin das Werkzeug zeigt: der Arm, du oder die "
         "Haut.",

@@ -32,6 +32,7 @@ class Step:
         round: Of the task in this mode, from 1; 0 where none is played.
         questionnaire: That is asked; "" where none is.
         minutes: How long it takes (trial run) or at least takes (break); 0 where that is open.
+        guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Step:
     round: int = 0
     questionnaire: str = ""
     minutes: float = 0.0
+    guidance: str = ""
 
     @property
     def sentence(self) -> str:
@@ -103,6 +105,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
             mode,
             TRIAL_RUN,
             minutes=protocol.trial_run_min,
+            guidance=protocol.guidance,
         )
     is_first = True
     for round_ in range(protocol.repetitions):
@@ -112,7 +115,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
                 minutes = protocol.break_between_tasks_min
                 yield Step(f"{name}/break", StepKind.BREAK, mode, minutes=minutes)
             is_first = False
-            yield Step(name, StepKind.TRIAL, mode, task, round_ + 1)
+            yield Step(name, StepKind.TRIAL, mode, task, round_ + 1, guidance=protocol.guidance)
             yield from _questions(protocol, AFTER_TASK, mode, name)
     yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")
 

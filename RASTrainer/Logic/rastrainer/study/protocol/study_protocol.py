@@ -10,7 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
-from rastrainer.protocol import TRIAL_RUN, Mode
+from rastrainer.protocol import TRIAL_RUN, Guidance, Mode
 from rastrainer.scenario.tasks import is_task_name
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
@@ -29,7 +29,7 @@ READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, SCORE_VERSION)
 """A study started with the first continues with the present one; each score holds its own."""
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
-    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
+    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring", "guidance"),
 )
 
 
@@ -60,6 +60,7 @@ class StudyProtocol:
         references: Of the score, by task; a task without one has that of the scenario.
         score_version: Version of the score that the study was planned with.
         pass_mark: Score that passes; None where the protocol sets none and the default holds.
+        guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
     """
 
     name: str
@@ -76,10 +77,12 @@ class StudyProtocol:
     references: Mapping[str, ScoreReference] = field(default_factory=dict)
     score_version: str = SCORE_VERSION
     pass_mark: float | None = None
+    guidance: str = ""
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
         mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
+        guidance = {"guidance": self.guidance} if self.guidance else {}
         return {
             "formatVersion": FORMAT_VERSION,
             "name": self.name,
@@ -87,6 +90,7 @@ class StudyProtocol:
             "modes": list(self.modes),
             "modeOrder": self.mode_order,
             "tasks": list(self.tasks),
+            **guidance,
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -172,6 +176,9 @@ def _protocol(fields: Fields) -> StudyProtocol:
         else {},
         score_version=version,
         pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
+        guidance=fields.one_of("guidance", tuple(choice.value for choice in Guidance))
+        if "guidance" in fields.names()
+        else "",
     )
     if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MOST_STEPS} trials")

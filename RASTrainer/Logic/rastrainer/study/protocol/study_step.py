@@ -30,6 +30,7 @@ class StudyStep:
         minutes: How long it takes; 0 where that is open.
         over: How many of these minutes are over when it is sent. It is not compared: a step is the
             same step whenever it is sent.
+        guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
     """
 
     trainee: str
@@ -41,6 +42,7 @@ class StudyStep:
     questionnaire: str = ""
     minutes: float = 0.0
     over: float = field(default=0.0, compare=False)
+    guidance: str = ""
 
     @classmethod
     def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:
@@ -58,6 +60,7 @@ class StudyStep:
             questionnaire=step.questionnaire,
             minutes=step.minutes,
             over=min(progress.minutes_over(now), step.minutes),
+            guidance=step.guidance,
         )
 
     @classmethod

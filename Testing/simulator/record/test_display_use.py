@@ -1,0 +1,22 @@
+"""The trial's record says what the trainee looked at, and how they were guided."""
+
+from __future__ import annotations
+
+from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
+
+
+def test_the_record_names_the_last_view_all_frames_and_the_guidance():
+    use = DisplayUse()
+    assert use.summary() == {}
+    use.guidance = "arrow"
+    assert use.summary() == {"guidance": "arrow"}
+    use.add(DisplayReport("page", "Chrome/120", 60.0, 55, 5))
+    use.add(DisplayReport("headset", "Quest 3", 90.0, 88, 2))
+    assert use.summary() == {
+        "kind": "headset",
+        "device": "Quest 3",
+        "guidance": "arrow",
+        "refreshHz": 90.0,
+        "shownFrames": 143,
+        "droppedFrames": 7,
+    }
