@@ -15,6 +15,7 @@ from tools.build_page import install_packages
 
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
 IWER = WEB / "node_modules" / "iwer" / "build" / "iwer.min.js"
+AXE = WEB / "node_modules" / "axe-core" / "axe.min.js"
 # Mesa draws several times faster than Chromium's own software renderer.
 ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"]
 PATIENCE_MS = 60_000
@@ -63,6 +64,13 @@ def emulator() -> str:
     return IWER.read_text(encoding="utf-8")
 
 
+def accessibility_checker() -> str:
+    """Return the script of axe-core, which npm installs for the tests alone."""
+    if not AXE.exists():
+        install_packages()
+    return AXE.read_text(encoding="utf-8")
+
+
 def open_page(
     browser: Browser,
     url: str,
@@ -70,12 +78,14 @@ def open_page(
     headset: str = "",
     has_pad: bool = False,
     size: dict[str, int] = SMALL,
+    has_touch: bool = False,
 ) -> Page:
     """Open the page, pair it by the code in its address, and wait until it shows the scene.
 
     Its `problems` are what went wrong in it, and `loaded` has the bytes of each address.
     """
-    page = browser.new_context(viewport=size, ignore_https_errors=True).new_page()
+    context = browser.new_context(viewport=size, ignore_https_errors=True, has_touch=has_touch)
+    page = context.new_page()
     page.set_default_timeout(PATIENCE_MS)
     page.add_init_script(_FRAMES)
     if headset:

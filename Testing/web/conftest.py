@@ -7,9 +7,14 @@ from Testing.web.chromium import launch
 
 
 @pytest.fixture(scope="module")
-def browser():
-    """A browser that ends with its module: others could run no event loop beside Playwright's."""
-    with sync_playwright() as playwright:
-        browser = launch(playwright)
-        yield browser
-        browser.close()
+def driver():
+    """What starts browsers; ends with its module: others could run no event loop beside it."""
+    with sync_playwright() as driver:
+        yield driver
+
+
+@pytest.fixture(scope="module")
+def browser(driver):
+    browser = launch(driver)
+    yield browser
+    browser.close()

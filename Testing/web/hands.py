@@ -93,6 +93,49 @@ class BrowserPad:
         )
 
 
+class Thumbs:
+    """Two thumbs on a touch screen; menus are tapped (see `TappingTrainee`)."""
+
+    def __init__(self, page: Page):
+        self._page = page
+        self._screen = page.context.new_cdp_session(page)
+        self._thumbs: dict[int, tuple[float, float]] = {}
+
+    def tap(self, control: str) -> None:
+        self._page.tap(f"#touch-controls [data-control={control}]")
+
+    def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
+        button = self._page.query_selector("#touch-controls [aria-pressed]")
+        if fine != (button.get_attribute("aria-pressed") == "true"):
+            self._lift(0)
+            self._lift(1)
+            button.tap()
+        for thumb, across, along in ((0, right, forward), (1, 0.0, up)):
+            if across or along:
+                self._put(thumb, across, along)
+            else:
+                self._lift(thumb)
+
+    def _put(self, thumb: int, across: float, along: float) -> None:
+        box = self._page.query_selector_all("#touch-controls .stick")[thumb].bounding_box()
+        radius = box["width"] / 2
+        is_new = thumb not in self._thumbs
+        middle = box["x"] + radius, box["y"] + radius
+        if is_new:
+            self._thumbs[thumb] = middle
+            self._send("touchStart")
+        self._thumbs[thumb] = middle[0] + across * radius, middle[1] - along * radius
+        self._send("touchMove")
+
+    def _lift(self, thumb: int) -> None:
+        if self._thumbs.pop(thumb, None) is not None:
+            self._send("touchEnd")
+
+    def _send(self, kind: str) -> None:
+        points = [{"id": thumb, "x": x, "y": y} for thumb, (x, y) in self._thumbs.items()]
+        self._screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
 class Controllers:
     """The emulated headset's controllers."""
 

@@ -53,13 +53,15 @@ class Place:
         *arguments: str,
         has_gamepad: bool = False,
         limits: Mapping[str, float] | None = None,
+        language: str = "en",
     ):
         self._stack = ExitStack()
         self._folder = folder
         self.records = folder / "records"
         config = folder / "records-config"
         config.mkdir()
-        (config / "preferences.json").write_text('{"order": "any"}', encoding="utf-8")
+        preferences = {"order": "any", "language": language}
+        (config / "preferences.json").write_text(json.dumps(preferences), encoding="utf-8")
         (config / "limits.json").write_text(json.dumps({"views": limits or {}}), encoding="utf-8")
         key = secrets.token_urlsafe(32)
         options = ["--view-port", "0", "--seed", "7", *arguments]
@@ -89,10 +91,14 @@ class Place:
 
     def carried_trainee(self, hands: object) -> CarriedTrainee:
         """Return one who does the menus by hand and has the tip carried, to be quick."""
+        return CarriedTrainee(self.view, hands, self.client())
+
+    def client(self) -> Client:
+        """Return a client that may command the simulator."""
         client = self._stack.enter_context(Client(port=self.simulator.port))
         hello = {"protocolVersion": PROTOCOL_VERSION, "client": "carrier"}
         assert client.send_command("Hello", hello, timeout=20).ok
-        return CarriedTrainee(self.view, hands, client)
+        return client
 
     def start_slicer(self) -> subprocess.Popen:
         """Start Slicer's side, which scores one trial and ends."""
@@ -164,6 +170,7 @@ class Trainee(StreamTrainee):
     def _type_id(self, page: Page | None) -> None:
         if page is not None:
             self.focus("trainee")
+            page.wait_for_selector("#menu input:focus")
             page.keyboard.type(TRAINEE)
             self.until(lambda: self.value("trainee") == TRAINEE, "the ID")
             return

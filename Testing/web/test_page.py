@@ -12,7 +12,7 @@ from Testing.web.place import WITHOUT_GRAPHICS, Place, scored_trial
 
 LARGEST_PAGE = 1_000_000
 LARGEST_SCENE = 5_000_000
-ACCENT = "#1f74e8"
+ACCENT = "#1b6ad6"
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,7 @@ def test_a_click_chooses_and_the_text_is_what_the_simulator_says(place, page):
     page.click("#menu li[data-name=introduction]")
     trainee.until_menu("introduction")
     page.wait_for_selector("body[data-menu=introduction]")
-    assert page.inner_text("#menu h1") == trainee.menu.title
+    assert page.inner_text("#menu h2") == trainee.menu.title
 
 
 def test_the_introduction_shows_a_picture_of_what_is_held_with_its_inputs_colored(place, page):

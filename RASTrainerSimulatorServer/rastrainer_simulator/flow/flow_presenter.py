@@ -72,6 +72,7 @@ class FlowPresenter:
         self._subscribers: Subscribers[ViewUpdate] = Subscribers()
         self._views: dict[int, Hello] = {}
         self._silent: set[int] = set()
+        self._touched: set[int] = set()
         self._lasting: dict[str, tuple[str, Mapping[str, object]]] = {}
         self._number = 0
         self._sent_sticks = HANDS_OFF
@@ -121,6 +122,7 @@ class FlowPresenter:
         self._choose_mode(self._views.pop(view, None))
         self._silent.discard(view)
         self._view.look(view, None)
+        self._touched.discard(view)
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -146,10 +148,11 @@ class FlowPresenter:
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Take the sticks of XR controllers, and where the eyes above them look."""
-        sticks = OperatorInput(translation, rotation, is_fine)
-        self._view.look(view, yaw_deg)
-        self.controls.set_sticks(self._source(SourceKind.XR, view), sticks)
+        """Take XR controllers' sticks and where the eyes above them look, or a touch screen's."""
+        source = self._sticks_source(view)
+        if source.kind is SourceKind.XR:
+            self._view.look(view, yaw_deg)
+        self.controls.set_sticks(source, OperatorInput(translation, rotation, is_fine))
         self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
@@ -164,19 +167,19 @@ class FlowPresenter:
         name = ControlName(control)
         if self._flow.situation is ControlContext.MENU:
             name = _IN_MENUS.get(name, name)
-        self.controls.press(self._source(SourceKind.XR, view), name)
+        self.controls.press(self._sticks_source(view), name)
         self._settle()
 
     def on_item(self, view: int, name: str) -> None:
         """Take a click on an item of the menu."""
-        if self.controls.allows(self._source(SourceKind.MOUSE, view)):
+        if self.controls.allows(self._hand_source(SourceKind.MOUSE, view)):
             self._session.pages.choose(name)
             self._is_changed = True
             self._settle()
 
     def on_text(self, view: int, name: str, value: str) -> None:
         """Take what now stands in a text item."""
-        if self.controls.allows(self._source(SourceKind.KEYBOARD, view)):
+        if self.controls.allows(self._hand_source(SourceKind.KEYBOARD, view)):
             self._session.pages.write(name, value)
             self._is_changed = True
 
@@ -290,6 +293,18 @@ class FlowPresenter:
         hello = self._views.get(view)
         is_own = hello is not None and hello.kind == "desktop"
         return Source(kind, SIMULATOR_SEAT if is_own else f"view {view}", view)
+
+    def _sticks_source(self, view: int) -> Source:
+        """Return whose sticks a view sends: a page has those on its touch screen."""
+        hello = self._views.get(view)
+        if hello is None or hello.kind != "page":
+            return self._source(SourceKind.XR, view)
+        self._touched.add(view)
+        return self._source(SourceKind.TOUCH_SCREEN, view)
+
+    def _hand_source(self, kind: SourceKind, view: int) -> Source:
+        """Return what an item was chosen or written with: a finger, where one has been seen."""
+        return self._source(SourceKind.TOUCH_SCREEN if view in self._touched else kind, view)
 
     def _types(self, source: Source, code: str, text: str) -> bool:
         """Let a key type into the text that has the focus; return whether it did."""

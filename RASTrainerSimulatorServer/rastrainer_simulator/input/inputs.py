@@ -98,6 +98,7 @@ class SourceKind(str, Enum):
     GAMEPAD = "gamepad"
     KEYBOARD = "keyboard"
     MOUSE = "mouse"
+    TOUCH_SCREEN = "touch screen"
     BROWSER_GAMEPAD = "browser's gamepad"
     XR = "headset's controllers"
 

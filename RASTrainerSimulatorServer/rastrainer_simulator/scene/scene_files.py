@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
+import gzip
 import hashlib
 import json
 import os
@@ -92,6 +94,8 @@ def _users_caches() -> Path:
 
 
 NO_TASK = ""
+GZIP_LEVEL = 6
+"""Higher levels take longer and save less than one percent."""
 _HEADER = struct.Struct("<4sII")
 
 
@@ -217,6 +221,19 @@ def read_scene(file: SceneFile) -> bytes | None:
     except OSError:
         return None
     return content if hashlib.sha256(content).hexdigest() == file.sha256 else None
+
+
+@functools.lru_cache(maxsize=2)
+def gzipped_scene(file: SceneFile) -> tuple[bytes, int]:
+    """Return the content compressed, half as large, and how large it was; takes 0.2 s at first.
+
+    Raises:
+        LookupError: the file is not any more what it was.
+    """
+    content = read_scene(file)
+    if content is None:
+        raise LookupError(file.path)
+    return gzip.compress(content, GZIP_LEVEL, mtime=0), len(content)
 
 
 def _sha256_of_glb(path: Path) -> str | None:

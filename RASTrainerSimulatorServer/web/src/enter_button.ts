@@ -1,6 +1,6 @@
 /** The button that leads into the headset, where there is one. */
 
-import { byId } from "./overlay";
+import { byId } from "./elements";
 import { say } from "./texts";
 
 export class EnterButton {

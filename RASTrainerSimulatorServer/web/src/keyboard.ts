@@ -3,7 +3,10 @@
 import type { Connection } from "./connection";
 
 /** These stay the browser's own. */
-const BROWSERS = new Set(["F3", "F5", "F6", "F11", "F12", "MetaLeft", "MetaRight", "AltLeft"]);
+const BROWSERS = new Set(["F3", "F5", "F6", "F11", "F12", "MetaLeft", "MetaRight", "AltLeft", "Tab"]);
+/** What a field does with keys that type nothing. */
+const EDITS = new Set(["Backspace", "Delete", "ArrowLeft", "ArrowRight", "Home", "End"]);
+const PRESSES = new Set(["Enter", "NumpadEnter", "Space"]);
 const LONGEST_TEXT = 16;
 
 export class Keyboard {
@@ -11,7 +14,11 @@ export class Keyboard {
 
   constructor(private readonly connection: Connection) {
     window.addEventListener("keydown", (event) => this.press(event));
-    window.addEventListener("keyup", (event) => this.release(event.code));
+    window.addEventListener("keyup", (event) => {
+      // Some browsers press a button only when the key comes up.
+      if (this.held.has(event.code)) event.preventDefault();
+      this.release(event.code);
+    });
     // Its release will go to another window: the arm must not run on.
     window.addEventListener("blur", () => this.releaseAll());
     document.addEventListener("visibilitychange", () => this.releaseAll());
@@ -23,10 +30,8 @@ export class Keyboard {
 
   private press(event: KeyboardEvent): void {
     const isForBrowser = event.ctrlKey || event.metaKey || event.altKey;
-    const isTyping = event.target instanceof HTMLInputElement;
-    if (isForBrowser || isTyping || event.code === "" || BROWSERS.has(event.code)) return;
-    const isOfPage = event.target instanceof HTMLButtonElement && event.code === "Tab";
-    if (!isOfPage) event.preventDefault();
+    if (isForBrowser || event.code === "" || BROWSERS.has(event.code) || isOfElement(event)) return;
+    event.preventDefault();
     this.held.add(event.code);
     const text = event.key.length <= 2 ? event.key.slice(0, LONGEST_TEXT) : "";
     this.connection.send("key", { code: event.code, isDown: true, text });
@@ -40,4 +45,14 @@ export class Keyboard {
   private releaseAll(): void {
     for (const code of [...this.held]) this.release(code);
   }
+}
+
+/** Tell whether a key is for the field or the button that has the focus. */
+function isOfElement({ target, key, code }: KeyboardEvent): boolean {
+  if (target instanceof HTMLInputElement) {
+    const isInMenu = target.closest("#menu") !== null;
+    return !isInMenu || [...key].length === 1 || EDITS.has(key) || key === "Process" || key === "Dead";
+  }
+  // The simulator presses the button that has its focus: it knows that the keyboard did.
+  return target instanceof HTMLButtonElement && PRESSES.has(code) && target.closest("[data-focus]") === null;
 }

@@ -1,13 +1,15 @@
 /** The page: joins the simulator, shows what it says, and tells what is pressed. */
 
 import { Connection, isPaired } from "./connection";
+import { byId } from "./elements";
 import { EnterButton } from "./enter_button";
 import { FlatView } from "./flat_view";
 import { FrameCount } from "./frame_count";
 import { Gamepads } from "./gamepads";
 import { Keyboard } from "./keyboard";
 import { isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "./messages";
-import { byId, Overlay } from "./overlay";
+import { Loading } from "./loading";
+import { Overlay } from "./overlay";
 import { pair } from "./pairing";
 import { PoseStream } from "./pose_stream";
 import { loadScene, type SceneModel } from "./scene_model";
@@ -15,6 +17,7 @@ import { Sounds } from "./sounds";
 import { Stage } from "./stage";
 import { TargetArrow } from "./target_arrow";
 import { say, useLanguage } from "./texts";
+import { TouchControls } from "./touch_controls";
 import { TouchRing } from "./touch_ring";
 import { ViewMouse } from "./view_mouse";
 import { Headset } from "./xr/headset";
@@ -23,18 +26,21 @@ export class Page {
   private readonly connection = new Connection(PAGE, {
     onNews: (news) => this.take(news),
     onConnected: (isConnected) => this.connected(isConnected),
-    onUnknown: () => void this.begin(),
+    onUnknown: () => void this.begin(true),
   });
-  private readonly stage = new Stage(byId("picture") as HTMLCanvasElement);
-  private readonly flat = new FlatView(this.stage, byId("inset"));
+  /** Null where the browser cannot draw: menus and results are read all the same. */
+  private readonly stage = Stage.on(byId("picture") as HTMLCanvasElement);
+  private readonly flat = this.stage && new FlatView(this.stage, byId("inset"));
   private readonly overlay = new Overlay(this.connection);
   private readonly keyboard = new Keyboard(this.connection);
   private readonly mouse = new ViewMouse(byId("picture"), this.connection);
   private readonly pads = new Gamepads(this.connection);
+  private readonly touch = new TouchControls(this.connection);
   private readonly sounds = new Sounds();
   private readonly frames = new FrameCount(this.connection);
   private readonly arrow = new TargetArrow();
-  private readonly ring = new TouchRing(this.stage.scene);
+  private readonly ring = this.stage && new TouchRing(this.stage.scene);
+  private readonly loading = new Loading();
   private readonly enter = new EnterButton((session) => void this.enterHeadset(session));
   private headset: Headset | null = null;
   private screen: Screen | null = null;
@@ -48,26 +54,32 @@ export class Page {
 
   constructor() {
     this.connection.isHolding = () =>
-      this.keyboard.isHolding || this.pads.isHolding || (this.headset?.isHolding ?? false);
+      this.keyboard.isHolding || this.pads.isHolding || this.touch.isHolding || (this.headset?.isHolding ?? false);
     document.addEventListener("visibilitychange", () => {
       const isSeen = this.headset !== null || !document.hidden;
-      if (!isSeen) this.pads.release();
+      if (!isSeen) {
+        this.pads.release();
+        this.touch.release();
+      }
       this.connection.send("visibility", { isVisible: isSeen });
     });
-    this.stage.setQuality(this.stage.affordable);
-    this.stage.renderer.setAnimationLoop((now, frame) => this.turn(now, frame));
+    this.label();
+    const { stage } = this;
+    if (stage === null) return;
+    stage.setQuality(stage.affordable);
+    stage.renderer.setAnimationLoop((now, frame) => this.turn(stage, now, frame));
   }
 
   /** Pair if need be, and join. */
-  async begin(): Promise<void> {
-    if (!(await isPaired())) await pair(byId("pairing") as HTMLFormElement);
+  async begin(wasPaired = false): Promise<void> {
+    if (!(await isPaired())) await pair(byId("pairing") as HTMLFormElement, wasPaired);
     this.connection.start();
     await this.sounds.load();
   }
 
   private connected(isConnected: boolean): void {
     const notice = isConnected ? "" : say("lost");
-    this.overlay.setNotice(notice);
+    this.overlay.setNotice(notice !== "" || this.stage !== null ? notice : say("noPicture"));
     this.headset?.setNotice(notice);
     this.lastEvent = 0;
   }
@@ -88,8 +100,9 @@ export class Page {
         this.screen = news.screen;
         this.isDue = true;
         useLanguage(news.screen.language);
-        this.enter.label();
+        this.label();
         this.overlay.show(news.screen);
+        this.touch.show(news.screen);
         this.headset?.showScreen(news.screen);
         break;
       case "control":
@@ -106,31 +119,44 @@ export class Page {
     }
   }
 
+  /** Name in the present language what the page itself names. */
+  private label(): void {
+    byId("picture").setAttribute("aria-label", say("view"));
+    byId("status").setAttribute("aria-label", say("status"));
+    this.enter.label();
+  }
+
   private async load(news: SceneNews): Promise<void> {
     const isKnown = news.url === this.scene?.url;
     this.scene = news;
+    const { stage } = this;
+    if (stage === null) return;
     if (isKnown) {
-      this.useScene();
+      this.useScene(stage);
       return;
     }
+    const isWanted = () => news.url === this.scene?.url;
     try {
-      const model = await loadScene(news, this.bodies);
-      if (news.url !== this.scene?.url) return;
-      this.stage.show(model);
-      this.useScene();
+      const model = await loadScene(news, this.bodies, (loaded, total) => {
+        if (isWanted()) this.loading.show(loaded, total);
+      });
+      if (!isWanted()) return;
+      this.loading.hide();
+      stage.show(model);
+      this.useScene(stage);
       document.body.dataset.scene = news.task || "none";
     } catch {
+      this.loading.hide();
       if (this.scene === news) this.scene = null;
       this.overlay.setNotice(say("noScene"));
     }
   }
 
   /** Take what goes with the file, such as the cameras: it may change while the file stays. */
-  private useScene(): void {
-    const { model } = this.stage;
+  private useScene({ model }: Stage): void {
     if (model === null || this.scene === null || model.news.url !== this.scene.url) return;
     model.news = this.scene;
-    this.flat.take(this.scene);
+    this.flat?.take(this.scene);
     this.isDue = true;
   }
 
@@ -150,6 +176,7 @@ export class Page {
 
   private async enterHeadset(session: XRSession): Promise<void> {
     const { stage, connection, sounds, frames } = this;
+    if (stage === null) return;
     sounds.unlock();
     stage.setQuality("low");
     const leave = () => void session.end();
@@ -166,7 +193,7 @@ export class Page {
   private leaveHeadset(): void {
     this.headset?.end();
     this.headset = null;
-    this.stage.setQuality(this.stage.affordable);
+    this.stage?.setQuality(this.stage.affordable);
     this.frames.reset();
     this.connection.rejoin(PAGE);
     this.enter.setInside(false);
@@ -174,42 +201,42 @@ export class Page {
     delete document.body.dataset.headset;
   }
 
-  private turn(nowMs: number, frame?: XRFrame): void {
+  private turn(stage: Stage, nowMs: number, frame?: XRFrame): void {
     const now = nowMs / 1000;
     this.pads.poll();
     this.frames.asked(nowMs);
     this.frames.tell(nowMs);
-    const { state } = this;
-    const { model } = this.stage;
-    if (state === null || model === null) return;
+    const { state, flat } = this;
+    const { model } = stage;
+    if (state === null || model === null || flat === null) return;
     if (this.headset !== null) {
       if (frame === undefined) return;
       this.poses.place(model.bodies, performance.now() / 1000);
       model.mark(state);
       model.pulse(now);
-      this.ring.show(model, state, this.stage.renderer.xr.getCamera(), this.screen?.menu == null);
+      this.ring?.show(model, state, stage.renderer.xr.getCamera(), this.screen?.menu == null);
       this.headset.draw(now, frame, model);
       this.frames.drawn();
     } else {
-      this.drawFlat(now, model, state);
+      this.drawFlat(flat, now, model, state);
     }
   }
 
-  private drawFlat(now: number, model: SceneModel, state: StateNews): void {
+  private drawFlat(flat: FlatView, now: number, model: SceneModel, state: StateNews): void {
     if (this.screen?.menu == null) this.mouse.tell();
-    this.flat.choose(state, now);
-    const hasMoved = this.flat.fit() || this.flat.advance(now) || this.isDue;
+    flat.choose(state, now);
+    const hasMoved = flat.fit() || flat.advance(now) || this.isDue;
     if (!model.pulse(now) && !hasMoved) return;
     this.isDue = false;
     this.poses.place(model.bodies, performance.now() / 1000);
     model.mark(state);
     const isWorking = this.screen?.menu == null;
-    const inset = isWorking ? this.flat.insetName : "";
+    const inset = isWorking ? flat.insetName : "";
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
-    this.ring.show(model, state, this.flat.camera, isWorking);
-    this.arrow.show(model, this.flat.camera, isWorking && this.screen?.has_arrow ? state.next : null);
-    this.flat.draw(inset !== "");
+    this.ring?.show(model, state, flat.camera, isWorking);
+    this.arrow.show(model, flat.camera, isWorking && this.screen?.has_arrow ? state.next : null);
+    flat.draw(inset !== "");
     this.frames.drawn();
   }
 }

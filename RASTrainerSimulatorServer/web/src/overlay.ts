@@ -2,7 +2,9 @@
 
 import { BESIDE } from "./flat_view";
 import type { Connection } from "./connection";
-import type { ControlNews, Item, Menu, Message, PairingNews, Screen } from "./messages";
+import { byId, element } from "./elements";
+import { MenuView } from "./menu_view";
+import type { ControlNews, Menu, Message, PairingNews, Screen } from "./messages";
 import { controlsPicture, inputsOf } from "./panels/controls_picture";
 import { trendPlot } from "./panels/trend_plot";
 import { say, sayHolder } from "./texts";
@@ -16,8 +18,11 @@ export class Overlay {
   private holder = "";
   private facts: readonly string[] = [];
   private pairing: PairingNews | null = null;
+  private readonly menuView: MenuView;
 
-  constructor(private readonly connection: Connection) {}
+  constructor(connection: Connection) {
+    this.menuView = new MenuView(connection);
+  }
 
   show(screen: Screen): void {
     document.body.dataset.menu = screen.menu?.name ?? "";
@@ -105,86 +110,6 @@ export class Overlay {
     const { menu } = this;
     let drawn = menu?.picture === "controls" ? controlsPicture(this.holder, inputsOf(menu)) : "";
     if (menu?.trend) drawn = trendPlot(menu.trend);
-    this.part("menu", [menu, drawn], (parent) => this.fillMenu(parent, menu, drawn));
+    this.menuView.show(menu, drawn);
   }
-
-  private fillMenu(parent: HTMLElement, menu: Menu | null, drawn: string): void {
-    parent.hidden = menu === null;
-    if (menu === null) return;
-    parent.className = drawn !== "" ? "pictured" : menu.facts.length > 0 ? "wide" : "";
-    if (drawn !== "") parent.append(drawing(drawn, menu.trend?.text ?? say("picture")));
-    parent.append(element("h1", menu.title));
-    parent.append(...menu.paragraphs.map((text) => element("p", text)));
-    if (menu.facts.length > 0) parent.append(factsOf(menu));
-    const focused = menu.items.find((item) => item.name === menu.focus);
-    if (focused?.picture) parent.append(picture(focused));
-    const list = element("ul", "");
-    list.setAttribute("role", "listbox");
-    list.append(...menu.items.map((item) => this.line(item, item.name === menu.focus)));
-    parent.append(list);
-    const help = element("p", focused?.help ?? "");
-    help.className = "help";
-    parent.append(help);
-    // The last menu may have been scrolled down: a title is seen wherever the focus leaves room.
-    parent.scrollTop = 0;
-    list.querySelector('[aria-selected="true"]')?.scrollIntoView({ block: "nearest" });
-  }
-
-  private line(item: Item, hasFocus: boolean): HTMLElement {
-    const line = element("li", item.label);
-    line.setAttribute("role", "option");
-    line.setAttribute("aria-selected", String(hasFocus));
-    line.setAttribute("aria-disabled", String(!item.is_enabled));
-    line.dataset.name = item.name;
-    line.dataset.kind = item.kind;
-    if (item.kind === "axis") line.append(axis(Number(item.value)));
-    else if (item.kind !== "button" || item.value !== "") line.append(element("b", item.value));
-    line.onclick = () => {
-      if (item.is_enabled) this.connection.send("item", { name: item.name });
-    };
-    return line;
-  }
-}
-
-export function byId(id: string): HTMLElement {
-  return document.getElementById(id)!;
-}
-
-function element(tag: string, text: string): HTMLElement {
-  const made = document.createElement(tag);
-  made.textContent = text;
-  return made;
-}
-
-function drawing(source: string, name: string): HTMLImageElement {
-  const image = new Image();
-  image.src = source;
-  image.alt = name;
-  return image;
-}
-
-function factsOf(menu: Menu): HTMLElement {
-  const table = element("dl", "");
-  for (const fact of menu.facts) {
-    const value = element("dd", fact.value);
-    value.dataset.tone = fact.tone;
-    table.append(element("dt", fact.label), value);
-  }
-  return table;
-}
-
-function picture(item: Item): HTMLImageElement {
-  const image = document.createElement("img");
-  image.className = "head";
-  image.src = item.picture;
-  image.alt = item.label;
-  return image;
-}
-
-function axis(position: number): HTMLMeterElement {
-  const meter = document.createElement("meter");
-  meter.min = -1;
-  meter.max = 1;
-  meter.value = Number.isFinite(position) ? position : 0;
-  return meter;
 }

@@ -142,9 +142,13 @@ function tipColor(stage: TouchStage): Color {
   return stage === "on skin" ? COLORS.onSkin : stage === "near" ? COLORS.near : COLORS.free;
 }
 
-/** Load the scene that `news` tells of. */
-export async function loadScene(news: SceneNews, bodies: readonly string[]): Promise<SceneModel> {
-  const file = await new GLTFLoader().loadAsync(news.url);
+/** Load the scene that `news` tells of; `onProgress` is told the bytes that are there, and of how many. */
+export async function loadScene(
+  news: SceneNews,
+  bodies: readonly string[],
+  onProgress: (loaded: number, total: number) => void,
+): Promise<SceneModel> {
+  const file = await new GLTFLoader().loadAsync(news.url, ({ loaded, total }) => onProgress(loaded, total));
   return new SceneModel(file.scene, news, bodies);
 }
 

@@ -26,15 +26,22 @@ const SOFTWARE = /llvmpipe|softpipe|swiftshader|software/i;
 export type Quality = "high" | "low";
 
 export class Stage {
-  readonly renderer: WebGLRenderer;
   readonly scene = new Scene();
   /** In World: x forward, y left, z up. */
   readonly world = new Object3D();
   model: SceneModel | null = null;
   private readonly sun = new DirectionalLight(0xfff6ea, 2.0);
 
-  constructor(canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+  /** Return a stage that draws on a canvas; null where the browser has no WebGL. */
+  static on(canvas: HTMLCanvasElement): Stage | null {
+    try {
+      return new Stage(new WebGLRenderer({ canvas, antialias: true }));
+    } catch {
+      return null;
+    }
+  }
+
+  private constructor(readonly renderer: WebGLRenderer) {
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene.background = SKY;

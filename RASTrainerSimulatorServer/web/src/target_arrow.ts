@@ -2,7 +2,7 @@
 
 import { type PerspectiveCamera, Vector3 } from "three";
 
-import { byId } from "./overlay";
+import { byId } from "./elements";
 import type { SceneModel } from "./scene_model";
 import { yUp } from "./viewpoint";
 

@@ -9,6 +9,17 @@ const ENGLISH = {
   lost: "The connection to the simulator is lost. It is joined again as soon as it answers.",
   connecting: "Joining the simulator …",
   noScene: "The scene cannot be loaded. Reload the page.",
+  noPicture:
+    "This browser cannot draw the 3D picture (WebGL is missing or switched off). Menus and results work; to train, use another browser.",
+  loading: "Loading the scene: {loaded} of {total} MB",
+  loadingSome: "Loading the scene: {loaded} MB",
+  scene: "Scene",
+  view: "Robot, head and operating room",
+  status: "Status",
+  wrongCode: "This is not the pairing code that the simulator shows.",
+  newCode: "There were too many wrong codes. The simulator now shows a new code: enter it in {seconds} s.",
+  oldCode: "The pairing code in the address is no longer valid. Enter the code that the simulator shows now.",
+  restarted: "The simulator does not know this browser anymore. Enter the code that it shows now.",
   enter: "Enter the headset",
   leave: "Leave the headset",
   noHeadset: "No headset here",
@@ -26,6 +37,14 @@ const ENGLISH = {
   beside: "Along the skin",
   pairing: "To pair another view: code {code} at {address}",
   picture: "Which input is where",
+  "touch.touch": "Touch",
+  "touch.undo": "Undo",
+  "touch.camera": "Front view",
+  "touch.best_view": "Best view",
+  "touch.menu": "Pause",
+  "touch.fine": "Slow",
+  "touch.left": "Left, right, forward, back",
+  "touch.right": "Up, down, turn",
   "part.cross": "D-pad",
   "part.leftStick": "Left stick",
   "part.rightStick": "Right stick",
@@ -41,6 +60,7 @@ const ENGLISH = {
   "source.gamepad": "gamepad",
   "source.keyboard": "keyboard",
   "source.mouse": "mouse",
+  "source.touch screen": "touch screen",
   "source.browser's gamepad": "browser's gamepad",
   "source.headset's controllers": "headset's controllers",
 };
@@ -54,6 +74,17 @@ const GERMAN: typeof ENGLISH = {
   lost: "Die Verbindung zum Simulator ist unterbrochen. Sobald er antwortet, geht es weiter.",
   connecting: "Verbindung zum Simulator …",
   noScene: "Die Szene kann nicht geladen werden. Lade die Seite neu.",
+  noPicture:
+    "Dieser Browser kann das 3D-Bild nicht zeichnen (WebGL fehlt oder ist abgeschaltet). Menüs und Ergebnisse funktionieren; nimm zum Üben einen anderen Browser.",
+  loading: "Die Szene wird geladen: {loaded} von {total} MB",
+  loadingSome: "Die Szene wird geladen: {loaded} MB",
+  scene: "Szene",
+  view: "Roboter, Kopf und Operationssaal",
+  status: "Status",
+  wrongCode: "Das ist nicht der Kopplungscode, den der Simulator zeigt.",
+  newCode: "Es gab zu viele falsche Codes. Der Simulator zeigt jetzt einen neuen Code: Gib ihn in {seconds} s ein.",
+  oldCode: "Der Kopplungscode in der Adresse gilt nicht mehr. Gib den Code ein, den der Simulator jetzt zeigt.",
+  restarted: "Der Simulator kennt diesen Browser nicht mehr. Gib den Code ein, den er jetzt zeigt.",
   enter: "Ins Headset wechseln",
   leave: "Headset verlassen",
   noHeadset: "Kein Headset vorhanden",
@@ -71,6 +102,14 @@ const GERMAN: typeof ENGLISH = {
   beside: "Entlang der Haut",
   pairing: "Weitere Ansicht koppeln: Code {code} auf {address}",
   picture: "Wo welche Eingabe liegt",
+  "touch.touch": "Berühren",
+  "touch.undo": "Zurücknehmen",
+  "touch.camera": "Von vorn",
+  "touch.best_view": "Beste Ansicht",
+  "touch.menu": "Pause",
+  "touch.fine": "Langsam",
+  "touch.left": "Links, rechts, vor, zurück",
+  "touch.right": "Auf, ab, drehen",
   "part.cross": "Steuerkreuz",
   "part.leftStick": "Linker Stick",
   "part.rightStick": "Rechter Stick",
@@ -86,6 +125,7 @@ const GERMAN: typeof ENGLISH = {
   "source.gamepad": "Gamepad",
   "source.keyboard": "Tastatur",
   "source.mouse": "Maus",
+  "source.touch screen": "Touchscreen",
   "source.browser's gamepad": "Gamepad des Browsers",
   "source.headset's controllers": "Controller des Headsets",
 };
@@ -93,12 +133,14 @@ const GERMAN: typeof ENGLISH = {
 export type TextName = keyof typeof ENGLISH;
 
 const TABLES: Readonly<Record<string, typeof ENGLISH>> = { en: ENGLISH, de: GERMAN };
-let table = TABLES[navigator.language.slice(0, 2)] ?? ENGLISH;
+let table = ENGLISH;
+useLanguage(navigator.language);
 
-/** Speak the language that the simulator's texts are in. */
+/** Speak the language that the simulator's texts are in; English where there is no table of it. */
 export function useLanguage(tag: string): void {
-  table = TABLES[tag.slice(0, 2)] ?? ENGLISH;
-  document.documentElement.lang = tag;
+  const language = tag.slice(0, 2);
+  table = TABLES[language] ?? ENGLISH;
+  document.documentElement.lang = language in TABLES ? tag : "en";
 }
 
 export function say(name: TextName, values: Readonly<Record<string, string>> = {}): string {

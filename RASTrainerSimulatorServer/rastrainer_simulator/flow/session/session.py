@@ -45,6 +45,8 @@ from rastrainer_simulator.vectors import Vector
 NOTICE_S = 5.0
 SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""
+_OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
+"""Whose inputs have other names than those of a gamepad, and how the keys of their texts begin."""
 
 
 @dataclass(frozen=True)
@@ -305,9 +307,9 @@ class TrainingSession:
     def label(self, control: ControlName) -> str:
         """Return the first input of a control on what the operator has in their hands."""
         holder = self._controls.holder
-        of_headset = f"headset.{control.value}"
-        if holder is not None and holder.kind is SourceKind.XR and of_headset in self.texts:
-            return self.texts.say(of_headset)
+        own = "" if holder is None else f"{_OWN_LABELS.get(holder.kind, '')}.{control.value}"
+        if own in self.texts:
+            return self.texts.say(own)
         return self.input_label(self.device, self.bindings.table(self.device)[control][0])
 
     def pair_label(self, first: ControlName, second: ControlName) -> str:

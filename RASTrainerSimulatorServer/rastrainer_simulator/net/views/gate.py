@@ -80,12 +80,9 @@ class Gate:
     async def pair(self, request: web.Request) -> web.Response:
         """Give a key, and a cookie with it, for the pairing code."""
         code = await _code(request)
-        wait = self._code.seconds_to_wait()
-        if wait > 0:
-            raise web.HTTPTooManyRequests(
-                text=TOO_MANY, headers={hdrs.RETRY_AFTER: str(math.ceil(wait))}
-            )
+        self._check_pause()
         if not self._code.accepts(code):
+            self._check_pause()
             raise web.HTTPForbidden(text=WRONG)
         key = self._sessions.open()
         response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
@@ -93,6 +90,13 @@ class Gate:
             COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
         )
         return response
+
+    def _check_pause(self) -> None:
+        """Refuse while no code is looked at; whoever has made the pause hears of the new code."""
+        wait = self._code.seconds_to_wait()
+        if wait > 0:
+            headers = {hdrs.RETRY_AFTER: str(math.ceil(wait))}
+            raise web.HTTPTooManyRequests(text=TOO_MANY, headers=headers)
 
 
 def _is_public(request: web.Request) -> bool:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gzip
 import socket
 import ssl
 from collections.abc import Callable
 from ipaddress import ip_address
 from pathlib import Path
 
-from aiohttp import WSCloseCode, WSMsgType, web
+from aiohttp import WSCloseCode, WSMsgType, hdrs, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
@@ -26,9 +27,10 @@ from rastrainer_simulator.net.views.pairing import PairingCode, Sessions
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views
-from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, read_scene
+from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
 
 FOREVER = "private, max-age=31536000, immutable"
+FULL_SIZE = "X-File-Size"
 FULL = "As many views as can be served are connected."
 HELLO_FIRST = "The first message of a view must be a hello."
 LARGEST_BODY = 1024
@@ -168,14 +170,19 @@ class ViewServer:
 
     async def _send_scene(self, request: web.Request) -> web.Response:
         file = self._scenes.find(request.match_info["sha256"])
-        content = None if file is None else await asyncio.to_thread(read_scene, file)
-        if content is None:
+        if file is None:
             raise web.HTTPNotFound
-        return web.Response(
-            body=content,
-            content_type="model/gltf-binary",
-            headers={"Cache-Control": FOREVER},
-        )
+        headers = {hdrs.CACHE_CONTROL: FOREVER, hdrs.VARY: hdrs.ACCEPT_ENCODING}
+        try:
+            content, size = await asyncio.to_thread(gzipped_scene, file)
+        except LookupError:
+            raise web.HTTPNotFound from None
+        if "gzip" in request.headers.get(hdrs.ACCEPT_ENCODING, ""):
+            # The size is for whoever shows how much of it has come.
+            headers |= {hdrs.CONTENT_ENCODING: "gzip", FULL_SIZE: str(size)}
+        else:
+            content = await asyncio.to_thread(gzip.decompress, content)
+        return web.Response(body=content, content_type="model/gltf-binary", headers=headers)
 
     async def _send_sound(self, request: web.Request) -> web.StreamResponse:
         path = asset_path("sounds", f"{request.match_info['name']}.wav")

@@ -5,7 +5,7 @@ import type { Tone } from "../messages";
 export const COLORS = {
   night: "#0e1726",
   row: "#1f2837",
-  accent: "#1f74e8",
+  accent: "#1b6ad6",
   accentEdge: "#bfdbff",
   field: "#0a111d",
   edge: "#37445a",

@@ -58,8 +58,11 @@ def test_sounds_are_wav_files(served):
 
 def test_five_wrong_codes_make_a_new_one_and_a_pause(served):
     first = served.code
-    for _ in range(5):
+    for _ in range(4):
         assert pair(served, wrong(first))[0] == 403
+    status, headers, told = pair(served, wrong(first))
+    assert (status, int(headers["Retry-After"])) == (429, 1)
+    assert b"new code" in told
     assert served.new_codes == [served.code]
     status, headers, _ = pair(served, served.code)
     assert (status, int(headers["Retry-After"])) == (429, 1)

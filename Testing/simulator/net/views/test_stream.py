@@ -86,6 +86,20 @@ def test_the_scene_is_named_after_its_content_and_fits_the_scenario(served, conn
         assert scene["cameras"][name]["viewAngleDeg"] == camera.view_angle_deg
 
 
+def test_a_scene_comes_half_as_large_to_whoever_takes_gzip_and_tells_its_size(served, connect):
+    view = connect(served)
+    view.join()
+    url = view.next("scene")["url"]
+    key = {"Authorization": f"Bearer {served.new_key()}"}
+    headers, whole = request(served.url, url, headers={**key, "Accept-Encoding": "identity"})[1:]
+    assert int(headers["Content-Length"]) == len(whole)
+    headers, unpacked = request(served.url, url, headers={**key, "Accept-Encoding": "gzip"})[1:]
+    assert (headers["Content-Encoding"], headers["Vary"]) == ("gzip", "Accept-Encoding")
+    assert unpacked == whole
+    assert int(headers["X-File-Size"]) == len(whole)
+    assert int(headers["Content-Length"]) < 0.6 * len(whole)
+
+
 def test_a_scene_that_never_was_is_not_found(served):
     headers = {"Authorization": f"Bearer {served.new_key()}"}
     assert request(served.url, f"/scene/{'0' * 64}.glb", headers=headers)[0] == 404

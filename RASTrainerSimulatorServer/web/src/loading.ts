@@ -1,0 +1,41 @@
+/** How far the scene has come, in megabytes. */
+
+import { byId, element } from "./elements";
+import { say } from "./texts";
+
+const MB = 1e6;
+
+export class Loading {
+  private readonly place = byId("loading");
+  private readonly text = element("span", "");
+  private readonly bar = element("progress", "");
+
+  constructor() {
+    this.place.append(this.text, this.bar);
+  }
+
+  /** Show so many bytes of `total`, 0 where that is not known. */
+  show(loaded: number, total: number): void {
+    this.place.hidden = false;
+    const known = { loaded: megabytes(loaded), total: megabytes(total) };
+    this.text.textContent = total > 0 ? say("loading", known) : say("loadingSome", known);
+    this.bar.setAttribute("aria-label", say("scene"));
+    if (total > 0) {
+      this.bar.max = total;
+      this.bar.value = loaded;
+    } else {
+      this.bar.removeAttribute("value");
+    }
+  }
+
+  hide(): void {
+    this.place.hidden = true;
+  }
+}
+
+function megabytes(bytes: number): string {
+  return (bytes / MB).toLocaleString(document.documentElement.lang, {
+    minimumFractionDigits: 1,
+    maximumFractionDigits: 1,
+  });
+}

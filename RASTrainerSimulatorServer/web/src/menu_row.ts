@@ -1,0 +1,116 @@
+/** One item of a menu: a button, a field or a meter, with the name that a screen reader says. */
+
+import type { Connection } from "./connection";
+import { element } from "./elements";
+import type { Item } from "./messages";
+
+/** What was typed and has not come back from the simulator for so long was not taken. */
+const ANSWER_MS = 1000;
+const LONGEST = 200;
+
+export class MenuRow {
+  readonly line = element("li", "");
+  private readonly label = element("span", "");
+  private readonly value: HTMLElement;
+  /** What can have the focus; a meter cannot. */
+  private readonly control: HTMLButtonElement | HTMLInputElement | null;
+  private item: Item;
+  private typed = -Infinity;
+  /** Whether the focus comes from the simulator, which then need not be told of it. */
+  private isFollowing = false;
+
+  constructor(
+    item: Item,
+    private readonly connection: Connection,
+  ) {
+    this.item = item;
+    this.line.dataset.name = item.name;
+    this.line.dataset.kind = item.kind;
+    if (item.kind === "axis") {
+      this.control = null;
+      this.value = meter();
+      this.line.append(this.label, this.value);
+    } else if (item.kind === "text") {
+      this.value = this.control = this.field();
+      const label = element("label", "");
+      label.append(this.label, this.value);
+      this.line.append(label);
+    } else {
+      this.value = element("b", "");
+      this.control = this.button();
+      this.line.append(this.control);
+    }
+    this.control?.setAttribute("aria-describedby", "menu-help");
+  }
+
+  show(item: Item, hasFocus: boolean): void {
+    this.item = item;
+    this.label.textContent = item.label;
+    this.line.toggleAttribute("data-focus", hasFocus);
+    if (this.control !== null) {
+      this.control.setAttribute("aria-disabled", String(!item.is_enabled));
+      this.control.tabIndex = hasFocus ? 0 : -1;
+    }
+    if (this.value instanceof HTMLInputElement) this.showText(this.value);
+    else if (this.value instanceof HTMLMeterElement) showAxis(this.value, item);
+    else this.value.textContent = item.value;
+  }
+
+  /** What a screen reader says of it. */
+  get spoken(): string {
+    return `${this.item.label} ${this.item.value}`.trim();
+  }
+
+  takeFocus(): void {
+    this.isFollowing = true;
+    this.control?.focus({ preventScroll: true });
+    this.isFollowing = false;
+  }
+
+  private button(): HTMLButtonElement {
+    const button = element("button", "");
+    button.type = "button";
+    // A space apart, or names would be read as one word with their values.
+    button.append(this.label, " ", this.value);
+    button.onclick = () => {
+      if (this.item.is_enabled) this.connection.send("item", { name: this.item.name });
+    };
+    return button;
+  }
+
+  private field(): HTMLInputElement {
+    const field = element("input", "");
+    field.maxLength = LONGEST;
+    field.autocomplete = "off";
+    field.spellcheck = false;
+    field.oninput = () => this.tell(field);
+    field.onfocus = () => {
+      if (!this.isFollowing) this.tell(field);
+    };
+    return field;
+  }
+
+  private tell(field: HTMLInputElement): void {
+    this.typed = performance.now();
+    this.connection.send("text", { name: this.item.name, value: field.value });
+    window.setTimeout(() => this.showText(field), ANSWER_MS);
+  }
+
+  private showText(field: HTMLInputElement): void {
+    const isAwaited = performance.now() - this.typed < ANSWER_MS - 1;
+    if (!isAwaited && field.value !== this.item.value) field.value = this.item.value;
+  }
+}
+
+function meter(): HTMLMeterElement {
+  const made = element("meter", "");
+  made.min = -1;
+  made.max = 1;
+  return made;
+}
+
+function showAxis(made: HTMLMeterElement, item: Item): void {
+  const position = Number(item.value);
+  made.value = Number.isFinite(position) ? position : 0;
+  made.setAttribute("aria-label", item.label);
+}

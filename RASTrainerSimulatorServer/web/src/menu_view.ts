@@ -1,0 +1,116 @@
+/** The simulator's menu as a dialog of real controls: kept while they change, so that focus and caret stay. */
+
+import type { Connection } from "./connection";
+import { byId, element } from "./elements";
+import { MenuRow } from "./menu_row";
+import type { Fact, Item, Menu } from "./messages";
+import { say } from "./texts";
+
+export class MenuView {
+  private readonly parent = byId("menu");
+  private readonly title = element("h2", "");
+  private readonly text = element("div", "");
+  private readonly list = element("ul", "");
+  private readonly help = element("p", "");
+  /** Heard by screen readers when the value of what has the focus changes. */
+  private readonly spoken = element("p", "");
+  private readonly rows = new Map<string, MenuRow>();
+  private shown = "";
+  private shownText = "";
+  private shape = "";
+  private focus = "";
+
+  constructor(private readonly connection: Connection) {
+    this.title.id = "menu-title";
+    this.text.id = "menu-text";
+    this.help.id = "menu-help";
+    this.help.className = "help";
+    this.spoken.className = "unseen";
+    this.spoken.setAttribute("role", "status");
+    this.parent.append(this.title, this.text, this.list, this.help, this.spoken);
+  }
+
+  /** Show a menu, null for none; `drawn` is the address of the drawing that belongs to it, or "". */
+  show(menu: Menu | null, drawn: string): void {
+    const content = JSON.stringify([menu, drawn]);
+    if (content === this.shown) return;
+    this.shown = content;
+    this.parent.hidden = menu === null;
+    if (menu === null) this.clear();
+    else this.fill(menu, drawn);
+  }
+
+  private clear(): void {
+    this.shape = this.focus = "";
+    this.rows.clear();
+    this.list.replaceChildren();
+  }
+
+  private fill(menu: Menu, drawn: string): void {
+    const focused = menu.items.find((item) => item.name === menu.focus);
+    this.parent.className = drawn !== "" ? "pictured" : menu.facts.length > 0 ? "wide" : "";
+    this.title.textContent = menu.title;
+    this.fillText(menu, drawn, focused);
+    const shape = JSON.stringify([menu.name, menu.items.map((item) => [item.name, item.kind])]);
+    const isOther = shape !== this.shape;
+    if (isOther) this.build(menu, shape);
+    const before = this.rows.get(this.focus)?.spoken ?? "";
+    for (const item of menu.items) this.rows.get(item.name)?.show(item, item.name === menu.focus);
+    this.help.textContent = focused?.help ?? "";
+    this.follow(menu.focus, isOther, before);
+  }
+
+  private fillText(menu: Menu, drawn: string, focused: Item | undefined): void {
+    const pictures = [drawn, focused?.picture ?? ""];
+    const content = JSON.stringify([menu.paragraphs, menu.facts, pictures]);
+    if (content === this.shownText) return;
+    this.shownText = content;
+    const parts: HTMLElement[] = menu.paragraphs.map((text) => element("p", text));
+    if (drawn !== "") parts.unshift(picture(drawn, menu.trend?.text ?? say("picture"), "drawn"));
+    if (menu.facts.length > 0) parts.push(factsOf(menu.facts));
+    if (focused?.picture) parts.push(picture(focused.picture, focused.label, "head"));
+    this.text.replaceChildren(...parts);
+  }
+
+  private build(menu: Menu, shape: string): void {
+    this.shape = shape;
+    this.rows.clear();
+    for (const item of menu.items) this.rows.set(item.name, new MenuRow(item, this.connection));
+    this.list.replaceChildren(...[...this.rows.values()].map((row) => row.line));
+  }
+
+  /** Have the browser's focus go where the simulator's is, unless a person has taken it out of the menu. */
+  private follow(focus: string, isOther: boolean, before: string): void {
+    const row = this.rows.get(focus);
+    const now = row?.spoken ?? "";
+    if (focus === this.focus && !isOther) {
+      if (now !== before) this.spoken.textContent = now;
+      return;
+    }
+    this.focus = focus;
+    this.spoken.textContent = "";
+    const active = document.activeElement;
+    if (isOther || active === null || active === document.body || this.parent.contains(active)) row?.takeFocus();
+    // The last menu may have been scrolled down: a title is seen wherever the focus leaves room.
+    if (isOther) this.parent.scrollTop = 0;
+    row?.line.scrollIntoView({ block: "nearest" });
+  }
+}
+
+function factsOf(facts: readonly Fact[]): HTMLElement {
+  const table = element("dl", "");
+  for (const fact of facts) {
+    const value = element("dd", fact.value);
+    value.dataset.tone = fact.tone;
+    table.append(element("dt", fact.label), value);
+  }
+  return table;
+}
+
+function picture(source: string, name: string, kind: string): HTMLImageElement {
+  const image = new Image();
+  image.className = kind;
+  image.src = source;
+  image.alt = name;
+  return image;
+}

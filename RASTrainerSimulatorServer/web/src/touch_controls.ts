@@ -1,0 +1,95 @@
+/** Two sticks and the buttons of a trial, for devices that have no keys: shown from the first touch on. */
+
+import type { Connection } from "./connection";
+import { byId, element } from "./elements";
+import type { Screen } from "./messages";
+import { say } from "./texts";
+import { TouchStick } from "./touch_stick";
+
+/** What a button presses, as the simulator calls it. */
+const CONTROLS = ["menu", "best_view", "camera", "undo", "touch"] as const;
+type TouchControl = (typeof CONTROLS)[number];
+
+export class TouchControls {
+  private readonly parent = byId("touch-controls");
+  private readonly left = new TouchStick(() => this.tell());
+  private readonly right = new TouchStick(() => this.tell());
+  private readonly fine = element("button", "");
+  private readonly buttons = new Map<TouchControl, HTMLButtonElement>();
+  private isUsed = matchMedia("(pointer: coarse)").matches;
+  private isWorking = false;
+
+  constructor(private readonly connection: Connection) {
+    const row = element("div", "");
+    for (const control of CONTROLS) this.buttons.set(control, this.button(control));
+    const touch = this.buttons.get("touch")!;
+    row.append(...[...this.buttons.values()].filter((button) => button !== touch), this.fine);
+    this.fine.type = "button";
+    this.fine.onclick = () => {
+      this.fine.setAttribute("aria-pressed", String(!this.isFine));
+      this.tell();
+    };
+    this.fine.setAttribute("aria-pressed", "false");
+    this.parent.append(row, this.left.place, touch, this.right.place);
+    window.addEventListener("pointerdown", (event) => {
+      if (event.pointerType === "touch") this.use();
+    }, true);
+    window.addEventListener("blur", () => this.release());
+    if (this.isUsed) document.body.dataset.touch = "";
+  }
+
+  get isHolding(): boolean {
+    return this.left.x !== 0 || this.left.y !== 0 || this.right.x !== 0 || this.right.y !== 0;
+  }
+
+  show(screen: Screen): void {
+    this.isWorking = screen.menu === null;
+    if (!this.isWorking) this.release();
+    for (const [control, button] of this.buttons) button.textContent = say(`touch.${control}`);
+    this.fine.textContent = say("touch.fine");
+    this.left.label(say("touch.left"));
+    this.right.label(say("touch.right"));
+    this.place();
+  }
+
+  release(): void {
+    this.left.release();
+    this.right.release();
+  }
+
+  private get isFine(): boolean {
+    return this.fine.getAttribute("aria-pressed") === "true";
+  }
+
+  /** Say that a touch screen is used, before what was touched is told. */
+  private use(): void {
+    if (!this.isHolding) this.tell();
+    if (this.isUsed) return;
+    this.isUsed = true;
+    document.body.dataset.touch = "";
+    this.place();
+  }
+
+  private place(): void {
+    this.parent.hidden = !this.isUsed || !this.isWorking;
+  }
+
+  private button(control: TouchControl): HTMLButtonElement {
+    const button = element("button", "");
+    button.type = "button";
+    button.dataset.control = control;
+    // At once, not when the finger leaves: the tip is where it is now.
+    button.onpointerdown = () => this.connection.send("press", { control });
+    button.onclick = (event) => {
+      const isByKey = event.detail === 0;
+      if (isByKey) this.connection.send("press", { control });
+    };
+    return button;
+  }
+
+  private tell(): void {
+    const translation = [this.left.x, this.left.y, this.right.y];
+    const fine = this.isFine && this.isHolding;
+    this.connection.send("sticks", { translation, rotation: [this.right.x, 0], fine, yawDeg: 0 });
+  }
+}

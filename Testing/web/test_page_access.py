@@ -1,0 +1,169 @@
+"""Everyone can use the page: screen readers, zoom, phones and large displays, in both languages."""
+
+from __future__ import annotations
+
+import pytest
+
+from Testing.web.chromium import accessibility_checker, open_page
+from Testing.web.hands import PageKeys
+from Testing.web.place import WITHOUT_GRAPHICS, Place
+
+SIZES = {
+    "phone": (390, 844),
+    "phone on its side": (844, 390),
+    "narrowest": (320, 568),
+    "laptop": (1280, 720),
+    "laptop at 200 %": (640, 360),
+    "full HD": (1920, 1080),
+    "full HD at 200 %": (960, 540),
+    "4K": (3840, 2160),
+}
+VIOLATIONS = """async () => {
+  const { violations } = await axe.run(document, { resultTypes: ["violations"] });
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html}`));
+}"""
+OVERLAPS = """() => {
+  const parts = "#status li, #instruction, #warnings li, #loading, #inset, #menu, " +
+    "#touch-controls, #hints, #control, #headset";
+  const boxes = [...document.querySelectorAll(parts)]
+    .filter((part) => part.checkVisibility() && part.getBoundingClientRect().width > 0)
+    .map((part) => {
+      const { left, right, top, bottom } = part.getBoundingClientRect();
+      return { name: part.id || part.textContent, left, right, top, bottom };
+    });
+  const found = [];
+  boxes.forEach((a, index) => {
+    if (a.left < -1 || a.right > innerWidth + 1) found.push(`${a.name} is cut off`);
+    for (const b of boxes.slice(index + 1)) {
+      const across = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+      const down = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+      if (across > 1 && down > 1) found.push(`${a.name} over ${b.name}`);
+    }
+  });
+  const { scrollHeight, clientHeight } = document.getElementById("overlay");
+  const isScrolled = document.body.dataset.menu !== "";
+  const hidden = scrollHeight - clientHeight;
+  if (!isScrolled && hidden > 1) found.push(`${hidden} px do not fit`);
+  for (const part of document.querySelectorAll("#menu *")) {
+    const isBox = part.matches(":not(input, .unseen)") && part.clientWidth > 0;
+    const isInline = getComputedStyle(part).display === "inline";
+    const isCut = isBox && !isInline && part.scrollWidth > part.clientWidth + 1;
+    if (isCut) found.push(`${part.textContent} is cut off`);
+  }
+  return found;
+}"""
+
+
+@pytest.fixture(scope="module", params=["en", "de"])
+def place(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp(request.param)
+    language = request.param
+    with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS, language=language) as place:
+        place.language = language
+        yield place
+
+
+@pytest.fixture(scope="module")
+def page(place, browser):
+    page = open_page(browser, place.simulator.url, place.simulator.code)
+    page.evaluate(accessibility_checker())
+    # A picture of 4K takes a processor seconds, and nothing here depends on it.
+    page.evaluate("page.stage.renderer.render = () => undefined")
+    yield page
+    assert page.problems == []
+    page.context.close()
+
+
+def complaints(page, screen: str) -> list[str]:
+    """Return what is wrong with what is shown, at every size of the window."""
+    found = []
+    for name, (width, height) in SIZES.items():
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate("frames_(1)")
+        wrong = [*page.evaluate(VIOLATIONS), *page.evaluate(OVERLAPS)]
+        found += [f"{screen}, {name}: {each}" for each in wrong]
+    return found
+
+
+def shown(page, trainee) -> str:
+    """Wait until the page shows the menu that the simulator is at; return its name."""
+    name = trainee.menu.name if trainee.menu else ""
+    page.wait_for_selector(f'body[data-menu="{name}"]')
+    return name
+
+
+def test_no_menu_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(place, page):
+    trainee = place.trainee(PageKeys(page))
+    found = []
+    for item in ("", "introduction", "controls", "settings"):
+        trainee.go_home()
+        if item:
+            trainee.choose(item)
+        found += complaints(page, shown(page, trainee))
+    trainee.go_to_experiment()
+    found += complaints(page, shown(page, trainee))
+    assert found == []
+
+
+def test_no_part_of_a_trial_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(place, page):
+    trainee = place.carried_trainee(PageKeys(page))
+    trainee.begin("task-1", page)
+    page.wait_for_selector("body[data-scene=task-1]")
+    found = complaints(page, shown(page, trainee) or "trial")
+    trainee.have_touched(15)
+    trainee.press("touch", lambda: trainee.menu is not None, "the choice")
+    found += complaints(page, shown(page, trainee))
+    assert found == []
+
+
+def test_the_page_says_its_language(place, page):
+    assert page.get_attribute("html", "lang") == place.language
+    name = {"en": "Robot, head and operating room", "de": "Roboter, Kopf und Operationssaal"}
+    assert page.get_attribute("#picture", "aria-label") == name[place.language]
+
+
+def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(place, page):
+    trainee = place.trainee(PageKeys(page))
+    trainee.go_home()
+    shown(page, trainee)
+    for item in trainee.menu.items:
+        trainee.focus(item.name)
+        page.wait_for_selector(f"#menu li[data-name='{item.name}'] button:focus")
+        menu = page.get_by_role("dialog", name=trainee.menu.title)
+        assert menu.get_by_role("button", name=item.label, exact=True).count() == 1
+    trainee.choose("settings")
+    shown(page, trainee)
+    choice = [item for item in trainee.menu.items if item.kind == "choice"][-1]
+    trainee.focus(choice.name)
+    before = trainee.value(choice.name)
+    trainee.press("right", lambda: trainee.value(choice.name) != before, "another value")
+    told = f"{choice.label} {trainee.value(choice.name)}"
+    page.wait_for_selector(f"#menu [role=status]:has-text('{told}')", state="attached")
+    assert page.get_by_role("button", name=told, exact=True).count() == 1
+    trainee.press("left", lambda: trainee.value(choice.name) == before, "the value before")
+
+
+def test_a_selection_is_seen_where_the_system_chooses_the_colors(place, page):
+    trainee = place.trainee(PageKeys(page))
+    trainee.go_home()
+    shown(page, trainee)
+    page.emulate_media(forced_colors="active")
+    color = "button => getComputedStyle(button).backgroundColor"
+    focused = page.eval_on_selector("#menu [data-focus] button", color)
+    others = page.eval_on_selector_all(
+        "#menu li:not([data-focus]) button",
+        f"buttons => buttons.map({color})",
+    )
+    page.emulate_media(forced_colors="none")
+    assert focused not in others
+
+
+def test_zoom_makes_text_larger(page):
+    """At 200 % a window has half as many pixels each way, and each is twice as large."""
+    sizes = []
+    for width, height in ((1280, 720), (640, 360)):
+        page.set_viewport_size({"width": width, "height": height})
+        sizes.append(
+            page.evaluate("parseFloat(getComputedStyle(document.documentElement).fontSize)")
+        )
+    assert sizes[1] >= sizes[0]

@@ -1,0 +1,84 @@
+"""The page says what is missing: JavaScript, WebGL, the scene that still comes, the right code."""
+
+from __future__ import annotations
+
+import pytest
+
+from Testing.web.chromium import PATIENCE_MS, launch
+from Testing.web.hands import PageKeys
+from Testing.web.place import WITHOUT_GRAPHICS, Place
+
+SLOW_LINE = {"offline": False, "latency": 0, "downloadThroughput": 400_000, "uploadThroughput": -1}
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    with Place(tmp_path_factory.mktemp("without"), limits=WITHOUT_GRAPHICS) as place:
+        yield place
+
+
+def new_page(browser, **options):
+    page = browser.new_context(**options).new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    return page
+
+
+def address(place) -> str:
+    return f"{place.simulator.url}/#code={place.simulator.code}"
+
+
+def test_without_javascript_the_page_says_so_in_both_languages(place, browser):
+    page = new_page(browser, java_script_enabled=False)
+    page.goto(place.simulator.url)
+    assert "RASTrainer needs JavaScript" in page.inner_text("body")
+    assert "RASTrainer braucht JavaScript" in page.inner_text("[lang=de]")
+    page.context.close()
+
+
+def test_the_scene_tells_how_much_of_it_has_come(place, browser):
+    page = new_page(browser)
+    network = page.context.new_cdp_session(page)
+    network.send("Network.enable")
+    network.send("Network.emulateNetworkConditions", SLOW_LINE)
+    page.goto(address(place))
+    page.wait_for_selector("#loading:has-text('Loading the scene:')")
+    total = page.eval_on_selector("#loading progress", "bar => bar.max")
+    assert 1e6 < total < 5e6
+    page.wait_for_selector("body[data-scene]")
+    page.wait_for_selector("#loading", state="hidden")
+    page.context.close()
+
+
+def test_a_code_that_is_no_longer_valid_says_so_and_so_does_a_new_one(place, browser):
+    page = new_page(browser, locale="de-DE")
+    wrong = "000000" if place.simulator.code != "000000" else "000001"
+    page.goto(f"{place.simulator.url}/#code={wrong}")
+    page.wait_for_selector("#pairing output:has-text('gilt nicht mehr')")
+    assert page.get_attribute("html", "lang") == "de-DE"
+    for _ in range(3):
+        page.fill("#code", wrong)
+        page.click("#pairing button")
+        page.wait_for_selector("#pairing output:has-text('nicht der Kopplungscode')")
+    page.fill("#code", wrong)
+    page.click("#pairing button")
+    page.wait_for_selector("#pairing output:has-text('zeigt jetzt einen neuen Code')")
+    page.context.close()
+
+
+def test_without_webgl_menus_are_read_and_chosen_and_the_page_says_what_is_missing(
+    driver, tmp_path
+):
+    with Place(tmp_path) as place:
+        browser = launch(driver, "--disable-3d-apis")
+        page = new_page(browser)
+        problems = []
+        page.on("pageerror", lambda error: problems.append(str(error)))
+        page.goto(address(place))
+        page.wait_for_selector("body[data-menu=start]")
+        page.wait_for_selector("#warnings li:has-text('WebGL')")
+        trainee = place.trainee(PageKeys(page))
+        trainee.choose("settings")
+        page.wait_for_selector("body[data-menu=settings]")
+        assert page.inner_text("#menu h2") == trainee.menu.title
+        assert problems == []
+        browser.close()
