@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from Testing.web.chromium import open_page
@@ -53,37 +54,44 @@ def page(place, browser):
     assert page.problems == []
 
 
-def test_a_finger_types_an_id_begins_a_trial_touches_undoes_pauses_and_resumes(
-    place, page, trainee
-):
-    trainee.go_to_experiment()
-    trainee.write_id()
-    trainee.begin_task("task-1")
-    trainee.until(lambda: place.view.state["phase"] == "running", "the trial")
+@pytest.fixture
+def steering(place, page, trainee):
+    """Somebody whose trial runs, begun by tapping."""
+    if place.view.state["phase"] != "running":
+        trainee.go_to_experiment()
+        trainee.write_id()
+        trainee.begin_task("task-1")
+        trainee.until(lambda: place.view.state["phase"] == "running", "the trial")
     page.wait_for_selector("#touch-controls")
-    trainee.touch("1")
-    assert trainee.touched == 1
+    return trainee
+
+
+def test_a_finger_touches_undoes_pauses_and_resumes(place, page, steering):
+    steering.touch("1")
+    assert steering.touched == 1
     page.wait_for_selector("#control:has-text('You drive: touch screen')")
-    trainee.press("undo", lambda: trainee.touched == 0, "the undo")
-    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+    steering.press("undo", lambda: steering.touched == 0, "the undo")
+    steering.press("menu", lambda: steering.menu is not None, "the menu")
     assert place.view.state["phase"] == "paused"
     page.wait_for_selector("#touch-controls", state="hidden")
-    trainee.resume()
-    page.wait_for_selector("#touch-controls")
+    steering.resume()
 
 
-def test_two_thumbs_steer_at_once_and_the_arm_stops_when_they_are_lifted(trainee):
-    trainee.until_still()
-    start = trainee.tip.copy()
-    trainee.hands.push(0.7, 0.0, 1.0)
-    trainee.until(lambda: trainee.tip[2] > start[2] + 0.02, "a move up")
-    aside = abs(trainee._stick_axes()[0] @ (trainee.tip - start))
-    trainee.hands.push(0.0, 0.0, 0.0)
+def test_two_thumbs_steer_at_once_and_the_arm_stops_when_they_are_lifted(steering):
+    steering.until_still()
+    start = steering.tip.copy()
+    steering.hands.push(0.7, 0.0, 1.0)
+    steering.until(lambda: steering.tip[2] > start[2] + 0.02, "a move up")
+    aside = np.linalg.norm((steering.tip - start)[:2])
+    steering.hands.push(0.0, 0.0, 0.0)
     assert aside > 0.005
-    trainee.until_still()
+    steering.until_still()
 
 
-def test_what_is_said_to_press_is_written_on_the_buttons(place, page):
+def test_what_is_said_to_press_is_written_on_the_buttons(place, page, steering):
+    steering.hands.push(0.0, 0.0, 0.5)
+    steering.until_moved()
+    steering.hands.push(0.0, 0.0, 0.0)
     hints = {hint.control for hint in place.view.screen.hints}
     buttons = page.query_selector_all("#touch-controls button")
     assert hints == {button.inner_text() for button in buttons}

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from ipaddress import ip_address
 from pathlib import Path
 
-from aiohttp import WSCloseCode, WSMsgType, hdrs, web
+from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
@@ -172,14 +172,14 @@ class ViewServer:
         file = self._scenes.find(request.match_info["sha256"])
         if file is None:
             raise web.HTTPNotFound
-        headers = {hdrs.CACHE_CONTROL: FOREVER, hdrs.VARY: hdrs.ACCEPT_ENCODING}
+        headers = {"Cache-Control": FOREVER, "Vary": "Accept-Encoding"}
         try:
             content, size = await asyncio.to_thread(gzipped_scene, file)
         except LookupError:
             raise web.HTTPNotFound from None
-        if "gzip" in request.headers.get(hdrs.ACCEPT_ENCODING, ""):
+        if "gzip" in request.headers.get("Accept-Encoding", ""):
             # The size is for whoever shows how much of it has come.
-            headers |= {hdrs.CONTENT_ENCODING: "gzip", FULL_SIZE: str(size)}
+            headers |= {"Content-Encoding": "gzip", FULL_SIZE: str(size)}
         else:
             content = await asyncio.to_thread(gzip.decompress, content)
         return web.Response(body=content, content_type="model/gltf-binary", headers=headers)
