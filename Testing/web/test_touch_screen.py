@@ -72,7 +72,7 @@ def test_a_finger_touches_undoes_pauses_and_resumes(place, page, steering):
     page.wait_for_selector("#control:has-text('You drive: touch screen')")
     steering.press("undo", lambda: steering.touched == 0, "the undo")
     steering.press("menu", lambda: steering.menu is not None, "the menu")
-    assert place.view.state["phase"] == "paused"
+    steering.until(lambda: place.view.state["phase"] == "paused", "the pause")
     page.wait_for_selector("#touch-controls", state="hidden")
     steering.resume()
 
