@@ -21,8 +21,8 @@ from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
-PATIENCE_S = 600
-PATIENT = {"views": {"lost_s": PATIENCE_S}}
+TIMEOUT_S = 600
+PATIENT = {"views": {"lost_s": TIMEOUT_S}}
 """A machine that is too busy to draw does not pause the trial."""
 VIEWS = "RASTrainer simulator serves views on "
 
@@ -79,11 +79,11 @@ class Lab:
         return window
 
     def start_slicer(self, trials: int = 1) -> SlicerProcess:
-        """Start Slicer's side, which scores so many trials and ends."""
+        """Start Slicer's side, which scores a number of trials and ends."""
         slicer = SlicerProcess(
             *("--port", str(self.simulator.port), "--trials", str(trials)),
             *("--scenario", str(asset_path("scenarios", "colin27"))),
-            *("--output", str(self._folder / "study"), "--timeout", str(PATIENCE_S)),
+            *("--output", str(self._folder / "study"), "--timeout", str(TIMEOUT_S)),
         )
         self._stack.callback(slicer.kill)
         return slicer
@@ -105,7 +105,7 @@ class SlicerProcess:
         self._process.wait()
 
     def told_until(self, event: str) -> list[dict]:
-        """Return what it tells from now on, up to the first event of a kind."""
+        """Return its events from now on, up to the first event of a kind."""
         told = []
         for line in self._process.stdout:
             told.append(json.loads(line))

@@ -1,4 +1,4 @@
-"""The last millimeters over OpenIGTLink: the tip is lowered until it is told to be in contact."""
+"""The last millimeters over OpenIGTLink: the tip is lowered until the state reports contact."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rastrainer.protocol import CommandName, DeviceName, Proximity
 
 SINK_MM = 1.0
 """How far below the skin the tip is sent: it stops on the skin."""
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 
 def lowered(place: np.ndarray, center: np.ndarray) -> list[float]:
@@ -24,11 +24,11 @@ def lowered(place: np.ndarray, center: np.ndarray) -> list[float]:
 def lower_onto_skin(client: Client, place: np.ndarray, center: np.ndarray) -> None:
     """Lower the tip onto a place of the skin, with `center` beneath: (3,) float, World, mm."""
     arguments = {"positionMm": lowered(place, center), "speedMmS": 300}
-    reply = client.send_command(CommandName.MOVE_TIP_TO, arguments, PATIENCE_S)
+    reply = client.send_command(CommandName.MOVE_TIP_TO, arguments, TIMEOUT_S)
     assert reply.ok, reply.error
-    client.wait_for(DeviceName.SIM_STATE, is_in_contact, PATIENCE_S)
+    client.wait_for(DeviceName.SIM_STATE, is_in_contact, TIMEOUT_S)
 
 
 def is_in_contact(state: Message) -> bool:
-    """Tell whether a SimState says that the tool touches the head."""
+    """Return whether a SimState reports contact of the tool with the head."""
     return json.loads(state.content.text)["proximity"] == Proximity.CONTACT.value

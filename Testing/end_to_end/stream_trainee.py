@@ -1,4 +1,4 @@
-"""A trainee who knows only what every view is told, and works real input devices."""
+"""A trainee who knows only what every view receives, and uses real input devices."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rastrainer_simulator.teleoperation.axes import camera_axes
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ViewClient
 
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
 COARSE_M, FINE_M = 0.03, 0.01
@@ -29,10 +29,10 @@ LONGEST_WAY_S = 4.0
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 ON_POINT_M, NEAR_M = 0.002, 0.008
-"""Where the tip is stopped, and how far from there it may come to stand."""
+"""Where the tip is stopped, and how far from there it may come to rest."""
 MOST_ATTEMPTS = 15
 STILL_STATES = 10
-"""So many states in a row that are the same: the arm stands."""
+"""The arm is at rest after this number of equal states in a row."""
 
 
 class Hands(Protocol):
@@ -46,7 +46,7 @@ class Hands(Protocol):
 
 
 class WatchingView:
-    """A view that joins beside the window, and keeps what all views are told.
+    """A view that joins beside the window, and keeps what all views receive.
 
     Attributes:
         state, screen, scene: the latest.
@@ -71,7 +71,7 @@ class WatchingView:
     def next_state(self) -> None:
         """Wait for the next state."""
         with self._has_state:
-            assert self._has_state.wait(PATIENCE_S), "the stream has ended"
+            assert self._has_state.wait(TIMEOUT_S), "the stream has ended"
 
     def _watch(self) -> None:
         with suppress(Exception):
@@ -97,7 +97,7 @@ class StreamTrainee:
             be missed. A press that is only slow would count twice.
     """
 
-    again_s = PATIENCE_S
+    again_s = TIMEOUT_S
 
     def __init__(self, view: WatchingView, hands: Hands):
         self.view = view
@@ -124,7 +124,7 @@ class StreamTrainee:
         return self.view.pose("tool")[:3, 3]
 
     def until(self, condition: Callable[[], bool], what: str) -> None:
-        give_up = time.monotonic() + PATIENCE_S
+        give_up = time.monotonic() + TIMEOUT_S
         while not condition():
             assert time.monotonic() < give_up, f"{what} never came; the screen: {self.view.screen}"
             self.view.next_state()
@@ -143,7 +143,7 @@ class StreamTrainee:
         self.until(lambda: np.linalg.norm(self.tip - start) > 0.01, "a move of the arm")
 
     def until_still(self) -> None:
-        """Wait until the tip stands."""
+        """Wait until the tip is at rest."""
         places: list[list[float]] = []
 
         def stands() -> bool:
@@ -158,7 +158,7 @@ class StreamTrainee:
 
     def press(self, control: str, is_done: Callable[[], bool], what: str) -> None:
         """Press a control, and wait until it has an effect."""
-        give_up = time.monotonic() + PATIENCE_S
+        give_up = time.monotonic() + TIMEOUT_S
         while not is_done():
             assert time.monotonic() < give_up, f"{what} never came; the screen: {self.view.screen}"
             self.hands.tap(control)
@@ -236,7 +236,7 @@ class StreamTrainee:
         self.press_on(label)
 
     def press_on(self, label: str) -> None:
-        """Record the fiducial under the tip; whoever missed it comes from above once more."""
+        """Record the fiducial under the tip; after a miss, approach from above once more."""
         point, center = self.place_of(label), self.head_center
         outward = (point - center) / np.linalg.norm(point - center)
         kept = self.touched

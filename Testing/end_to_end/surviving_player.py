@@ -20,7 +20,7 @@ from Testing.end_to_end.onto_skin import lower_onto_skin
 TASK = "task-1"
 TRAINEE = "T-042"
 ABOVE_MM = 30.0
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 UNTOLD: tuple[float, ...] = ()
 """The position of a touch that counts though the kill has swallowed its answer."""
@@ -72,7 +72,7 @@ class SurvivingPlayer:
         task: of the trials that are begun.
         kept: for each trial the touches that were acknowledged and not taken back.
         registered: the trials whose registration was acknowledged.
-        resumed: how often an interrupted trial was gone on with.
+        resumed: how often an interrupted trial was resumed.
         trial_id: of the present trial; "" between two.
     """
 
@@ -89,7 +89,7 @@ class SurvivingPlayer:
         self.trial_id = ""
 
     def play(self, port: int, killing: Killing | None, trials: int) -> bool:
-        """Play until so many trials are registered; return whether the server lived so long."""
+        """Play until a number of trials are registered; return whether the server survived."""
         done = len(self.registered) + trials
         heard = None if killing is None else killing.heard
         try:
@@ -106,12 +106,12 @@ class SurvivingPlayer:
 
     def _say_hello(self, client: Client) -> None:
         hello = {"protocolVersion": PROTOCOL_VERSION, "client": "player", "linksHz": 0}
-        assert client.send_command(CommandName.HELLO, hello, PATIENCE_S).ok
+        assert client.send_command(CommandName.HELLO, hello, TIMEOUT_S).ok
 
     def _come_back(self, client: Client) -> None:
         """Check that the server has all that it acknowledged, and asks for the right point."""
         state = self._state(client)
-        points = client.wait_for(DeviceName.CAPTURED_POINTS, timeout=PATIENCE_S).content.points
+        points = client.wait_for(DeviceName.CAPTURED_POINTS, timeout=TIMEOUT_S).content.points
         in_flight, self._in_flight = self._in_flight, ""
         if not self.trial_id and state["trialId"] in self.registered:
             return
@@ -172,7 +172,7 @@ class SurvivingPlayer:
         points = [*self._scenario.task(self.task).fiducials, self._scenario.target_position]
         *places, center = transforms.apply(head_to_world, np.array(points))
         place = places[number]
-        tip = client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, timeout=PATIENCE_S)
+        tip = client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, timeout=TIMEOUT_S)
         lifted = _above(np.array(tip.content.matrix)[:3, 3], center)
         for goal in (lifted, _above(place, center)):
             self._send(
@@ -182,7 +182,7 @@ class SurvivingPlayer:
             def is_there(tip: Message, goal: np.ndarray = goal) -> bool:
                 return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - goal) < 3.0
 
-            client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, is_there, PATIENCE_S)
+            client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, is_there, TIMEOUT_S)
         self._in_flight = CommandName.MOVE_TIP_TO
         lower_onto_skin(client, place, center)
         self._in_flight = ""
@@ -195,13 +195,13 @@ class SurvivingPlayer:
             client.send(Message(DeviceName.COMMAND, Command(2**31, name, body)))
             killing.while_it_works()
             raise LinkError("The server was killed.")
-        reply: Reply = client.send_command(name, arguments, PATIENCE_S)
+        reply: Reply = client.send_command(name, arguments, TIMEOUT_S)
         assert reply.ok, f"{name}: {reply.error}"
         self._in_flight = ""
         return dict(reply.data)
 
     def _state(self, client: Client) -> dict:
-        message = client.wait_for(DeviceName.SIM_STATE, timeout=PATIENCE_S)
+        message = client.wait_for(DeviceName.SIM_STATE, timeout=TIMEOUT_S)
         return json.loads(message.content.text)
 
 

@@ -34,7 +34,7 @@ from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_tr
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.slicer.simulator_double import run_logic_until
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 class Server:
@@ -77,7 +77,7 @@ def slicer_side(path, scenario, port, scored):
 
 
 def deliver(folder, simulation, thread, trials, seed, longest_s):
-    """Deliver so many trials through faults and ends of both sides; return what was seen."""
+    """Deliver trials through faults and ends of both sides; return what was seen."""
     rng = random.Random(seed)
     records, study = folder / "records", folder / "study.db"
     wanted = write_finished_trials(records, range(1, trials + 1))
@@ -105,7 +105,7 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
         slicer.close()
         slicer = slicer_side(study, scenario, proxy.port, scored)
         with Study.open(study) as opened:
-            run_logic_until(slicer.link, slicer.work, lambda: not opened.unrevealed(), PATIENCE_S)
+            run_logic_until(slicer.link, slicer.work, lambda: not opened.unrevealed(), TIMEOUT_S)
     finally:
         slicer.close()
         proxy.close()

@@ -95,7 +95,7 @@ def is_running(pid):
 
 
 def assert_nothing_is_left(host):
-    """Hold that the module is as before the scenario was begun."""
+    """Check that the module is as before the scenario was started."""
     assert host.text("newScenarioText") == "Canceled; nothing has changed."
     assert host.text("makeScenarioButton") == "Make scenario"
     assert host.find("scenarioComboBox").count == 1

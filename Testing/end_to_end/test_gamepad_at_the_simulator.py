@@ -11,7 +11,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.journal.journal_file import read_journal
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 AGAIN_S = 0.5
 """Taps that come faster than the simulator takes them would wait in a row, the sticks behind."""
 
@@ -23,14 +23,14 @@ class Watch:
         self._client = client
 
     def state(self):
-        message = self._client.wait_for("SimState", timeout=PATIENCE_S)
+        message = self._client.wait_for("SimState", timeout=TIMEOUT_S)
         return json.loads(message.content.text)
 
     def until(self, condition):
         def fits(message):
             return condition(json.loads(message.content.text))
 
-        self._client.wait_for("SimState", fits, timeout=PATIENCE_S)
+        self._client.wait_for("SimState", fits, timeout=TIMEOUT_S)
 
     def sees(self, instruction):
         return instruction in self.state()["instruction"]
@@ -39,8 +39,8 @@ class Watch:
         return np.array(self._client.wait_for("ToolTipToWorld").content.matrix)[:3, 3]
 
     def until_the_arm(self, moves):
-        """Wait until the arm moves, or stands still."""
-        give_up = time.monotonic() + PATIENCE_S
+        """Wait until the arm moves, or is at rest."""
+        give_up = time.monotonic() + TIMEOUT_S
         while True:
             before = self.tip()
             time.sleep(0.3)
@@ -65,7 +65,7 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         state = watch.state()
         assert (state["trainee"], state["task"], state["mode"]) == ("A", "trial-run", "desktop")
         # The presenter follows the trial a moment later: its answer to a touch shows that.
-        give_up = time.monotonic() + PATIENCE_S
+        give_up = time.monotonic() + TIMEOUT_S
         while not watch.sees("Too far from point 1"):
             assert time.monotonic() < give_up, "no touch was taken"
             simulator.tap("a")

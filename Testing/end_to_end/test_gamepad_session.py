@@ -80,7 +80,7 @@ def type_by_gamepad(trainee: StreamTrainee, text: str) -> None:
 
 
 def is_chosen(trainee: StreamTrainee, row: str, letter: str) -> bool:
-    """Tell whether a letter is chosen, and stays so: a key that is held long goes farther."""
+    """Return whether a letter is chosen, and stays so: a key that is held long goes farther."""
     chosen = f"[{letter}]"
     if chosen in trainee.value(row):
         time.sleep(STEADY_S)
@@ -153,7 +153,7 @@ def practice(trainee: StreamTrainee, photographer: Photographer) -> None:
 
 
 def play(trainee: StreamTrainee, photographer: Photographer, numbers: range) -> None:
-    """Touch fiducials in their order; before the first one touch nothing, to be told so."""
+    """Touch fiducials in their order; before the first one touch nothing, which is refused."""
     trainee.use_camera("close-up")
     if numbers.start == 1:
         trainee.press("touch", lambda: "error" in kinds(trainee.view.events), "an error")
@@ -170,7 +170,7 @@ def play(trainee: StreamTrainee, photographer: Photographer, numbers: range) -> 
 
 
 def tell_of_crash(trainee: StreamTrainee, label: str) -> dict:
-    """Touch a fiducial while Slicer's side is away; return how the trial stands then."""
+    """Touch a fiducial while Slicer's side is away; return the state of the trial then."""
     trainee.until_warned(LOST)
     trainee.touch(label)
     state = trainee.view.state
@@ -218,7 +218,7 @@ def test_slicer_scores_the_trial_of_that_trainee(session):
     assert session["menu"].facts[0].label == "Score"
 
 
-def test_the_trial_goes_on_while_slicer_s_side_is_away_and_the_window_says_so(session):
+def test_the_trial_continues_without_slicer_s_side_and_the_window_says_so(session):
     crash = session["crash"]
     assert crash["phase"] == "running"
     assert crash["touched"] == [str(number) for number in range(1, CRASH_AFTER + 2)]
@@ -243,7 +243,7 @@ def test_unplugging_the_gamepad_stops_the_arm_and_loses_nothing(session):
     assert operators == ["gamepad", "keyboard", "gamepad"]
 
 
-def test_each_event_is_told_once_and_felt_once(session):
+def test_each_event_is_sent_once_and_felt_once(session):
     events = session["felt_events"]
     assert set(EVENTS) <= set(kinds(events))
     assert [event["number"] for event in events] == list(range(1, len(events) + 1))

@@ -27,7 +27,7 @@ def scenario_of_ones_own(host, tmp_path):
     unfold(host, "shareGroupBox")
 
 
-def test_it_is_saved_without_face_and_names_and_that_is_told(host, tmp_path):
+def test_it_is_saved_without_face_and_names_and_the_panel_says_so(host, tmp_path):
     host.answer("Save the scenario", tmp_path / "out.zip")
     host.press("exportScenarioButton")
     assert host.messages == []

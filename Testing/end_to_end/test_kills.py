@@ -21,7 +21,7 @@ from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, Nursery
 from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.surviving_player import UNTOLD, Killing, SurvivingPlayer
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ class Lab:
 
 
 def kill_servers(lab, kills, seed):
-    """Play on through so many kills, then one trial to its end; return the player."""
+    """Continue playing through a number of kills, then one trial to its end; return the player."""
     rng = random.Random(seed)
     player = SurvivingPlayer(load_scenario(COLIN), rng)
     killed = 0
@@ -95,7 +95,7 @@ def kill_servers(lab, kills, seed):
 
 
 def check_records(lab, player):
-    """Every acknowledged touch stands in a journal that is whole or recovered.
+    """Every acknowledged touch is in a journal that is complete or recovered.
 
     Return the UUIDs of the registered trials and the touches in their journals; a registration
     whose answer the kill has swallowed was never acknowledged, but counts.
@@ -138,7 +138,7 @@ def check_offers(lab, player, replayed):
         assert main(["replay", str(path), "--verify"]) == 0
 
 
-def test_a_server_killed_again_and_again_goes_on_where_the_trainee_was(tmp_path, simulators):
+def test_a_server_killed_again_and_again_resumes_where_the_trainee_was(tmp_path, simulators):
     lab = Lab(tmp_path, simulators)
     player = kill_servers(lab, kills=8, seed=3)
     assert player.resumed >= 4
@@ -187,7 +187,7 @@ def kill_slicer(lab, kills, seed, trials, also_server):
 
 
 def deliver_the_rest(lab, slicer, trials):
-    """Have so many trials stored and acknowledged, then their truths known, and end Slicer's side.
+    """Have trials stored and acknowledged, then their truths revealed, and end Slicer's side.
 
     An answer that came too late on a busy machine is asked for again over the next connection.
     """
@@ -205,7 +205,7 @@ def wait_for_study(lab, is_complete):
     stored, give_up = None, 0.0
     while not is_complete(now := lab.stored()):
         if now != stored:
-            stored, give_up = now, time.monotonic() + PATIENCE_S
+            stored, give_up = now, time.monotonic() + TIMEOUT_S
         assert time.monotonic() < give_up, stored
         time.sleep(0.1)
 
@@ -257,7 +257,7 @@ def check_study(lab, player):
     assert stored == check_records(lab, player)
 
 
-def test_a_trainee_whose_server_and_slicer_are_killed_at_once_goes_on_and_loses_no_touch(
+def test_a_trainee_whose_server_and_slicer_are_killed_at_once_resumes_and_loses_no_touch(
     tmp_path, simulators, slicer_sides
 ):
     lab = Lab(tmp_path, simulators, slicer_sides)

@@ -1,4 +1,4 @@
-"""Hours of training in a row: memory and descriptors stay flat, and no error stands in a log."""
+"""Hours of training in a row: memory and descriptors stay flat, and no log contains an error."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Run:
 
 
 def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
-    """Play trial after trial, each in a connection of its own, a view and Slicer's side beside.
+    """Play trial after trial, each over a separate connection, a view and Slicer's side beside.
 
     `is_enough` is asked with the number of trials played, before each trial.
     """
@@ -107,7 +107,7 @@ def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
 
 
 def logged_errors(folder: Path) -> list[str]:
-    """Return the lines of the simulator's log that tell of an error."""
+    """Return the lines of the simulator's log that report an error."""
     log = folder.glob("records-config/logs/*.log*")
     lines = [line for path in log for line in path.read_text().splitlines()]
     return [line for line in lines if json.loads(line)["level"] in ("error", "critical")]

@@ -104,7 +104,7 @@ def sample(host, tmp_path, monkeypatch, request):
 
 
 @pytest.mark.usefixtures("session_under_way")
-def test_a_loaded_volume_with_fiducials_placed_by_hand_is_trained_on_by_five_clicks(host, tmp_path):
+def test_five_clicks_start_training_on_a_loaded_volume_with_placed_fiducials(host, tmp_path):
     path = write_volume(tmp_path / "ms-x.nii.gz", phantom(spacing=(2.0, 2.0, 2.0), size=SIZE))
     load_volume(host.scene, path, "Ms X")
     placed = host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "By hand")
@@ -164,7 +164,7 @@ def test_the_sample_is_in_the_scene_and_chosen_by_one_click(host):
     assert host.find("makeScenarioButton").enabled
 
 
-def test_a_sample_that_cannot_be_downloaded_is_told_and_nothing_is_chosen(host, monkeypatch):
+def test_a_sample_that_cannot_be_downloaded_is_reported_and_nothing_is_chosen(host, monkeypatch):
     host.open()
     unfold(host, "newScenarioCollapsibleButton")
     monkeypatch.setattr(SampleDataLogic, "downloadSamples", lambda _logic, _name: [None])

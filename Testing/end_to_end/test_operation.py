@@ -50,7 +50,7 @@ def journal(folder):
     return path
 
 
-def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_goes_on_once_there_is_room(tmp_path):
+def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_resumes_when_there_is_room(tmp_path):
     records = tmp_path / "records"
     with (
         SimulatorProcess(records, "--no-views") as simulator,
@@ -111,7 +111,7 @@ def test_a_simulator_in_use_ends_cleanly_on_sigterm_and_closes_the_journal(ended
     assert reading.entries[-1]["kind"] == "stopped"
 
 
-def test_the_log_tells_from_start_to_end_in_lines_of_json(ended):
+def test_the_log_covers_start_to_end_in_lines_of_json(ended):
     lines = log_lines(ended[0])
     messages = [line["message"] for line in lines]
     assert messages[0] == "The simulator has started."
@@ -126,7 +126,7 @@ def test_the_log_tells_from_start_to_end_in_lines_of_json(ended):
     assert any(line["level"] == "warning" for line in lines)
 
 
-def test_no_secret_and_no_pseudonym_stands_in_the_log(ended):
+def test_no_secret_and_no_pseudonym_is_in_the_log(ended):
     folder, (_status, errors), code = ended
     written = "".join(path.read_text() for path in folder.glob("records-config/logs/*"))
     assert written
@@ -135,7 +135,7 @@ def test_no_secret_and_no_pseudonym_stands_in_the_log(ended):
         assert secret not in errors
 
 
-def test_a_window_that_fails_is_told_of_and_its_log_beside_the_simulator_s_says_why(tmp_path):
+def test_a_failing_window_is_reported_and_its_log_beside_the_simulator_s_says_why(tmp_path):
     environment = {**os.environ, "SDL_VIDEODRIVER": "none-such"}
     options = ["--view-port", "0", "--no-gamepad", "--desktop"]
     with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
@@ -168,7 +168,7 @@ def terminal():
 
 
 @pytest.mark.usefixtures("terminal")
-def test_an_interrupted_trial_is_told_on_the_terminal_and_left_alone_where_that_is_wanted(tmp_path):
+def test_an_interrupted_trial_is_reported_on_the_terminal_and_left_alone_on_request(tmp_path):
     records = tmp_path / "records"
     with (
         SimulatorProcess(records, "--no-views") as simulator,

@@ -26,7 +26,7 @@ from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 TRIALS = 100
 
 
@@ -114,7 +114,7 @@ def test_slicer_that_connects_later_stores_the_trial_and_its_score_replaces_the_
         scored, problems = [], []
         slicer.logic.trialScored.connect(scored.append)
         slicer.logic.problemFound.connect(problems.append)
-        give_up = time.monotonic() + PATIENCE_S
+        give_up = time.monotonic() + TIMEOUT_S
         while len(scored) < count and time.monotonic() < give_up:
             slicer.run_for(10)
         slicer.close()

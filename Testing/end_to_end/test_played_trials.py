@@ -1,4 +1,4 @@
-"""Whole trials, played, recorded and replayed: what the trainee is told of them holds."""
+"""Whole trials, played, recorded and replayed: what the trainee is shown about them is true."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ def test_the_robot_that_is_shown_is_rendered_as_it_moves_until_it_is_hidden(conn
     wait_for_renders(connected, arm)
 
 
-def test_whoever_leaves_the_module_sees_the_robot_move_in_a_3d_view_alone(connected, arm):
+def test_after_leaving_the_module_the_robot_moves_only_in_a_shown_3d_view(connected, arm):
     show_robot(connected)
     connected.leave()
     come_to_rest(connected)

@@ -53,7 +53,7 @@ def slicer(simulator):
 
 @pytest.fixture
 def views(loop_thread, simulator, key):
-    """Two pages that have joined: what each sends, and what each is told."""
+    """Two pages that have joined: what each sends, and what each receives."""
     with (
         ViewClient(loop_thread, simulator.url, key) as one,
         ViewClient(loop_thread, simulator.url, key) as other,

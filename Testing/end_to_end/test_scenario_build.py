@@ -61,7 +61,7 @@ def test_a_head_is_worked_with_before_its_skull_is_made(ct):
     assert whole.method == f"{first.method} Skull: bone of the CT."
 
 
-def test_a_ct_without_bone_ends_with_a_sentence_once_its_skull_is_asked_for(tmp_path):
+def test_a_ct_without_bone_is_refused_with_a_sentence_if_its_skull_is_wanted(tmp_path):
     soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-46.0, size=0.75)
     with head_process(write_volume(tmp_path / "soft.nrrd", soft), []) as process:
         assert wait_for_head(process).head.is_closed
@@ -69,7 +69,7 @@ def test_a_ct_without_bone_ends_with_a_sentence_once_its_skull_is_asked_for(tmp_
             process.whole()
 
 
-def test_whoever_cancels_ends_the_process_of_the_head_too(ct, temporary, monkeypatch):
+def test_cancel_ends_the_process_of_the_head_too(ct, temporary, monkeypatch):
     started = []
 
     class Recorded(subprocess.Popen):
@@ -117,7 +117,7 @@ shutil.copytree({made!r}, sys.argv[sys.argv.index("-o") + 1])
 """
 
 
-def test_what_the_planner_warns_of_is_told_beside_the_warnings_of_the_head(tmp_path):
+def test_warnings_of_the_planner_are_shown_beside_those_of_the_head(tmp_path):
     made = tmp_path / "made"
     with new_folder(made) as folder:
         write_scenario(folder, made_up_scenario(), ball_head())

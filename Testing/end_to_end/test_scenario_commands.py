@@ -52,7 +52,7 @@ def test_a_head_that_is_not_there_has_no_picture(volume, tmp_path, capsys):
     assert [path.name for path in tmp_path.iterdir()] == [volume.name]
 
 
-def test_the_check_tells_each_thing_that_is_wrong_and_its_status_says_so(ball, tmp_path, capsys):
+def test_the_check_reports_each_problem_and_its_status_says_so(ball, tmp_path, capsys):
     assert main(["scenario", "check", str(ball)]) == 1
     told = capsys.readouterr().out.splitlines()
     assert len(told) > 3

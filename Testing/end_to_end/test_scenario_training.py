@@ -23,7 +23,7 @@ RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main", "scenario"]
 
 @pytest.fixture
 def environment(tmp_path, monkeypatch):
-    """A home of its own for the user, here and in the processes."""
+    """A separate home for the user, here and in the processes."""
     for name in ("HOME", "USERPROFILE"):
         monkeypatch.setenv(name, str(tmp_path))
     return dict(os.environ)

@@ -62,7 +62,7 @@ class SlicerSide:
 
 
 def start_playing(port):
-    """Play a trial in a thread of its own; return a function that tells whether it is over."""
+    """Play a trial in a separate thread; return a function that returns whether it is over."""
     scenario = load_scenario(COLIN)
     head_to_world = scenario.perturbed_head_to_world(SEED)
     fiducials = transforms.apply(head_to_world, scenario.task("task-1").fiducials)
@@ -128,7 +128,7 @@ def test_points_appear_as_they_are_touched(slicer_side):
     assert len(counts) >= 10
 
 
-def test_the_crash_is_told_and_the_link_comes_back(slicer_side):
+def test_the_crash_is_reported_and_the_link_recovers(slicer_side):
     told = (LinkState.CONNECTED, LinkState.ABSENT, LinkState.OFF)
     # How often it looks for the simulator meanwhile depends on how long that takes to start.
     seen = [state for state, _again in groupby(s for s in slicer_side.states if s in told)]

@@ -12,7 +12,7 @@ from Testing.simulator.net.views.served import ViewClient
 
 
 def go_to(view, item, menu):
-    """Choose an item, and return the screen as soon as that menu is open."""
+    """Choose an item, and return the screen when that menu is open."""
     view.send({"type": "item", "name": item})
     return screen_where(view, lambda screen: screen["menu"]["name"] == menu)
 
@@ -30,7 +30,7 @@ def enabled(screen):
     return [item["name"] for item in items if "task" in item["name"] and item["is_enabled"]]
 
 
-def test_what_slicer_tells_of_a_study_is_what_the_trainees_menu_offers(loop_thread, tmp_path):
+def test_the_trainees_menu_offers_what_slicer_sends_of_a_study(loop_thread, tmp_path):
     key = secrets.token_hex(32)
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": "Slicer"}
     step = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")

@@ -23,7 +23,7 @@ from Testing.simulator.net.views.served import ViewClient
 COLIN = asset_path("scenarios", "colin27")
 SHIPPED = asset_path("studies", "published-protocol.json")
 TRAINEE = "P07"
-PATIENCE_S = 240.0
+TIMEOUT_S = 240.0
 SHORT = {
     "modes": ["desktop"],
     "modeOrder": "fixed",
@@ -74,7 +74,7 @@ class Lab:
 
     def until_next(self, name):
         """Wait until a step comes next in the study's file, or none."""
-        give_up = time.monotonic() + PATIENCE_S
+        give_up = time.monotonic() + TIMEOUT_S
         while (step := self.progress().next_step) is not None and step.name != name:
             assert time.monotonic() < give_up, f"{step.name} comes next, not {name}"
             time.sleep(0.05)
@@ -109,7 +109,7 @@ class View(ViewClient):
         self.until(lambda screen: offered(screen) == list(names))
 
     def answer(self, questionnaire, presses):
-        """Answer each item by so many presses."""
+        """Answer each item by a number of presses."""
         self.choose("answer", "questionnaire")
         for item in questionnaire.items:
             for _ in range(presses):

@@ -58,7 +58,7 @@ class Player(Client):
         raise AssertionError("no trial was offered")
 
     def wait_for_heartbeats(self, count: int) -> None:
-        """Wait for so many, one a second."""
+        """Wait for a number of them, one a second."""
         for _ in range(count):
             last = self.latest.get("SimServer")
             self.wait_for("SimServer", lambda beat, last=last: beat is not last, 20)
@@ -171,7 +171,7 @@ def test_where_the_head_was_stays_secret_until_a_registration_is_submitted(trial
     assert trial["after"]["headToWorld"] == trial["truth"]["headToWorld"]
 
 
-def test_views_are_told_that_the_trial_is_scored(trial):
+def test_views_show_that_the_trial_is_scored(trial):
     assert trial["phase"] == "scored"
 
 

@@ -149,7 +149,7 @@ ODD = {
     "1 × 1 × 5 mm": (nrrd(phantom(spacing=(1.0, 1.0, 5.0), size=SIZE)), [], "5.0 mm apart", 1.0),
     "a folder of DICOM files": (dicom, [], "", 0.6),
 }
-"""What writes the volume, options, a warning that is told, and the most mean error, mm."""
+"""What writes the volume, options, an expected warning, and the largest mean error, mm."""
 QUICK = {"a folder of DICOM files"}
 
 

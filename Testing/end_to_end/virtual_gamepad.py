@@ -60,7 +60,7 @@ class SimulatorWithGamepad(SimulatorProcess):
         self._send({"press": button, "isDown": is_down})
 
     def tap(self, button: str, seconds: float = 0.0) -> None:
-        """Press a button for at least so long, and let it go."""
+        """Press a button for at least this time, and release it."""
         self._send({"tap": button, "seconds": seconds})
 
     def felt(self) -> list[tuple[float, float]]:

@@ -18,7 +18,7 @@ from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.virtual_display import VirtualDisplay
 
 COMMAND = (sys.executable, "-m", "rastrainer_simulator.cli.main", "window")
-PATIENCE_S = 300.0
+TIMEOUT_S = 300.0
 
 
 class WindowProcess:
@@ -66,7 +66,7 @@ class WindowProcess:
         return self._log.read_text().splitlines() if self._log.exists() else []
 
     def wait_for_frames(self, count: int = 1) -> None:
-        """Wait until so many more pictures have been shown."""
+        """Wait until a number of further pictures have been shown."""
         wanted = len(self.frames()) + count
         wait_until(lambda: self._has_ended or len(self.frames()) >= wanted, "a picture")
         assert len(self.frames()) >= wanted, f"The window has ended: {self.stop()}"
@@ -92,12 +92,12 @@ class WindowProcess:
 
     def stop(self) -> tuple[int, str]:
         """Wait for its end; return its exit status and what it has said."""
-        status = self._process.wait(PATIENCE_S)
+        status = self._process.wait(TIMEOUT_S)
         self._said.seek(0)
         return status, self._said.read()
 
 
-def wait_until(condition, what: str, patience_s: float = PATIENCE_S) -> None:
+def wait_until(condition, what: str, patience_s: float = TIMEOUT_S) -> None:
     give_up = time.monotonic() + patience_s
     while not condition():
         assert time.monotonic() < give_up, f"{what} never came"

@@ -16,7 +16,7 @@ SLOW_S = 30.0
 
 @contextlib.contextmanager
 def stranger(behavior: Behavior, port: int = 0) -> Iterator[int]:
-    """Let `behavior` serve each connection in a thread of its own; gives the port."""
+    """Let `behavior` serve each connection in a separate thread; gives the port."""
     over = threading.Event()
     peers = []
 
@@ -73,7 +73,7 @@ def says(data: bytes) -> Behavior:
 
 
 def says_in_answer(data: bytes) -> Behavior:
-    """Say something to whoever has said something."""
+    """Answer every peer that has sent something."""
 
     def behave(peer: socket.socket) -> None:
         peer.recv(65536)

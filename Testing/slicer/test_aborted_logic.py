@@ -78,7 +78,7 @@ def test_twice_is_once(lab):
         assert len(AbortedTrials(study).of("T-001")) == 1
 
 
-def test_what_cannot_be_kept_is_told_once_and_not_acknowledged(lab):
+def test_what_cannot_be_kept_is_reported_once_and_not_acknowledged(lab):
     lab.is_study_broken = True
     for _ in range(3):
         lab.offer(make_aborted())
@@ -99,7 +99,7 @@ def test_what_cannot_be_kept_is_told_once_and_not_acknowledged(lab):
         pytest.param(make_aborted(trainee=" "), id="trainee"),
     ],
 )
-def test_a_hostile_record_is_told_and_what_comes_after_it_is_kept(lab, hostile):
+def test_a_hostile_record_is_reported_and_what_comes_after_it_is_kept(lab, hostile):
     lab.offer(hostile)
     lab.run_until(lambda: lab.problems)
     lab.offer(make_aborted())

@@ -1,4 +1,4 @@
-"""However much a peer sends at once, a turn of the main loop hands over only so much of it."""
+"""A turn of the main loop processes a limited part of what a peer sends at once."""
 
 import json
 

@@ -42,7 +42,7 @@ def test_results_come_on_the_main_thread_in_the_order_of_the_work(work):
     assert begun == [True]
 
 
-def test_what_the_work_refuses_is_told_and_the_next_is_done(work):
+def test_an_error_of_the_work_is_reported_and_the_next_work_runs(work):
     told = []
 
     def refuse():

@@ -42,7 +42,7 @@ def with_latin_1(message, placeholder=b"Geh?use"):
 POINTS = Points((Point("Geh?use", (1.0, 2.0, 3.0)), Point("2", (4.0, 5.0, 6.0))))
 
 
-def test_a_state_that_is_no_utf_8_is_refused_with_a_sentence_and_the_next_one_is_told(
+def test_a_state_that_is_not_utf_8_is_refused_with_a_sentence_and_the_next_one_is_read(
     link, simulator, caplog
 ):
     states = []
@@ -57,7 +57,7 @@ def test_a_state_that_is_no_utf_8_is_refused_with_a_sentence_and_the_next_one_is
     assert states == [{"phase": "idle"}]
 
 
-def test_a_label_that_is_no_utf_8_is_shown_with_a_replacement_and_its_point_registered(
+def test_a_label_that_is_not_utf_8_is_shown_with_a_replacement_and_its_point_registered(
     link, simulator, scene
 ):
     lists = []
@@ -78,7 +78,7 @@ def test_a_label_that_is_no_utf_8_is_shown_with_a_replacement_and_its_point_regi
         Command(7, "StepAnswered", "Geh?use"),
     ],
 )
-def test_a_command_that_is_no_utf_8_is_logged_and_the_one_behind_it_told(
+def test_a_command_that_is_not_utf_8_is_logged_and_the_next_one_is_read(
     link, simulator, caplog, command
 ):
     records = []
@@ -97,7 +97,7 @@ def test_a_command_that_is_no_utf_8_is_logged_and_the_one_behind_it_told(
         ("FAIL", "{}", "No Geh\ufffduse."),
     ],
 )
-def test_an_answer_that_is_no_utf_8_is_a_reply_with_a_sentence(
+def test_an_answer_that_is_not_utf_8_is_a_reply_with_a_sentence(
     link, simulator, monkeypatch, status, body, error
 ):
     def answer(command):

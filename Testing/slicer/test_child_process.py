@@ -63,7 +63,7 @@ def python(tmp_path):
 
 @pytest.fixture
 def program(python, tmp_path):
-    """A simulator with a window of its own, started by the launcher; killed after the test."""
+    """A simulator with a window, started by the launcher; killed after the test."""
     program = SimulatorProgram()
     program.start([str(python), "-c", SIMULATOR, str(tmp_path)])
     wait_until(lambda: program.state is ProgramState.READY, program.process, LONG_S)
@@ -96,7 +96,7 @@ def test_the_launcher_alone_would_leave_the_real_python_alive(python, tmp_path):
     ends(tmp_path / "pid")
 
 
-def test_what_is_asked_to_end_ends_with_the_real_python_and_writes_no_more(python, tmp_path):
+def test_a_program_asked_to_end_ends_with_the_real_python_and_writes_no_more(python, tmp_path):
     child = begun(python, tmp_path)
     child.end()
     wait_until(child.poll, lambda: None, LONG_S)
@@ -126,7 +126,7 @@ def test_work_is_run_to_its_end_with_its_steps_its_warnings_and_its_last_line(py
     assert set(steps) <= {("Beginning", 0.0), ("Sawing", 0.5)}
 
 
-def test_what_computes_the_kinematics_is_told(program):
+def test_the_name_of_the_kinematics_is_shown(program):
     wait_until(lambda: program.kinematics, program.process, LONG_S)
     assert program.state is ProgramState.READY
     assert program.sentence == (
@@ -134,7 +134,7 @@ def test_what_computes_the_kinematics_is_told(program):
     )
 
 
-def test_stop_asks_the_simulator_and_its_window_to_end_and_tells_it(program, tmp_path):
+def test_stop_ends_the_simulator_and_its_window_and_says_so(program, tmp_path):
     program.stop()
     assert (program.state, program.sentence) == (
         ProgramState.STOPPING,

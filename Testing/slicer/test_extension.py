@@ -1,4 +1,4 @@
-"""What Slicer's Extensions Manager installs: complete, importable, of its own conventions."""
+"""What Slicer's Extensions Manager installs: complete, importable, following its conventions."""
 
 import ast
 import json

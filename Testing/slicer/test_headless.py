@@ -31,7 +31,7 @@ SEED = 1
 
 
 class PlayingDouble(SimulatorDouble):
-    """Plays one trial as soon as it is greeted: fifteen touches, then the record."""
+    """Plays one trial after the greeting: fifteen touches, then the record."""
 
     def __init__(self, record):
         super().__init__(self.respond)
@@ -164,7 +164,7 @@ def test_bad_arguments_end_with_status_2_and_a_sentence(changes, words, tmp_path
     assert "Traceback" not in error
 
 
-def test_an_output_folder_that_cannot_be_is_told_before_anyone_plays(tmp_path, capfd):
+def test_an_unusable_output_folder_is_reported_before_the_first_trial(tmp_path, capfd):
     (tmp_path / "file").write_text("x")
     assert headless.main(arguments(tmp_path / "file" / "folder", 18944)) == 2
     assert "cannot be made" in capfd.readouterr().err

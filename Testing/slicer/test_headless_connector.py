@@ -95,7 +95,7 @@ def test_a_transform_becomes_a_linear_transform_to_parent(connector, simulator, 
     assert node.GetAttribute("OpenIGTLink.seq") == "7"
 
 
-def test_metadata_stays_on_the_node_and_status_keys_also_stand_bare(connector, simulator):
+def test_metadata_stays_on_the_node_and_status_keys_also_without_prefix(connector, simulator):
     simulator.send("T", Transform.from_matrix(SHIFT), {"seq": "1", "TransformStatus": "OK"})
     wait_for(connector, lambda: incoming(connector, "T"))
     simulator.send("T", Transform.from_matrix(SHIFT), {"other": "2"})
@@ -240,7 +240,7 @@ def test_a_command_without_a_connection_is_silently_not_sent(scene):
     assert not command.IsInProgress()
 
 
-def test_a_lost_connection_is_told_only_after_the_next_one(scene):
+def test_a_lost_connection_is_reported_only_after_the_next_one(scene):
     simulator = SimulatorDouble()
     connector = started_connector(scene, simulator)
     disconnections = count_events(connector, connector.DisconnectedEvent)

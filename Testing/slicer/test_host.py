@@ -63,7 +63,7 @@ def test_an_unknown_member_raises_on_reading_and_on_assigning(qt):
         qt.QCheckBox().checkStateChanged  # noqa: B018
 
 
-def test_a_python_subclass_may_have_attributes_of_its_own(qt):
+def test_a_python_subclass_may_have_new_attributes(qt):
     class Plain(qt.QWidget):
         def __init__(self, parent=None):
             qt.QWidget.__init__(self, parent)
@@ -110,7 +110,7 @@ def test_a_slot_is_disconnected(qt):
     assert heard == []
 
 
-def test_an_exception_in_a_slot_is_noted_and_the_click_goes_on(qt, host):
+def test_an_exception_in_a_slot_is_recorded_and_the_click_continues(qt, host):
     heard = []
     button = qt.QPushButton()
     button.connect("clicked()", lambda: 1 / 0)
@@ -161,7 +161,7 @@ def test_keywords_and_numbers_of_numpy_are_refused(qt):
         qt.QSpinBox().setValue(np.int64(3))
 
 
-def test_a_program_that_cannot_start_is_told(qt, host):
+def test_a_program_that_cannot_start_is_reported(qt, host):
     errors = []
     process = qt.QProcess()
     process.connect("errorOccurred(QProcess::ProcessError)", errors.append)

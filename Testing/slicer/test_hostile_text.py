@@ -1,4 +1,4 @@
-"""What a peer, a file or a user writes is shown as it stands: no HTML, no wider than the dock."""
+"""Text of a peer, a file or a user is shown unchanged: no HTML, no wider than the dock."""
 
 import json
 import re
@@ -127,7 +127,7 @@ def test_no_label_grows_with_a_long_word(open_module):
     assert host.minimum_width() == before
 
 
-def test_what_the_simulator_tells_of_its_trial(connected, simulator):
+def test_the_state_of_the_trial_is_read_from_the_simulator(connected, simulator):
     host = connected
     state = dict.fromkeys(("instruction", "trainee", "task", "phase", "nextPoint"), HOSTILE)
     state |= {"trialId": "", "mode": HOSTILE, "proximity": HOSTILE, "clearanceMm": 1.0}
@@ -224,7 +224,7 @@ def test_a_tool_tip_is_never_taken_for_html():
     assert len(toolTip(HTML * 1000)) < 40_000
 
 
-def test_a_question_about_a_trainee_shows_the_name_as_it_stands(connected, simulator):
+def test_a_question_about_a_trainee_shows_the_name_unchanged(connected, simulator):
     host = connected
     state = {"trialId": "", "phase": "running", "trainee": HTML, "task": "task-1"}
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))

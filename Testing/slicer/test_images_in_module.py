@@ -91,7 +91,7 @@ def test_showing_the_scenario_again_brings_the_mri_back_where_other_images_are_s
     assert composite.GetBackgroundVolumeID() == images(host).GetID()
 
 
-def test_images_that_cannot_be_used_are_told_beside_the_scenario(host):
+def test_unusable_images_are_reported_beside_the_scenario(host):
     folder = user_library() / "broken"
     shutil.copytree(COLIN27.folder, folder)
     content = json.loads((folder / "scenario.json").read_text(encoding="utf-8"))

@@ -34,7 +34,7 @@ def test_the_first_thing_said_is_hello_with_the_protocol_version_and_no_wish_for
     assert simulator.commands == [hello(0.0)]
 
 
-def test_poses_are_asked_for_by_another_hello_and_the_link_opens_once(link, simulator):
+def test_poses_are_requested_by_another_hello_and_the_link_opens_once(link, simulator):
     opened = []
     link.opened.connect(lambda: opened.append(True))
     connect(link, simulator)
@@ -48,13 +48,13 @@ def test_poses_are_asked_for_by_another_hello_and_the_link_opens_once(link, simu
     assert opened == [True]
 
 
-def test_poses_that_were_wanted_before_are_asked_for_with_the_connection(link, simulator):
+def test_poses_wanted_before_are_requested_with_the_connection(link, simulator):
     link.wantPoses(True)
     connect(link, simulator)
     assert simulator.commands == [hello(POSES_HZ)]
 
 
-def test_each_state_is_told_once(link, simulator):
+def test_each_state_is_emitted_once(link, simulator):
     states = []
     link.statusChanged.connect(lambda status: states.append(status.state))
     connect(link, simulator)
@@ -67,7 +67,7 @@ def test_each_state_is_told_once(link, simulator):
     ]
 
 
-def test_silence_is_told_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):
+def test_silence_is_reported_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):
     connect(link, simulator)
     clock.ahead += 5.0
     run_link_until(link, lambda: link.status.state is LinkState.STALE)
@@ -117,7 +117,7 @@ def test_the_link_survives_a_cleared_scene(link, simulator, scene):
     assert scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode") is not None
 
 
-def test_touched_points_are_told_as_they_come(link, simulator):
+def test_touched_points_are_emitted_as_they_come(link, simulator):
     counts = []
     connect(link, simulator)
     link.pointsChanged.connect(lambda node: counts.append(node.GetNumberOfControlPoints()))
@@ -153,7 +153,7 @@ def test_a_deleted_list_comes_again(link, simulator, scene):
     )
 
 
-def test_a_renamed_list_still_receives_and_tells(link, simulator, scene):
+def test_a_renamed_list_still_receives_and_emits(link, simulator, scene):
     counts = []
     connect(link, simulator)
     link.pointsChanged.connect(lambda node: counts.append(node.GetNumberOfControlPoints()))
@@ -165,7 +165,7 @@ def test_a_renamed_list_still_receives_and_tells(link, simulator, scene):
     assert scene.GetFirstNodeByName("CapturedPoints") is None
 
 
-def test_the_state_of_the_simulator_is_told_when_it_changes(link, simulator):
+def test_the_state_of_the_simulator_is_emitted_when_it_changes(link, simulator):
     states = []
     connect(link, simulator)
     link.stateChanged.connect(states.append)
@@ -247,7 +247,7 @@ def test_an_address_that_is_none_gets_a_sentence(link, host, port, words):
         link.connectTo(host, port)
 
 
-def test_a_slicer_without_the_extension_is_told_what_to_install(scene):
+def test_a_slicer_without_the_extension_is_reported_what_to_install(scene):
     link = Link(scene, lambda: None)
     link.connectTo()
     assert link.status.state is LinkState.NOT_INSTALLED

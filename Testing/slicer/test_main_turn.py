@@ -1,4 +1,4 @@
-"""While it is the main thread's turn, a worker that asks stands aside."""
+"""Workers pause during the main thread's turn."""
 
 import threading
 
@@ -34,11 +34,11 @@ def patient(monkeypatch):
     monkeypatch.setattr(main_turn, "LONGEST_S", LONG_S)
 
 
-def test_a_worker_goes_on_when_it_is_nobodys_turn():
+def test_a_worker_runs_outside_of_the_main_threads_turns():
     assert Worker().is_done_within(LONG_S)
 
 
-def test_a_worker_stands_aside_until_the_outermost_turn_is_over():
+def test_a_worker_pauses_until_the_outermost_turn_is_over():
     with mainTurn():
         with mainTurn():
             worker = Worker()
@@ -52,7 +52,7 @@ def test_a_turn_that_fails_is_over():
     assert Worker().is_done_within(LONG_S)
 
 
-def test_a_worker_is_let_go_on_in_the_midst_of_a_turn_which_then_goes_on():
+def test_a_worker_may_run_during_a_turn_which_then_continues():
     with mainTurn():
         worker = Worker()
         with workersTurn():

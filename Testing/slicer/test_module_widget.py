@@ -35,7 +35,7 @@ def test_one_button_connects_and_disconnects(host, simulator):
     assert (host.text("connectButton"), host.text("trainingText")) == ("Connect", "")
 
 
-def test_an_empty_host_is_told_in_one_sentence(host):
+def test_an_empty_host_is_reported_in_one_sentence(host):
     host.type("hostLineEdit", " ")
     host.press("connectButton")
     assert "Enter the host of the simulator" in host.messages[-1].text
@@ -107,7 +107,7 @@ def test_without_a_network_sample_data_are_a_sentence_and_leave_nothing(host, ur
     assert host.find("sampleDataButton").enabled
 
 
-def test_a_sample_that_does_not_come_though_there_is_a_network_is_told(host, monkeypatch):
+def test_a_sample_that_does_not_come_though_there_is_a_network_is_reported(host, monkeypatch):
     logic = slicer.util.getModuleLogic("SampleData")
     monkeypatch.setattr(logic, "downloadSamples", lambda _name: [None])
     host.press("sampleDataButton")

@@ -96,7 +96,7 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
     assert host.find("scenarioComboBox").count == 1
 
 
-def test_a_hostile_zip_file_is_told_and_changes_nothing(host, tmp_path):
+def test_a_hostile_zip_file_is_reported_and_changes_nothing(host, tmp_path):
     bad = tmp_path / "bad.zip"
     with zipfile.ZipFile(bad, "w") as archive:
         archive.writestr("../../evil.txt", "x")
@@ -108,7 +108,7 @@ def test_a_hostile_zip_file_is_told_and_changes_nothing(host, tmp_path):
     assert host.find("scenarioComboBox").count == 1
 
 
-def test_a_scenario_is_not_written_without_the_simulator_and_that_is_told(host, tmp_path):
+def test_a_scenario_is_not_written_without_the_simulator_and_that_is_reported(host, tmp_path):
     unfold(host, "shareGroupBox")
     assert host.find("removeFaceCheckBox").checked
     host.answer("Save the scenario", tmp_path / "out.zip")
@@ -131,7 +131,7 @@ def test_a_broken_scenario_is_listed_with_its_problem_and_cannot_be_used(host, p
     assert host.find("showScenarioButton").enabled
 
 
-def test_a_volume_that_holds_no_head_is_told(host):
+def test_a_volume_that_holds_no_head_is_reported(host):
     host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", host.scene.GetFirstNodeByName("Empty"))
@@ -193,7 +193,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
 
 
-def test_a_preview_shows_a_warning_and_stands_where_the_volumes_transform_places_it(host):
+def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0), size=SIZE), "MRI")
     volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")

@@ -79,7 +79,7 @@ def test_there_is_a_next_step_whatever_the_link_and_the_program_do(state, progra
     assert step.sentence
 
 
-def test_what_ended_by_itself_is_told_and_can_be_started_again():
+def test_an_unexpected_end_is_reported_and_the_program_can_be_started_again():
     ended = step_of(OFF, program=ProgramState.FAILED, programSentence="It ended: no screen.")
     assert (ended.action, ended.sentence) == (NextAction.START_SIMULATOR, "It ended: no screen.")
 

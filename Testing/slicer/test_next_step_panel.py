@@ -1,4 +1,4 @@
-"""The line at the top: what it tells, and which sections it opens and folds."""
+"""The line at the top: its texts, and which sections it opens and folds."""
 
 import json
 import uuid
@@ -76,7 +76,7 @@ def test_a_section_opens_when_its_step_comes_and_is_folded_after_it(instructor):
     assert instructor.open_sections() == {"registration"}
 
 
-def test_what_is_opened_or_folded_by_hand_stays_so_until_the_next_step(instructor):
+def test_sections_that_the_user_opens_or_folds_stay_so_until_the_next_step(instructor):
     host = instructor.host
     host.press("createTraineeButton")
     instructor.wait_for("Start the trial run")

@@ -144,14 +144,14 @@ def test_a_trainee_is_created_chosen_archived_and_brought_back(panels, study_pat
         assert len(study.trainees()) == 1
 
 
-def test_a_taken_pseudonym_is_told(panels):
+def test_a_taken_pseudonym_is_reported(panels):
     for _ in range(2):
         panels.type("pseudonymLineEdit", "Blue")
         panels.press("createTraineeButton")
     assert "taken; choose another" in panels.messages[-1].text
 
 
-def test_a_study_locked_by_another_program_is_told_and_shown_again_by_itself(
+def test_a_study_locked_by_another_program_is_reported_and_shown_again_by_itself(
     panels, study_path, add_trial
 ):
     panels.press("createTraineeButton")
@@ -234,7 +234,7 @@ def test_a_file_gets_its_suffix_and_replaces_another_only_after_a_yes(panels, ad
     assert (tmp_path / "EXPORT.CSV").is_file()
 
 
-def test_the_study_is_another_file_once_it_is_chosen_and_one_that_is_none_is_told(panels, tmp_path):
+def test_another_study_file_is_used_when_chosen_and_an_invalid_one_is_reported(panels, tmp_path):
     panels.press("createTraineeButton")
     panels.find("studyPathLineEdit").currentPath = str(tmp_path / "second.db")
     panels.process_events()
@@ -291,7 +291,7 @@ def test_fits_residuals_and_the_error_to_expect_are_shown_with_their_units(panel
     assert len(cells(panels, "residualsTable")) == 15
 
 
-def test_a_point_with_a_larger_error_of_its_own_weighs_less_until_undo(panels, touched):
+def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touched):
     touched[2] += [2.0, -1.0, 0.5]
     touch(panels, touched)
     before = cells(panels, "residualsTable")
@@ -420,7 +420,7 @@ def test_targets_are_added_removed_and_brought_back(panels):
     assert node.GetNumberOfControlPoints() == 1
 
 
-def test_the_error_to_expect_is_told_at_any_target_of_a_list(panels, touched):
+def test_the_expected_error_is_shown_at_any_target_of_a_list(panels, touched):
     touch(panels, touched)
     targets = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Targets")
     setPoints(targets, ("Tumor", "Cyst"), np.array([[0.0, 0.0, 20.0], [60.0, 60.0, -60.0]]))
@@ -632,7 +632,7 @@ def test_how_a_headset_is_paired_is_shown_while_the_simulator_runs(panels, tmp_p
     assert panels.text("pairingText") == ""
 
 
-def test_a_set_up_that_cannot_begin_is_told(panels, tmp_path):
+def test_a_set_up_that_cannot_begin_is_reported(panels, tmp_path):
     panels.find("wheelsPathLineEdit").currentPath = str(tmp_path)
     panels.press("setupButton")
     assert "There are no wheels" in panels.messages[-1].text

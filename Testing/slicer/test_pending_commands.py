@@ -106,7 +106,7 @@ def test_a_finished_trial_is_handed_over_in_the_next_turn(make_room):
     assert records == [{"number": 1}]
 
 
-def test_one_turn_is_asked_for_however_much_arrives(make_room):
+def test_one_turn_is_requested_however_much_arrives(make_room):
     room = make_room()
     for _ in range(5):
         room.ask()
@@ -197,7 +197,7 @@ def test_a_command_that_was_given_up_lives_until_the_connector_is_done_with_it(s
     assert silent.replies[1].ok
 
 
-def test_the_stand_in_tells_of_a_command_that_died_too_early(silent):
+def test_the_stand_in_reports_a_command_that_died_too_early(silent):
     command = headlessKit().makeCommand()
     command.SetName("ListTasks")
     silent.link.connector.SendCommand(command)

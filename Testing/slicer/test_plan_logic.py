@@ -1,4 +1,4 @@
-"""A plan on the MRI reaches the robot, and its true error is told once the head is known."""
+"""A plan on the MRI reaches the robot, and its true error is shown when the head is known."""
 
 import uuid
 from dataclasses import replace
@@ -123,7 +123,7 @@ def planned(scenario):
     )
 
 
-def test_the_plan_is_shown_to_the_trainee_and_its_reachability_told(room):
+def test_the_plan_is_shown_to_the_trainee_and_its_reachability_to_the_user(room):
     room.register()
     room.connect()
     room.logic.send(room.target(ENTRY, TUMOR))
@@ -135,7 +135,7 @@ def test_the_plan_is_shown_to_the_trainee_and_its_reachability_told(room):
     assert "can carry it out" in room.logic.sentence
 
 
-def test_what_is_out_of_reach_or_refused_is_told_in_the_simulators_words(room):
+def test_an_unreachable_or_refused_plan_is_reported_in_the_simulators_words(room):
     room.register()
     room.connect()
     room.reply = {"reachable": False, "reason": "The target is out of the robot's reach."}
@@ -149,7 +149,7 @@ def test_what_is_out_of_reach_or_refused_is_told_in_the_simulators_words(room):
 
 
 @pytest.mark.parametrize("change", ["point", "registration", "list", "none"])
-def test_what_was_answered_is_not_told_of_another_plan(change, room):
+def test_an_answer_is_not_shown_for_another_plan(change, room):
     room.register()
     room.connect()
     node = room.target(TUMOR)
@@ -171,7 +171,7 @@ def test_what_was_answered_is_not_told_of_another_plan(change, room):
     assert "not this plan any more" in room.logic.sentence
 
 
-def test_an_answer_that_comes_after_the_plan_was_changed_is_not_told(room):
+def test_an_answer_that_comes_after_the_plan_was_changed_is_not_shown(room):
     room.register()
     room.connect()
     node = room.target(TUMOR)
@@ -202,7 +202,7 @@ def test_a_target_that_is_placed_erases_none_and_each_change_can_be_undone(room)
     assert not points.canUndo
 
 
-def test_undo_passes_over_what_was_not_placed_and_what_is_gone(room):
+def test_undo_skips_what_was_not_placed_and_what_was_removed(room):
     points = room.logic.points
     node = room.target(TUMOR)
     points.newTarget()
@@ -212,7 +212,7 @@ def test_undo_passes_over_what_was_not_placed_and_what_is_gone(room):
     assert node.GetNumberOfControlPoints() == 0
 
 
-def test_a_second_trajectory_is_a_line_of_its_own_and_an_unfinished_one_is_finished(room):
+def test_a_second_trajectory_is_another_line_and_an_unfinished_one_is_finished(room):
     line = room.logic.points.newTrajectory()
     line.AddControlPoint(*ENTRY)
     assert room.logic.points.newTrajectory() is line
@@ -234,7 +234,7 @@ def test_the_points_of_a_scenario_are_not_removed(scene, scenario):
 
 
 @pytest.mark.parametrize("is_sent_first", [True, False])
-def test_the_true_error_at_the_target_is_told_once_the_head_is_known(is_sent_first, room):
+def test_the_true_error_at_the_target_is_shown_when_the_head_is_known(is_sent_first, room):
     room.register()
     room.connect()
     if not is_sent_first:

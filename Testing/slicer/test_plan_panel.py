@@ -38,7 +38,7 @@ def planner(host):
         yield host
 
 
-def test_reachable_is_told_of_what_was_sent_and_of_nothing_else(planner):
+def test_reachability_is_shown_only_for_the_plan_that_was_sent(planner):
     planner.press("sendPlanButton")
     planner.wait_until(lambda: "can carry it out" in planner.text("reachableText"), "the answer")
     planner.let_pass(0.3)

@@ -112,14 +112,14 @@ def test_a_trial_that_begins_while_the_question_is_open_is_not_aborted(trial, mo
     assert trial.commands == []
 
 
-def test_connect_does_not_disconnect_though_the_link_is_begun_meanwhile(host):
+def test_connect_does_not_disconnect_a_link_that_was_started_meanwhile(host):
     host.open()
     link = host.widget.logic.session.link
     press_slowly(host, "connectButton", lambda: link.connectTo("127.0.0.1", 1))
     assert link.status.state is not LinkState.OFF
 
 
-def test_cancel_does_not_begin_anew_though_the_work_is_done_meanwhile(host, monkeypatch):
+def test_cancel_does_not_start_again_work_that_ended_meanwhile(host, monkeypatch):
     host.open()
     host.unfold("useHeadButton")
     model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", "Mine")

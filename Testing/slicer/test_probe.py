@@ -94,12 +94,12 @@ def test_what_is_no_simulator_is_recognized_by_what_it_says(behavior, peer):
         (says(b"HTT"), Peer.OTHER_PROGRAM),
     ],
 )
-def test_whoever_keeps_the_answer_is_not_waited_for_without_end(behavior, peer):
+def test_a_silent_network_is_not_waited_for_without_end(behavior, peer):
     with stranger(behavior) as port:
         assert ask_and_lose_patience(port).peer is peer
 
 
-def test_nobody_at_home_is_told():
+def test_an_unused_port_is_reported():
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
     assert ask("127.0.0.1", port) == ProbeResult(Peer.NOBODY, "127.0.0.1")
@@ -139,7 +139,7 @@ def test_a_name_that_is_looked_up_for_too_long_is_given_up(monkeypatch):
 
 
 @pytest.mark.parametrize("host", ["nowhere.invalid", "::1", "a" * 300, "b..c"])
-def test_a_host_without_an_address_is_told(host):
+def test_a_host_without_an_address_is_reported(host):
     assert ask(host, 18944) == ProbeResult(Peer.UNKNOWN_HOST)
 
 

@@ -31,7 +31,7 @@ def test_a_web_page_is_named_and_never_connected_to(link):
         assert link.connector is None
 
 
-def test_the_stand_in_of_the_connector_would_have_told(scene):
+def test_the_stand_in_of_the_connector_notices_commands_that_died_too_early(scene):
     connector = headlessKit().makeConnector()
     scene.AddNode(connector)
     with stranger(says(HTTP)) as port:
@@ -51,7 +51,7 @@ def test_a_simulator_that_comes_to_the_port_of_a_web_page_is_found(link, clock):
         run_until_state(link, LinkState.CONNECTED)
 
 
-def test_after_a_loss_it_is_asked_again_who_answers(link):
+def test_after_a_loss_the_peer_is_recognized_again(link):
     with SimulatorDouble() as simulator:
         connect(link, simulator)
     with web_server(simulator.port):
@@ -59,7 +59,7 @@ def test_after_a_loss_it_is_asked_again_who_answers(link):
         assert WEB_PAGE in link.status.sentence
 
 
-def test_what_comes_to_the_port_while_slicer_stands_still_is_not_connected_to(link):
+def test_another_program_at_the_port_during_a_stall_is_not_connected_to(link):
     with SimulatorDouble() as simulator:
         connect(link, simulator)
     with stranger(says(HTTP), simulator.port):
@@ -67,7 +67,7 @@ def test_what_comes_to_the_port_while_slicer_stands_still_is_not_connected_to(li
         run_until_state(link, LinkState.OTHER_PROGRAM)
 
 
-def test_after_the_scene_was_cleared_it_is_asked_again_who_answers(link, scene):
+def test_after_the_scene_was_cleared_the_peer_is_recognized_again(link, scene):
     with SimulatorDouble() as simulator:
         connect(link, simulator)
         scene.Clear(False)
@@ -76,7 +76,7 @@ def test_after_the_scene_was_cleared_it_is_asked_again_who_answers(link, scene):
         assert link.connector is None
 
 
-def test_after_a_half_open_connection_it_is_asked_again_who_answers(link, clock):
+def test_after_a_half_open_connection_the_peer_is_recognized_again(link, clock):
     simulator = SimulatorDouble()
     connect(link, simulator)
     simulator.stop_listening()
@@ -108,7 +108,7 @@ def test_a_connection_is_tested_without_being_made(link, simulator):
     assert link.connector is None
 
 
-def test_a_test_tells_who_else_answers(link):
+def test_a_connection_test_names_another_program(link):
     told = []
     with web_server() as port:
         link.testConnection("127.0.0.1", port, told.append)

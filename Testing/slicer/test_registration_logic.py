@@ -65,7 +65,7 @@ def table(scene, scenario):
     return Table(scene, scenario)
 
 
-def test_three_fits_stand_side_by_side_with_the_error_to_expect(table):
+def test_three_fits_are_shown_side_by_side_with_the_expected_error(table):
     table.touch()
     fits = table.logic.comparison.fits
     assert list(fits) == list(KINDS)

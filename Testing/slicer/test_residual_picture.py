@@ -99,11 +99,11 @@ SIZE = (80.0, 28.0)
 NOTHING = np.zeros((0, 2))
 
 
-def test_a_lonely_label_stands_to_the_right_and_up():
+def test_a_single_label_is_above_to_the_right():
     assert placeLabels(np.zeros((1, 2)), np.array([SIZE]), NOTHING, 10.0) == [(1, 1)]
 
 
-def test_a_label_gives_way_to_what_is_there():
+def test_a_label_avoids_what_is_there():
     arrow = np.column_stack([np.linspace(0, 60, 9), np.linspace(0, 30, 9)])
     assert placeLabels(np.zeros((1, 2)), np.array([SIZE]), arrow, 10.0) == [(1, -1)]
 

@@ -1,4 +1,4 @@
-"""The robot stands in the 3D view and follows the poses that the link brings."""
+"""The robot is in the 3D view and follows the poses that the link brings."""
 
 import shutil
 
@@ -59,7 +59,7 @@ def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
     np.testing.assert_allclose(bounds(robot[0])[4], 0.0, atol=1.0)
 
 
-def test_the_robot_stands_where_its_touches_are_shown(scene, robot, scenario):
+def test_the_robot_is_where_its_touches_are_shown(scene, robot, scenario):
     fixed = showTask(scene, scenario, "task-1")
     transform = showPlannedPlace(scene, scenario, capturedPointsNode(scene), fixed)
     in_world = bounds(robot[0])
@@ -88,7 +88,7 @@ def test_the_robot_can_be_hidden(scene, robot):
     assert not any(node.GetDisplayVisibility() for node in robot)
 
 
-def test_a_folder_without_a_robot_is_told(scene, tmp_path):
+def test_a_folder_without_a_robot_is_reported(scene, tmp_path):
     with pytest.raises(InputError, match="There is no file"):
         showRobot(scene, tmp_path)
     shutil.copy(ROBOT / "iiwa7.urdf", tmp_path)

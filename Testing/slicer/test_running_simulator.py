@@ -31,7 +31,7 @@ time.sleep(600)
 
 
 class Connections:
-    """Stands in for the link: where it was told to connect to."""
+    """Replaces the link: records where it was to connect."""
 
     def __init__(self):
         self.made = []
@@ -109,7 +109,7 @@ def test_what_was_left_behind_is_ended_with_its_window(left_behind, running, mon
     assert process.wait() == -(signal.SIGKILL if words else signal.SIGTERM)
 
 
-def test_another_that_has_begun_since_it_was_shown_is_not_ended(left_behind, running):
+def test_a_simulator_started_after_the_shown_one_is_not_ended(left_behind, running):
     first = left_behind()
     running.look()
     end_group(first)
@@ -132,7 +132,7 @@ def test_one_that_a_person_has_started_is_ended_alone_without_its_shell(running,
     end_group(process)
 
 
-def test_whoever_looks_keeps_no_simulator_from_starting(tmp_path):
+def test_looking_for_a_simulator_keeps_none_from_starting(tmp_path):
     look = "import sys, pathlib; from rastrainer.journal.folder_lock import read_holder\n"
     look += "print(flush=True)\nwhile True: read_holder(pathlib.Path(sys.argv[1]))"
     RecordsFolder(tmp_path).close()

@@ -1,4 +1,4 @@
-"""A scenario stands in the scene: head, skull, plan and the fiducials of a task."""
+"""A scenario in the scene: head, skull, plan and the fiducials of a task."""
 
 from dataclasses import replace
 
@@ -101,9 +101,7 @@ def test_a_scenario_that_was_built_anew_under_its_name_is_shown_anew(scene, plan
     np.testing.assert_allclose(worldPoints(node), moved.fiducials)
 
 
-def test_the_mesh_that_is_shown_is_not_read_again_and_one_that_has_gone_is_told(
-    scene, planned, monkeypatch
-):
+def test_a_shown_mesh_is_not_read_again_and_a_missing_one_is_reported(scene, planned, monkeypatch):
     showScenario(scene, planned)
     with monkeypatch.context() as patch:
         patch.setattr(shown, "read_head_mesh", None)

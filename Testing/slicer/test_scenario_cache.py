@@ -51,7 +51,7 @@ def test_a_list_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monk
     assert read == ["egg"]
 
 
-def test_a_scenario_that_was_removed_is_told(tmp_path):
+def test_a_scenario_that_was_removed_is_reported(tmp_path):
     build(tmp_path / "ball", "First")
     cache = ScenarioCache.below(tmp_path)
     cache.find("ball")

@@ -72,7 +72,7 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
         pytest.param(np.zeros((60, 60, 60), np.float32), "volume is empty", id="empty"),
     ],
 )
-def test_a_broken_volume_is_told_and_the_head_stays(scene, logic, broken, sentence):
+def test_a_broken_volume_is_reported_and_the_head_stays(scene, logic, broken, sentence):
     logic.show("ball", "task-1")
     shown = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     with pytest.raises(InputError, match=sentence):
@@ -81,6 +81,6 @@ def test_a_broken_volume_is_told_and_the_head_stays(scene, logic, broken, senten
     assert shown.GetDisplayVisibility()
 
 
-def test_a_volume_without_an_image_is_told(scene, logic):
+def test_a_volume_without_an_image_is_reported(scene, logic):
     with pytest.raises(InputError, match="holds no image"):
         logic.useHead(scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty"))

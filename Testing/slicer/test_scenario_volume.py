@@ -1,4 +1,4 @@
-"""A scenario's images stand behind all else in the slice views, read once and in the background."""
+"""A scenario's images are the background of the slice views, read once and in the background."""
 
 from dataclasses import replace
 
@@ -78,7 +78,7 @@ def test_the_images_lie_where_the_head_is_with_their_window_in_all_slice_views(
     assert loading.problems == []
 
 
-def test_nothing_is_read_before_the_loader_is_asked_nor_in_its_own_thread(
+def test_nothing_is_read_before_the_loader_runs_nor_in_its_thread(
     scene, loading, imaged, monkeypatch
 ):
     def read(_path):
@@ -146,7 +146,7 @@ def test_of_two_scenarios_shown_at_once_the_last_one_has_its_images(scene, loadi
 
 
 @pytest.mark.parametrize("content", [None, b"no image"])
-def test_images_that_cannot_be_used_are_told_and_the_head_is_shown(scene, loading, imaged, content):
+def test_unusable_images_are_reported_and_the_head_is_shown(scene, loading, imaged, content):
     imaged.volume.path.unlink()
     if content is not None:
         imaged.volume.path.write_bytes(content)

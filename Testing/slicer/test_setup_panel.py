@@ -1,4 +1,4 @@
-"""The section Set-up in the host: what it tells before, during and after, and that it removes."""
+"""The section Set-up in the host: its texts before, during and after, and the removal."""
 
 import pytest
 
@@ -30,7 +30,7 @@ def set_up(host):
     host.wait_until(lambda: "is set up in" in host.text("setupText"), "it is set up")
 
 
-def test_source_size_and_folder_are_told_before_anything_is_fetched(host, monkeypatch):
+def test_source_size_and_folder_are_reported_before_anything_is_fetched(host, monkeypatch):
     setup = host.open().logic.session.simulator.setup
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setattr("platform.machine", lambda: "x86_64")

@@ -15,7 +15,7 @@ def path(tmp_path):
 
 @pytest.fixture
 def logic(path):
-    """A logic whose time is told by the test."""
+    """A logic whose time the test sets."""
     times = [0.0]
     logic = TraineeLogic(lambda: Study.open(path), path.parent, clock=lambda: times[0])
     logic.wait = lambda: times.append(times.pop() + LOOK_EVERY_S)

@@ -1,4 +1,4 @@
-"""The simulator is set up by pip in a folder of its own, of what the module knows, or not."""
+"""Pip sets the simulator up in a private folder, from known packages only."""
 
 import sys
 import zipfile
@@ -90,7 +90,7 @@ def left_beside(setup):
 
 
 def replaced(wheel, text):
-    """Put other content under the name of a wheel, as whoever keeps the folder could."""
+    """Put other content under the name of a wheel, as the owner of the folder could."""
     write_wheel(wheel.parent, *wheel.name.split("-")[:2], {"bolt.py": text})
 
 
@@ -137,7 +137,7 @@ def test_nothing_is_built_from_sources_to_set_up_even_if_their_hash_is_known(
     assert not mark.exists()
 
 
-def test_an_index_of_ones_own_is_asked_only_for_what_others_have_made(setup, bolt, tmp_path):
+def test_only_third_party_packages_are_requested_from_a_private_index(setup, bolt, tmp_path):
     ours = write_wheel(tmp_path / "squatter", "rastrainer", "99.0", {"rastrainer_simulator.py": ""})
     with PackageIndex([bolt, ours]) as index:
         lines, error = run_setup(setup, SetupSource(index=index.address))
@@ -146,9 +146,7 @@ def test_an_index_of_ones_own_is_asked_only_for_what_others_have_made(setup, bol
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
 
 
-def test_pip_does_not_follow_the_settings_of_whoever_runs_slicer(
-    setup, source, bolt, tmp_path, monkeypatch
-):
+def test_pip_ignores_the_settings_of_the_user(setup, source, bolt, tmp_path, monkeypatch):
     with PackageIndex([bolt]) as index:
         settings = tmp_path / "pip.conf"
         text = f"[global]\nindex-url = {index.address}\nextra-index-url = {index.address}\n"
@@ -164,13 +162,13 @@ def test_pip_does_not_follow_the_settings_of_whoever_runs_slicer(
 
 
 @pytest.mark.parametrize("address", ["pypi", "ftp://127.0.0.1/simple", "https://", "file:///tmp"])
-def test_what_is_no_address_of_an_index_is_told_before_anything_begins(setup, address):
+def test_an_invalid_index_address_is_reported_before_the_set_up_starts(setup, address):
     with pytest.raises(InputError, match="it begins with https://"):
         setup.begin(SetupSource(index=address))
     assert not setup.folder.parent.exists()
 
 
-def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_told(setup, source, package):
+def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_reported(setup, source, package):
     wheel = package.folder / WHEEL
     wheel.write_bytes(wheel.read_bytes()[:-1])
     with pytest.raises(InputError, match="is damaged: install the extension RASTrainer anew"):
@@ -224,7 +222,7 @@ def test_what_an_interrupted_removal_has_left_goes_at_the_next_set_up(setup, sou
     assert left_beside(setup) == ["simulator"]
 
 
-def test_what_was_set_up_starts_tells_its_port_and_stops(setup, source):
+def test_an_installed_simulator_starts_reports_its_port_and_stops(setup, source):
     run_setup(setup, source)
     program = SimulatorProgram()
     command = setup.command(["simulator", "--port", "18999"])
@@ -237,7 +235,7 @@ def test_what_was_set_up_starts_tells_its_port_and_stops(setup, source):
     assert program.state is ProgramState.STOPPED
 
 
-def test_how_a_headset_is_paired_is_told_until_the_simulator_ends(setup, source):
+def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(setup, source):
     run_setup(setup, source)
     program, told = SimulatorProgram(), []
     program.pairingChanged.connect(lambda: told.append(program.pairingSentence))
@@ -306,7 +304,7 @@ def test_a_set_up_can_be_canceled(setup, source):
     assert left_beside(setup) == []
 
 
-def test_a_folder_without_wheels_and_a_python_that_is_not_there_are_told(setup, package, tmp_path):
+def test_a_folder_without_wheels_and_a_missing_python_are_reported(setup, package, tmp_path):
     with pytest.raises(InputError, match="no wheels"):
         setup.begin(SetupSource(wheels=tmp_path))
     missing = SimulatorSetup(tmp_path / "PythonSlicer", tmp_path / "simulator", package)
@@ -324,7 +322,7 @@ def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
     assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout == tmp_path
 
 
-def test_what_a_set_up_takes_is_told_for_the_platforms_that_were_measured(package, monkeypatch):
+def test_the_size_of_a_set_up_is_known_for_measured_platforms(package, monkeypatch):
     assert package.sizes() is None
     ours = SimulatorPackage.of(Path(__file__).parents[2] / "RASTrainer")
     monkeypatch.setattr(sys, "platform", "linux")

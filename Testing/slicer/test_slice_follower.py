@@ -43,7 +43,7 @@ def place(scene):
 
 
 def play(room, follower, point, task="task-1"):
-    """Let the simulator tell which point is next."""
+    """Have the simulator send which point is next."""
     room.tell(nextPoint=point, task=task)
     told = (point, task)
     room.run_until(lambda: (room.logic.progress.nextPoint, room.logic.progress.task) == told)
@@ -58,7 +58,7 @@ def put_tool(scene, tip):
 
 
 def stand(room, scenario):
-    """Let the head stand in World where it is planned."""
+    """Place the head in World as planned."""
     fixed = showTask(room.scene, scenario, "task-1")
     showPlannedPlace(room.scene, scenario, capturedPointsNode(room.scene), fixed)
 

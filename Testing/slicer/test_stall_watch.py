@@ -1,4 +1,4 @@
-"""The watch tells how long the main loop stood still, and what ran then."""
+"""The watch measures how long the main loop stalled, and what ran then."""
 
 import time
 
@@ -7,7 +7,7 @@ from Testing.slicer.host.event_loop import LOOK_AFTER_S, StallWatch
 STALL_S = 4 * LOOK_AFTER_S
 
 
-def test_a_stall_is_told_with_its_length(host):
+def test_a_stall_is_reported_with_its_length(host):
     with StallWatch() as watch:
         host.let_pass(0.05)
         time.sleep(STALL_S)

@@ -43,7 +43,7 @@ class Lab:
         self.logic.skipStep(self.next, reason)
 
     def practice(self, seconds, **changes):
-        """Let a trial run be played for so long, with a pause in it, and then be ended."""
+        """Play a trial run for a time, with a pause in it, and end it."""
         self.tell(phase="running", elapsedS=0.0, **changes)
         self.tell(phase="running", elapsedS=seconds / 2, **changes)
         self.tell(phase="paused", elapsedS=seconds, **changes)
@@ -51,7 +51,7 @@ class Lab:
         self.tell(phase="idle", elapsedS=0.0)
 
     def tell(self, **changes):
-        """Have the simulator tell of a trial, and wait until the logic knows."""
+        """Have the simulator send the state of a trial, and wait until the logic has it."""
         told = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
         self.room.tell(**told)
         self.room.run_until(lambda: told.items() <= vars(self.room.logic.progress).items())
@@ -167,9 +167,7 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
     again.close()
 
 
-def test_a_break_ends_by_itself_and_whoever_is_chosen_when_the_protocols_minutes_are_over(
-    lab, tmp_path
-):
+def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab, tmp_path):
     short = json.loads(SHIPPED.read_text()) | {
         "tasks": ["task-1"],
         "questionnaires": [],
@@ -193,7 +191,7 @@ def test_a_break_ends_by_itself_and_whoever_is_chosen_when_the_protocols_minutes
     assert lab.next == "desktop/1/task-1"
 
 
-def test_a_trial_that_will_not_count_is_told_while_it_is_played(enrolled):
+def test_a_trial_that_will_not_count_is_reported_while_it_is_played(enrolled):
     enrolled.logic.answer([0] * 16)
     enrolled.tell(phase="running", task="task-3")
     assert (
@@ -270,12 +268,12 @@ def test_a_second_trial_run_counts_from_its_start_though_it_lasts_longer(enrolle
 
 
 def told(lab):
-    """What the simulator was told last, once it has been."""
+    """The last step that was sent to the simulator; empty before."""
     steps = lab.room.sent("StudyStep")
     return steps[-1] if steps else {}
 
 
-def test_the_simulator_is_told_what_comes_next_whenever_that_changes(enrolled):
+def test_the_simulator_is_sent_the_next_step_whenever_it_changes(enrolled):
     room = enrolled.room
     room.run_until(lambda: told(enrolled).get("questionnaire") == "ssq")
     enrolled.logic.answer([0] * 16)
@@ -296,7 +294,7 @@ def test_the_simulator_is_told_what_comes_next_whenever_that_changes(enrolled):
     assert len(room.sent("StudyStep")) == count + 1
 
 
-def test_a_simulator_that_is_connected_again_is_told_of_everybody(enrolled):
+def test_a_reconnected_simulator_is_sent_the_steps_of_all_trainees(enrolled):
     room = enrolled.room
     enrolled.trainees.create("T002", consent=True)
     enrolled.logic.enroll()
@@ -314,7 +312,7 @@ def test_who_is_deleted_is_led_no_more(enrolled):
     enrolled.room.run_until(lambda: told(enrolled) == {"trainee": "T001", "kind": "free"})
 
 
-def test_a_trial_of_somebody_who_is_not_chosen_counts_and_the_simulator_is_told(
+def test_a_trial_of_a_trainee_who_is_not_chosen_counts_and_the_simulator_is_sent_the_next_step(
     enrolled, make_record
 ):
     enrolled.logic.answer([0] * 16)
@@ -333,9 +331,7 @@ def test_a_trial_of_somebody_who_is_not_chosen_counts_and_the_simulator_is_told(
     assert told(enrolled)["trainee"] == "T001"
 
 
-def test_a_late_trial_counts_before_a_simulator_is_told_what_comes_next(
-    enrolled, make_record, tmp_path
-):
+def test_a_late_trial_counts_before_the_next_step_is_sent(enrolled, make_record, tmp_path):
     enrolled.logic.answer([0] * 16)
     enrolled.skip("has practiced in the pilot")
     enrolled.trainees.choose("")
@@ -358,12 +354,12 @@ def test_a_late_trial_counts_before_a_simulator_is_told_what_comes_next(
 
 
 def answered(lab, **changes):
-    """Have the simulator tell of answers."""
+    """Have the simulator send answers."""
     told = {"trainee": "T001", "number": 1, "questionnaire": "ssq", "answers": [1] * 16}
     lab.room.simulator.send_command("StepAnswered", {**told, **changes})
 
 
-def test_what_is_answered_at_the_simulator_is_kept_once_whoever_is_chosen(enrolled):
+def test_answers_at_the_simulator_are_stored_once_for_any_chosen_trainee(enrolled):
     enrolled.trainees.choose("")
     answered(enrolled)
     answered(enrolled, answers=[3] * 16)
@@ -394,7 +390,7 @@ def test_answers_that_do_not_belong_to_the_step_are_not_kept(enrolled, wrong):
     assert enrolled.next == "hmd/before/ssq"
 
 
-def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab, tmp_path):
+def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab, tmp_path):
     path = tmp_path / "short.json"
     changed = {"tasks": ["task-1"], "questionnaires": [], "trialRun": {"minutes": 0}}
     path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
@@ -411,7 +407,7 @@ def test_how_much_of_a_break_is_over_is_told_to_a_simulator_that_comes_later(lab
     assert told(lab)["over"] == pytest.approx(4.0, abs=0.5)
 
 
-def test_the_simulator_is_told_to_wait_until_an_aborted_trial_has_its_reason(enrolled):
+def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     while enrolled.logic.progress().next_step.kind is not StepKind.TRIAL:
         enrolled.skip("this is not what is tested")
     step = enrolled.logic.progress().next_step

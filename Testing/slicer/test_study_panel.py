@@ -1,4 +1,4 @@
-"""The section Study by its buttons alone: begin, enroll, answer, skip; what is refused is told."""
+"""The section Study by its buttons alone: start, enroll, answer, skip; refusals are explained."""
 
 import json
 from datetime import datetime, timezone

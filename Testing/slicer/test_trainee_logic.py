@@ -64,7 +64,7 @@ def test_negative_results_are_shown_with_a_true_minus_sign():
     ]
 
 
-def test_a_new_trainee_is_chosen_and_everyone_is_told(logic):
+def test_a_new_trainee_is_chosen_and_all_listeners_are_notified(logic):
     told = []
     logic.changed.connect(lambda: told.append(logic.chosen))
     assert logic.create("", consent=True).pseudonym == "T001"
@@ -74,7 +74,7 @@ def test_a_new_trainee_is_chosen_and_everyone_is_told(logic):
         logic.create("Blue", consent=False)
 
 
-def test_an_archived_trainee_is_listed_only_when_asked_for(logic):
+def test_an_archived_trainee_is_listed_only_on_request(logic):
     logic.create("a", consent=False)
     logic.setArchived(True)
     assert logic.trainees() == ()
@@ -83,7 +83,7 @@ def test_an_archived_trainee_is_listed_only_when_asked_for(logic):
     assert logic.chosenTrainee().consent
 
 
-def test_a_deleted_trainee_is_gone_and_journals_that_are_elsewhere_are_named(logic, add_trial):
+def test_a_deleted_trainee_is_removed_and_journals_elsewhere_are_named(logic, add_trial):
     add_trial(1, trainee="gone")
     logic.choose("gone")
     erased = logic.delete()
@@ -169,7 +169,7 @@ def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, 
     assert (right > expected.max(), top > 6.0) == (True, True)
 
 
-def test_a_study_without_a_told_truth_has_an_empty_plot_and_a_sentence(scene, logic, make_record):
+def test_a_study_without_truths_has_an_empty_plot_and_a_sentence(scene, logic, make_record):
     logic.study.add_trial(make_record(str(uuid.UUID(int=7))))
     found = logic.calibration()
     assert showCalibration(scene, found).GetTitle() == "True against expected TRE"
@@ -199,7 +199,7 @@ def test_a_trial_without_results_has_empty_cells(scene, logic, make_record):
     assert table.GetCellText(0, table.GetColumnIndex("score")) == "nan"
 
 
-def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(add_trial):
+def test_the_score_is_shown_with_its_parts_and_ctps_with_its_warning(add_trial):
     trial = add_trial(1)
     rows = {row.title: row for row in [*scoreRows(trial), *ctpsRows(trial, COHORT)]}
     assert rows["Score"].value == trial.score.score
@@ -213,7 +213,7 @@ def test_the_score_is_told_with_its_parts_and_ctps_with_its_warning(add_trial):
     assert ctpsRows(trial, []) == []
 
 
-def test_a_trial_stands_beside_own_ones_other_trainees_and_a_reference_group(logic, add_trial):
+def test_a_trial_is_compared_with_own_ones_other_trainees_and_a_reference_group(logic, add_trial):
     add_trial(1, trainee="a", completionTimeS=120.0)
     add_trial(2, trainee="b", completionTimeS=60.0)
     add_trial(3, trainee="b", task="task-2", completionTimeS=10.0)
@@ -237,7 +237,7 @@ def test_the_score_of_a_trial_beyond_a_limit_is_called_not_acceptable(logic, add
     assert notes["… its part for accuracy"] == "beyond the limit of 1.5 mm"
 
 
-def test_a_score_stands_beside_those_of_its_own_version_only(logic, add_trial):
+def test_a_score_is_compared_only_with_those_of_the_same_version(logic, add_trial):
     other = add_trial(1, trainee="b")
     logic.study.add_results(other.record.trial_id, score=first_score(60.0, 0.1))
     trial = add_trial(2, trainee="a")

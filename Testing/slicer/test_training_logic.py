@@ -59,7 +59,7 @@ def test_touches_appear_on_the_head_as_it_is_planned_while_the_trial_runs(room, 
     assert room.logic.progress.touched == 1
 
 
-def test_progress_tells_the_next_point_the_clearance_and_the_time_that_goes_on(room):
+def test_progress_contains_the_next_point_the_clearance_and_the_running_time(room):
     room.tell(nextPoint="4", clearanceMm=12.5, proximity="proximity", elapsedS=30.0)
     room.run_until(lambda: room.logic.progress.nextPoint == "4")
     room.now += 5.0
@@ -94,7 +94,7 @@ def test_a_trial_is_paused_resumed_and_aborted(room):
     room.run_until(lambda: room.sent("Abort"))
 
 
-def test_a_trial_that_began_while_the_user_was_asked_about_another_is_not_aborted(room):
+def test_a_trial_that_started_during_the_question_about_another_is_not_aborted(room):
     room.tell()
     room.run_until(lambda: room.logic.progress.trialId == TRIAL)
     room.tell(trialId="another")
@@ -104,7 +104,7 @@ def test_a_trial_that_began_while_the_user_was_asked_about_another_is_not_aborte
     assert room.sent("Abort") == []
 
 
-def test_a_refusal_is_told_in_the_simulators_words(room):
+def test_a_refusal_is_reported_in_the_simulators_words(room):
     room.refusal = "A trial is open: Register or Abort it first."
     room.logic.start("T001", "task-1", "desktop")
     room.run_until(lambda: room.answers)

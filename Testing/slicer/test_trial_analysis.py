@@ -73,7 +73,7 @@ def test_all_three_kinds_are_fitted_and_the_true_error_of_the_rigid_one_is_score
     assert 0 < analysis.score.score < 100
 
 
-def test_there_is_no_score_before_the_truth_is_told(scenario, record):
+def test_there_is_no_score_before_the_truth_is_revealed(scenario, record):
     analysis = analyze_trial(record, scenario)
     assert analysis.score is None
     assert not any(sentence.startswith("Score") for sentence in analysis.feedback.sentences)
@@ -128,7 +128,7 @@ def test_the_mode_plays_no_part_and_the_protocols_references_count(scenario, rec
     assert score(references=others) == score()
 
 
-def test_the_trainee_is_told_which_touches_hurt_and_where_on_the_skin(scenario, record):
+def test_the_feedback_names_the_worst_touches_and_their_place_on_the_skin(scenario, record):
     feedback = analyze_trial(record, scenario, truth=truth_of(scenario)).feedback
     assert [touch.label for touch in feedback.touches] == list(record.labels)
     for touch in feedback.touches:

@@ -124,7 +124,7 @@ def test_a_finished_trial_is_kept_acknowledged_scored_and_its_truth_kept(lab, ma
     np.testing.assert_allclose(np.reshape(stored.head_to_world, (4, 4)), expected)
 
 
-def test_the_trial_stands_in_the_scene(lab, make_record):
+def test_the_trial_is_shown_in_the_scene(lab, make_record):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
     transform = findNode(lab.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
@@ -167,7 +167,7 @@ def test_a_trial_is_not_acknowledged_before_it_is_kept(lab, make_record):
     assert lab.stored().record.trial_id == TRIAL
 
 
-def test_a_record_that_is_none_is_told_and_not_acknowledged(lab, make_record):
+def test_an_invalid_record_is_reported_and_not_acknowledged(lab, make_record):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL, mode="cinema"))
     lab.run_until(lambda: lab.problems)
     assert "mode must be one of desktop, hmd" in lab.problems[0]
@@ -185,7 +185,7 @@ def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
     assert not lab.sent("TrialScored")
 
 
-def test_a_refused_score_is_told_and_the_trial_kept(lab, make_record):
+def test_a_refused_score_is_reported_and_the_trial_kept(lab, make_record):
     lab.refusal = "There is no such trial."
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.problems)
@@ -205,7 +205,7 @@ def test_a_trial_whose_contacts_were_not_measured_is_kept_with_its_truth_and_not
     assert not lab.sent("TrialScored")
 
 
-def test_a_score_that_nobody_heard_is_told_over_the_next_connection(lab, make_record):
+def test_an_unacknowledged_score_is_sent_over_the_next_connection(lab, make_record):
     lab.refusal = "Not now."
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.problems)
@@ -216,7 +216,7 @@ def test_a_score_that_nobody_heard_is_told_over_the_next_connection(lab, make_re
     assert lab.stored().true_tre_mm is not None
 
 
-def test_scores_that_nobody_heard_are_told_one_after_the_other(lab, make_record):
+def test_unacknowledged_scores_are_sent_one_after_the_other(lab, make_record):
     trials = [str(uuid.UUID(int=number)) for number in (11, 12, 13)]
     lab.refusal = "Not now."
     for trial in trials:
@@ -240,7 +240,7 @@ def test_scores_that_nobody_heard_are_told_one_after_the_other(lab, make_record)
     assert kept == [0, 1, 2]
 
 
-def test_each_score_is_told_once_though_the_link_opens_again_while_they_are_told(lab, make_record):
+def test_each_score_is_sent_once_even_if_the_link_opens_again_meanwhile(lab, make_record):
     trials = [str(uuid.UUID(int=number)) for number in range(1, 5)]
     lab.refusal = "Not now."
     for trial in trials:
@@ -345,7 +345,7 @@ def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, revie
         assert [trainee.pseudonym for trainee in study.trainees()] == ["T-001"]
 
 
-def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_told(lab, make_record):
+def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_reported(lab, make_record):
     lab.logic.trialKept.connect(lambda _record: kept.append(True))
     kept = []
     for number in range(10 * MOST_WAITING):

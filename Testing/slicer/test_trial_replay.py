@@ -98,7 +98,7 @@ def test_a_replay_is_saved_with_the_scene(headless_scene, replayed, tmp_path):
     assert findReplay(again.scene).GetNumberOfItems() == replayed.GetNumberOfItems()
 
 
-def test_a_journal_of_another_robot_or_none_at_all_is_told(scene, tips, tmp_path):  # noqa: ARG001
+def test_a_journal_of_another_robot_or_none_at_all_is_reported(scene, tips, tmp_path):  # noqa: ARG001
     chain = readArmChain(URDF)
     longer = chain.origins.copy()
     longer[3, 2, 3] += 10.0

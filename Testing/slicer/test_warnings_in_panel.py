@@ -94,7 +94,7 @@ def test_one_click_mends_it_at_once_and_undo_brings_it_back(panel, touches, chan
     ],
     ids=["mirrored", "in meters", "on one line", "too few"],
 )
-def test_what_no_click_can_mend_is_told_with_its_points(panel, touches, change, named, advice):
+def test_a_warning_without_a_remedy_names_its_points(panel, touches, change, named, advice):
     touch(panel, change(touches))
     told = " ".join([*warnings(panel), panel.text("registrationText")])
     assert named in told

@@ -55,7 +55,7 @@ def start_on_a_port_in_use(folder, port):
     return main(["simulator", "--port", str(port), "--no-views", *folders])
 
 
-def test_a_simulator_that_cannot_start_is_told_without_the_command_line(tmp_path, capfd):
+def test_a_simulator_that_cannot_start_is_reported_without_the_command_line(tmp_path, capfd):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

@@ -23,7 +23,7 @@ ABOVE_MM = 40.0
 
 
 class Player:
-    """Touches the fiducials of a running trial in a thread of its own.
+    """Touches the fiducials of a running trial in a separate thread.
 
     The journal tells where the head stands, which a person sees on the screen.
     """
@@ -44,7 +44,7 @@ class Player:
 
     @property
     def is_done(self) -> bool:
-        """Whether what was begun is over; what went wrong is raised here."""
+        """Whether what was started is over; what went wrong is raised here."""
         if self._error is not None:
             raise self._error
         return self._thread is None or not self._thread.is_alive()

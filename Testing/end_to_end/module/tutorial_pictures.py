@@ -26,7 +26,7 @@ AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
 
 
 class Tutorial:
-    """Plays the ten steps, as `docs/tutorial.md` tells them, and takes a picture of each."""
+    """Plays the ten steps, as `docs/tutorial.md` describes them, and takes a picture of each."""
 
     def __init__(self, host: Host, folder: Path, pictures: Path) -> None:
         self._host = host

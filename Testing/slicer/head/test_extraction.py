@@ -129,7 +129,7 @@ def test_the_same_volume_gives_the_same_head():
     assert np.array_equal(first.triangles, second.triangles)
 
 
-def test_progress_is_told_and_may_cancel():
+def test_progress_is_reported_and_may_cancel():
     class CancelledError(Exception):
         pass
 

@@ -61,7 +61,7 @@ def test_thick_slices_give_a_whole_head_and_a_warning():
     assert errors_mm(draft.head).mean() < 1.0
 
 
-def test_a_scan_that_goes_on_below_the_neck_is_cut_200_mm_below_the_crown():
+def test_a_scan_that_continues_below_the_neck_is_cut_200_mm_below_the_crown():
     ijk = np.indices((24, 24, 90)).reshape(3, -1).T * 3.0
     crown = np.linalg.norm(ijk - [36.0, 36.0, 220.0], axis=1) < 25.0
     neck = (np.hypot(*(ijk[:, :2] - 36.0).T) < 14.0) & (ijk[:, 2] < 220.0)

@@ -12,7 +12,7 @@ BODY = ndimage.gaussian_filter(np.random.default_rng(2).normal(size=(34, 40, 28)
 
 
 @pytest.mark.parametrize("body", [BODY, BODY.transpose(2, 0, 1)], ids=["C order", "transposed"])
-def test_depths_are_exact_as_far_as_they_are_asked_for(body):
+def test_depths_are_exact_within_the_requested_distance(body):
     below = np.pad(body, [(0, 0), (0, 0), (9, 0)], mode="edge")
     exact = ndimage.distance_transform_edt(below)[:, :, 9:]
     depth = mask.depthInside(body, 4.0)

@@ -1,4 +1,4 @@
-"""A head is made in a process of its own: what it returns, refuses, and how it is broken off."""
+"""A head is made in a separate process: its results, its errors, and its cancellation."""
 
 import os
 import subprocess
@@ -46,7 +46,7 @@ def test_what_cannot_be_used_is_refused_in_the_same_words():
     assert str(there.value) == str(here.value)
 
 
-def test_a_process_that_ends_before_it_is_done_is_told():
+def test_a_process_that_ends_before_it_is_done_is_reported():
     with pytest.raises(InputError, match="The head could not be made"):
         inOwnProcess(PYTHON, "os:abort", ignore)
 

@@ -22,7 +22,7 @@ CENTER, RADIUS, NECK = np.array([0.0, 5.0, 0.0]), 30.0, 20.0
 
 @pytest.fixture
 def found():
-    """A ball on a neck, which goes on below the base as `findHead` lets it."""
+    """A ball on a neck, which continues below the base as `findHead` lets it."""
     origin = np.array([-35.0, -30.0, BASE - 15.0])
     grid = np.indices((70, 70, 95)).transpose(1, 2, 3, 0) + origin - CENTER
     ball = RADIUS - np.linalg.norm(grid, axis=3)
@@ -104,7 +104,7 @@ def test_the_base_stays_where_an_edit_lays_the_segment_on_an_oblique_grid(node, 
     assert ball_errors(mesh).mean() < 0.5
 
 
-def test_a_neck_that_an_oblique_scan_cuts_aslant_goes_on_to_a_flat_base(node, found):
+def test_a_neck_cut_by_an_oblique_scan_continues_to_a_flat_base(node, found):
     segment = showSegment(node, found)
     lay_on_grid(node, segment, oblique((0, 1, 2), [35.0, 35.0, 23.0]), (70, 70, 58))
     mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))

@@ -38,7 +38,7 @@ def test_it_is_closed_within_the_skin_and_ends_at_the_heads_base(draft):
 
 
 @of(MRI)
-def test_that_of_an_mri_is_one_body_as_deep_below_the_skin_as_its_method_tells(draft):
+def test_the_skull_of_an_mri_is_one_body_as_deep_below_the_skin_as_its_method_states(draft):
     assert draft.is_skull_approximate
     assert draft.skull.euler_characteristic == 2
     assert "an approximation, the skin moved inward by 7 mm" in draft.method

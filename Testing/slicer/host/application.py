@@ -52,7 +52,7 @@ class Application(Checked):
         return True
 
     def _complete_startup(self) -> None:
-        """Tell, as Slicer does once, that all modules are loaded."""
+        """Emit, as Slicer does once, that all modules are loaded."""
         for listener in self._startup_listeners:
             listener()
 

@@ -14,7 +14,7 @@ PERIOD_MS = 5
 
 @contextmanager
 def cancels(host: Host, button: str, when: Callable[[], bool] = lambda: True) -> Iterator[None]:
-    """Press a button within the context as soon as it says Cancel and `when` is so.
+    """Press a button within the context when it says Cancel and `when()` is true.
 
     Raises:
         AssertionError: the context ends, and it has not come to that.

@@ -17,7 +17,7 @@ from Testing.slicer.host.members import Checked
 
 
 class Failures:
-    """What would stand in Slicer's error log, and nobody would see.
+    """What would be in Slicer's error log, unseen.
 
     Attributes:
         texts: one traceback or sentence a failure.
@@ -41,7 +41,7 @@ class Failures:
             self._told.append(exception)
 
     def catch(self, exception: BaseException) -> None:
-        """Take what a slot raised; what was told as a clear sentence is none."""
+        """Take what a slot raised, unless the user was shown it as a sentence."""
         isTold = any(exception is told for told in self._told)
         if not (isTold and isinstance(exception, InputError)):
             text = "".join(traceback.format_exception(exception))

@@ -32,8 +32,8 @@ from Testing.slicer.host.stand_ins import ctkCollapsibleButton, ctkCollapsibleGr
 MODULE_FILE = Path(__file__).parents[3] / "RASTrainer" / "RASTrainer.py"
 CONNECTOR_PERIOD_MS = 5
 DOCK_WIDTH = 470
-PATIENCE_S = 2.0
-"""So long a user looks for what is not there."""
+TIMEOUT_S = 2.0
+"""How long to wait for a widget to become visible."""
 
 
 class Host:
@@ -337,7 +337,7 @@ class Host:
             self._wait()
 
     def _now(self) -> str:
-        """Return what may tell why nothing happens."""
+        """Return what may explain why nothing happens."""
         told = [message.text for message in self.messages]
         work = None if self.widget is None else vars(self.widget.logic.session.work)
         return (
@@ -368,7 +368,7 @@ class Host:
             time.sleep(0.002)
 
     def sees(self, model: Any) -> bool:
-        """Tell whether the whole of a model is within the 3D view."""
+        """Return whether the whole model is within the 3D view."""
         return self._layout.three_d_view_of_host().sees(model)
 
     def shown_tables(self) -> list[str]:
@@ -451,7 +451,7 @@ class Host:
     def _usable(self, name: str) -> Any:
         """Return a widget, in a section that is open: a user opens the one that is needed."""
         self.unfold(name)
-        deadline = time.monotonic() + PATIENCE_S
+        deadline = time.monotonic() + TIMEOUT_S
         # One that has just been made anew or unfolded is shown by an event. Slicer's panel scrolls:
         # no widget is squeezed to nothing where many sections are open.
         while not _has_area(self.find(name)._qt) and time.monotonic() < deadline:
@@ -465,7 +465,7 @@ class Host:
         return widget
 
     def made_widget(self) -> Any:
-        """Return the module's widget; where its `setup` raises, Slicer prints that and goes on."""
+        """Return the module's widget; if its `setup` raises, Slicer prints that and continues."""
         if self.widget is None:
             self._frame = class_named("qSlicerScriptedLoadableModuleWidget")()
             self._frame.setMRMLScene(self.scene)

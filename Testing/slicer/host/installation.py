@@ -20,7 +20,7 @@ _MISSING = object()
 
 
 class Installation:
-    """What was there before stands here, until `remove`."""
+    """What was there before, until `remove`."""
 
     def __init__(self) -> None:
         self._modules: dict[str, Any] = {}

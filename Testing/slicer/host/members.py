@@ -82,7 +82,7 @@ def _argument_count(signature: str) -> int:
 
 
 class Checked:
-    """Tells apart what Slicer has not, and what only the host does not offer.
+    """Distinguishes what Slicer lacks from what only the host does not offer.
 
     Attributes:
         measured: names of the members of Slicer's object.

@@ -194,7 +194,7 @@ def disconnect(proxy: Any, signature: str, function: Callable[..., Any] | None =
 
 
 def _is_of_host(source: QtCore.QObject, signature: str) -> bool:
-    """Tell whether a Python class of ours declares the signal: its types are Python's then."""
+    """Return whether a Python class of ours declares the signal: its types are Python's then."""
     name = signature.partition("(")[0]
     return any(
         name in vars(kind)

@@ -156,7 +156,7 @@ class ThreeDView(View):
         return camera
 
     def sees(self, model: Any) -> bool:
-        """Tell whether the whole of a model is within the picture."""
+        """Return whether the whole model is within the picture."""
         bounds = [0.0] * 6
         model.GetRASBounds(bounds)
         for corner in itertools.product(bounds[:2], bounds[2:4], bounds[4:]):

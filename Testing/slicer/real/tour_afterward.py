@@ -9,7 +9,7 @@ from tour_stage import Tour
 from tour_trial import STUDY, TRAINEE
 
 PLAN_MM = (10.0, 20.0, 30.0)
-SCENARIO_PATIENCE_S = 600.0
+SCENARIO_TIMEOUT_S = 600.0
 
 
 def plan(tour: Tour) -> str:
@@ -89,7 +89,7 @@ def scenario_from_volume(tour: Tour) -> str:
     hands.click("makeScenarioButton")
     combo = hands.find("scenarioComboBox")
     hands.wait_until(
-        lambda: "Head of the tour" in combo.currentText, "it is made", SCENARIO_PATIENCE_S
+        lambda: "Head of the tour" in combo.currentText, "it is made", SCENARIO_TIMEOUT_S
     )
     made = tour.session.places.library / combo.itemData(combo.currentIndex)
     told = hands.text("newScenarioText")

@@ -8,7 +8,7 @@ from typing import Any
 
 import slicer
 
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 
 
 class TourError(Exception):
@@ -76,7 +76,7 @@ class Hands:
             time.sleep(0.005)
 
     def wait_until(
-        self, condition: Callable[[], Any], what: str, timeout_s: float = PATIENCE_S
+        self, condition: Callable[[], Any], what: str, timeout_s: float = TIMEOUT_S
     ) -> None:
         """Let Slicer do what is due until something is so.
 

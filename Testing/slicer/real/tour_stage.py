@@ -1,4 +1,4 @@
-"""What the steps of the tour share: hands, dialogs, studies of its own, the trainee's process."""
+"""What the steps of the tour share: hands, dialogs, separate studies, the trainee's process."""
 
 from __future__ import annotations
 

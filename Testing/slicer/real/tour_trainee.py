@@ -1,4 +1,4 @@
-"""A trainee in a process of its own: touches fiducials of the running trial over OpenIGTLink.
+"""A trainee in a separate process: touches fiducials of the running trial over OpenIGTLink.
 
 Run by Slicer's own Python, which the tour does. The journal of the trial tells where the head
 stands, which a person sees on the screen.
@@ -16,7 +16,7 @@ ABOVE_MM, SINK_MM, SLIP_MM = 40.0, 1.0, 6.0
 """How far above the skin the tip travels, below it is sent, and beside it is at a slip."""
 NEAR_ENOUGH_MM = 1.5
 TRAVEL_MM_S, TOUCH_MM_S = 400, 100
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 def main() -> int:
@@ -68,13 +68,13 @@ def _touch(client: Any, fiducial: Any, outward: Any, slips: bool) -> None:
 
     above = fiducial + ABOVE_MM * outward
     _move(client, above, TRAVEL_MM_S)
-    client.wait_for("ToolTipToWorld", lambda tip: _is_near(tip, above), PATIENCE_S)
+    client.wait_for("ToolTipToWorld", lambda tip: _is_near(tip, above), TIMEOUT_S)
     aim = fiducial - SINK_MM * outward
     if slips:
         sideways = np.cross(outward, [0.0, 0.0, 1.0])
         aim = aim + SLIP_MM * sideways / np.linalg.norm(sideways)
     _move(client, aim, TOUCH_MM_S)
-    client.wait_for("SimState", _is_in_contact, PATIENCE_S)
+    client.wait_for("SimState", _is_in_contact, TIMEOUT_S)
     _do(client, "Capture")
     _move(client, above, TRAVEL_MM_S)
 
@@ -94,7 +94,7 @@ def _move(client: Any, place: Any, speed_mm_s: float) -> None:
 
 
 def _do(client: Any, name: str, **arguments: Any) -> None:
-    reply = client.send_command(name, arguments, PATIENCE_S)
+    reply = client.send_command(name, arguments, TIMEOUT_S)
     if not reply.ok:
         raise SystemExit(f"{name} was refused: {reply.error}")
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import subprocess
 
 import slicer
-from tour_hands import PATIENCE_S
+from tour_hands import TIMEOUT_S
 from tour_stage import SLIP_AT, Tour
 
 TRAINEE = "TOUR-1"
 STUDY = "study.db"
-SETUP_PATIENCE_S = 1800.0
+SETUP_TIMEOUT_S = 1800.0
 WEB_PAGE = """
 import http.server, os, threading
 server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), http.server.SimpleHTTPRequestHandler)
@@ -65,7 +65,7 @@ def start_and_connect(tour: Tour) -> str:
     hands = tour.hands
     tour.dialogs.answer("not set up on this computer yet", "Ok")
     hands.click("nextStepButton")
-    patience = SETUP_PATIENCE_S if tour.session.simulator.setup.isRunning else PATIENCE_S
+    patience = SETUP_TIMEOUT_S if tour.session.simulator.setup.isRunning else TIMEOUT_S
     hands.wait_until(lambda: hands.text("linkText") == "Connected", "it connects", patience)
     tour.dialogs.forget()
     return hands.text("stateText")

@@ -137,7 +137,7 @@ class qMRMLNodeComboBox(QtWidgets.QWidget):
             self._scene.RemoveNode(node)
 
     def setNodeTypeLabel(self, _label: str, _node_type: str) -> None:
-        """The label stands in the menu only."""
+        """The label is in the menu only."""
 
     def addAttribute(self, _node_type: str, _name: str, _value: Any = None) -> None:
         raise NotImplementedError("The host does not filter by attributes yet.")
