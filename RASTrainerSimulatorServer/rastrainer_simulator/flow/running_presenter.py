@@ -87,6 +87,7 @@ class RunningPresenter:
         taken = {source.seat for source in self._sources.values()}
         seat = SIMULATOR_SEAT if SIMULATOR_SEAT not in taken else f"gamepad {number}"
         self._sources[number] = Source(SourceKind.GAMEPAD, seat, number=number)
+        self.presenter.controls.add(self._sources[number])
         self.presenter.warn("gamepad")
 
     def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:

@@ -35,6 +35,14 @@ DEPTH_STEP_MM = 0.5
 """The same of the depth: a screen reader says each change of a warning."""
 
 
+_LEVEL = (
+    ControlName.MOVE_FORWARD,
+    ControlName.MOVE_LEFT,
+    ControlName.MOVE_BACK,
+    ControlName.MOVE_RIGHT,
+)
+
+
 class TrialScreen:
     """The instructions, warnings and hints of an open trial, and its controls.
 
@@ -209,11 +217,20 @@ class TrialScreen:
             ControlName.CAMERA: "hint.front",
             ControlName.MENU: "hint.menu",
         }
+        say = session.texts.say
+        movement: tuple[Hint, ...] = ()
         if session.is_typing_possible((SourceKind.XR,)):
-            # In a headset one looks around with the head.
+            # In a headset one looks around with the head, and its sticks are drawn in its hands.
             del names[ControlName.BEST_VIEW]
-        return tuple(
-            Hint(session.label(control), session.texts.say(key)) for control, key in names.items()
+        elif not is_complete:
+            up_and_down = session.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
+            movement = (
+                Hint(session.stick_label(_LEVEL), say("hint.move")),
+                Hint(up_and_down, say("hint.up_and_down")),
+            )
+        return (
+            *movement,
+            *(Hint(session.label(control), say(key)) for control, key in names.items()),
         )
 
     def _clock(self) -> str:

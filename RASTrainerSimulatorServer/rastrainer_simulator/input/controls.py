@@ -92,6 +92,18 @@ class Controls:
         """The inputs of the holder; None where nobody holds the control or they are not known."""
         return None if self.holder is None else self._states.get(self.holder)
 
+    @property
+    def has_gamepad(self) -> bool:
+        """Whether a gamepad is plugged in here, or one that a browser reads has moved."""
+        return any(
+            source.kind in (SourceKind.GAMEPAD, SourceKind.BROWSER_GAMEPAD)
+            for source in self._states
+        )
+
+    def add(self, source: Source) -> None:
+        """Take a source that is plugged in, before anything is pressed on it."""
+        self._state(source)
+
     def enter(self, situation: ControlContext) -> None:
         """Change the situation; what is held does nothing until it was let go."""
         if situation is not self.situation:

@@ -35,7 +35,7 @@ export interface Menu {
   readonly facts: readonly Fact[];
   readonly items: readonly Item[];
   readonly focus: string;
-  readonly picture: string;
+  readonly picture: "" | "gamepad" | "keyboard" | "controllers";
   readonly trend: ScoreTrend | null;
 }
 

@@ -15,7 +15,6 @@ export class Overlay {
   private notice = "";
   private warnings: readonly Message[] = [];
   private menu: Menu | null = null;
-  private holder = "";
   private facts: readonly string[] = [];
   private pairing: PairingNews | null = null;
   private readonly menuView: MenuView;
@@ -49,8 +48,6 @@ export class Overlay {
     const place = byId("control");
     place.textContent = sayHolder(control.holder, control.isYou);
     place.dataset.holder = control.holder;
-    this.holder = control.holder;
-    this.showMenu();
   }
 
   /** Tell beside each menu how another view is paired. */
@@ -108,7 +105,7 @@ export class Overlay {
 
   private showMenu(): void {
     const { menu } = this;
-    let drawn = menu?.picture === "controls" ? controlsPicture(this.holder, inputsOf(menu)) : "";
+    let drawn = menu?.picture ? controlsPicture(menu.picture, inputsOf(menu)) : "";
     if (menu?.trend) drawn = trendPlot(menu.trend);
     this.menuView.show(menu, drawn);
   }

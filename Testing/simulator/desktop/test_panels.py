@@ -35,7 +35,7 @@ WORDY = Menu(
     tuple(Fact(f"Figure {n}", f"{n}.25 mm", Tone.GOOD) for n in range(8)),
     (MenuItem("next", "Next", help="Goes on."), MenuItem("menu", "Menu")),
     "next",
-    "controls",
+    "gamepad",
 )
 
 
@@ -55,6 +55,18 @@ def test_no_menu_is_larger_than_its_room_and_its_focus_is_always_seen(menu, size
     assert row.top + row.height < height
     # Its corners are empty, so that nothing painted reaches the edge.
     assert picture.pixels[0, 0, 3] == 0
+
+
+def test_the_keyboard_is_drawn_with_its_used_keys_colored():
+    facts = (Fact("Move forward, back", "W / S"), Fact("Touch", "Space"))
+    menu = Menu("controls", "Controls", facts=facts, items=MENU.items[:1], picture="keyboard")
+    colored = [
+        int(np.all(paint(shown, (1920, 1080)).pixels[..., :3] == (31, 116, 232), axis=2).sum())
+        for shown in (replace(menu, facts=()), replace(menu, facts=facts[:1]), menu)
+    ]
+    key = (colored[1] - colored[0]) / 2
+    assert key > 500
+    assert colored[2] - colored[1] > key
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 
+from rastrainer_simulator.flow.pages.introduction import ControlsPage
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.control_name import ControlName
@@ -199,6 +200,63 @@ def test_nobody_pressing_anything_leaves_the_bindings_as_they_were(trainee):
     trainee.until_menu("listen")
     trainee.until_menu("bindings")
     assert trainee.presenter.controls.bindings == DEFAULT_BINDINGS
+
+
+def test_without_a_gamepad_the_keyboard_is_taught_with_the_direction_of_each_key(presenter):
+    presenter._session.pages.open(ControlsPage(presenter._session))
+    menu = presenter._session.pages.menu()
+    assert menu.picture == "keyboard"
+    assert [(fact.label, fact.value) for fact in menu.facts[:3]] == [
+        ("Move forward, back", "W / S"),
+        ("Move left, right", "A / D"),
+        ("Move up, down", "R / F"),
+    ]
+    hints = presenter._flow.screen().hints
+    assert hints[1].control == "Enter"
+
+
+def test_a_gamepad_that_is_plugged_in_is_taught_before_anybody_has_acted(pilot):
+    assert pilot.presenter.control.holder == ""
+    pilot.step(20)
+    assert pilot.presenter.screen.hints[1].control == "A"
+    pilot.choose("controls")
+    pilot.until_menu("controls")
+    assert pilot.menu.picture == "gamepad"
+    assert [fact.value for fact in pilot.menu.facts[:3]] == [
+        "Left stick up / Left stick down",
+        "Left stick left / Left stick right",
+        "Right stick up / Right stick down",
+    ]
+
+
+def first_hints(trainee):
+    trainee.start("task-1")
+    trainee.tap("camera")
+    trainee.step(20)
+    return [(hint.control, hint.action) for hint in trainee.presenter.screen.hints[:2]]
+
+
+def test_the_hints_begin_with_the_keys_that_move_the_tool(trainee):
+    assert first_hints(trainee) == [("W A S D", "Move"), ("R / F", "Up, down")]
+
+
+def test_the_hints_begin_with_the_sticks_that_move_the_tool(pilot):
+    assert first_hints(pilot) == [("Left stick", "Move"), ("Right stick up / down", "Up, down")]
+
+
+@pytest.mark.parametrize(("key", "letter"), [("ArrowRight", "KeyD"), ("ArrowUp", "KeyW")])
+def test_arrow_keys_move_the_tool_as_the_letters_do(trainee, key, letter):
+    trainee.start("task-1")
+    moves = []
+    for code in (letter, key):
+        before = tip(trainee)
+        trainee.presenter.on_key(1, code, True, "")
+        trainee.step(20)
+        trainee.presenter.on_key(1, code, False, "")
+        trainee.step(5)
+        moves.append(tip(trainee) - before)
+    assert np.linalg.norm(moves[0]) > 0.002
+    np.testing.assert_allclose(moves[1], moves[0], atol=0.002)
 
 
 def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):

@@ -1,8 +1,9 @@
-"""A drawing of the gamepad, shown beside the explanation of the controls."""
+"""Drawings of the gamepad and the keyboard, shown beside the explanation of the controls."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
@@ -22,6 +23,9 @@ FACES = (
     ((73, 28), "X", rgba(0x5AA2FF)),
     ((80, 20), "Y", rgba(0xFFB92E)),
 )
+LETTERS = ((0.0, "QWERTYUIOP"), (2.5, "ASDFGHJKL"), (7.0, "ZXCVBNM"))
+"""Of each row of keys, where it begins and what is on it."""
+KEY_STEP = 9.0
 SHOULDERS = (((12, 9), "LT"), ((74, 9), "RT"))
 
 
@@ -48,6 +52,28 @@ def draw_gamepad(canvas: Canvas, place: Box, brush: Brush) -> None:
         pen.slab(x - 3, 22, 6, 3.4, 1.7, PART)
 
 
+def draw_keyboard(canvas: Canvas, place: Box, inputs: Sequence[str], brush: Brush) -> None:
+    """Draw the letters of a keyboard at the top of `place`, and below them other keys by name.
+
+    `inputs` are the names of the keys that do something: these are colored.
+    """
+    pen = _Pen(canvas, brush, place.left, place.top, place.width / WIDTH)
+    used = set(inputs)
+    for row, (begin, letters) in enumerate(LETTERS):
+        for column, letter in enumerate(letters):
+            pen.key(begin + column * KEY_STEP, row * KEY_STEP, KEY_STEP, letter, letter in used)
+    letters_shown = {letter for _, row in LETTERS for letter in row}
+    x, y = 0.0, (len(LETTERS) + 0.3) * KEY_STEP
+    for name in dict.fromkeys(inputs):
+        if name in letters_shown:
+            continue
+        width = pen.width(name) + KEY_STEP
+        if x and x + width > WIDTH:
+            x, y = 0.0, y + KEY_STEP
+        pen.key(x, y, width, name, True)
+        x += width
+
+
 class _Pen:
     """Draws in the drawing's own frame."""
 
@@ -64,6 +90,14 @@ class _Pen:
         box = self._box(x - radius, y - radius, 2 * radius, 2 * radius)
         self._canvas.box(box, color, radius * self._size)
         self._canvas.frame(box, rim, radius * self._size, max(1, round(0.7 * self._size)))
+
+    def key(self, x: float, y: float, width: float, text: str, is_used: bool) -> None:
+        box = self._box(x, y, width - 1.0, KEY_STEP - 1.0)
+        self._canvas.box(box, theme.ACCENT if is_used else PART, 1.6 * self._size)
+        self.label(x + (width - 1.0) / 2, y + (KEY_STEP - 1.0) / 2, text, theme.TEXT)
+
+    def width(self, text: str) -> float:
+        return self._brush.width(text, theme.SMALL_STRONG) / self._size
 
     def line(self, points: list[tuple[float, float]], thickness: float, color: Color) -> None:
         placed = [(self._left + x * self._size, self._top + y * self._size) for x, y in points]

@@ -9,7 +9,7 @@ import numpy as np
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
-from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad
+from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad, draw_keyboard
 from rastrainer_simulator.desktop.panels.item_row import Look, draw_item
 from rastrainer_simulator.desktop.panels.score_trend import draw_trend, trend_height
 from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
@@ -79,9 +79,7 @@ class _Layout:
         self._brush = brush
         self._pad = brush.px(theme.PANEL_PAD)
         has_picture = (
-            menu.picture == "controls"
-            or menu.trend is not None
-            or any(item.picture for item in menu.items)
+            bool(menu.picture) or menu.trend is not None or any(item.picture for item in menu.items)
         )
         self._width = min(brush.px(theme.WIDE_PANEL_WIDTH if has_picture else width), room[0])
         inside = self._width - 2 * self._pad
@@ -171,7 +169,10 @@ class _Layout:
         top += brush.px(theme.PAD)
         if self._picture_width:
             place = Box(self._pad, top, self._picture_width, self._height - top - self._pad)
-            if self._menu.picture == "controls":
+            if self._menu.picture == "keyboard":
+                inputs = [key for fact in self._menu.facts for key in fact.value.split(" / ")]
+                draw_keyboard(canvas, place, inputs, brush)
+            elif self._menu.picture:
                 draw_gamepad(canvas, place, brush)
             elif self._menu.trend is not None:
                 draw_trend(canvas, place, self._menu.trend, brush)

@@ -14,15 +14,8 @@ from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem
 SHEETS = 3
 
 _SHOWN = (
-    (
-        "move_horizontally",
-        (
-            ControlName.MOVE_FORWARD,
-            ControlName.MOVE_LEFT,
-            ControlName.MOVE_BACK,
-            ControlName.MOVE_RIGHT,
-        ),
-    ),
+    ("move_along", (ControlName.MOVE_FORWARD, ControlName.MOVE_BACK)),
+    ("move_across", (ControlName.MOVE_LEFT, ControlName.MOVE_RIGHT)),
     ("move_vertically", (ControlName.MOVE_UP, ControlName.MOVE_DOWN)),
     ("fine", (ControlName.FINE,)),
     ("touch", (ControlName.TOUCH,)),
@@ -103,7 +96,7 @@ class ControlsPage(SessionPage):
             (self.say("controls.text"),),
             facts,
             tuple(self.button(item) for item in items),
-            picture="controls",
+            picture=session.device_picture,
         )
 
     def accept(self, item: str) -> None:

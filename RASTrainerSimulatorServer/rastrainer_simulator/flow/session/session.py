@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -178,10 +178,18 @@ class TrainingSession:
 
     @property
     def device(self) -> InputDevice:
-        """What the operator has in their hands."""
+        """What the operator uses; before anybody acts, a gamepad where there is one."""
         holder = self._controls.holder
-        keys = holder is not None and holder.kind in (SourceKind.KEYBOARD, SourceKind.MOUSE)
-        return InputDevice.KEYBOARD if keys else InputDevice.GAMEPAD
+        if holder is None:
+            has_pad = self._controls.has_gamepad
+        else:
+            has_pad = holder.kind not in (SourceKind.KEYBOARD, SourceKind.MOUSE)
+        return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
+
+    @property
+    def device_picture(self) -> str:
+        """Which drawing shows what the operator uses."""
+        return "controllers" if self.is_typing_possible((SourceKind.XR,)) else self.device.value
 
     @property
     def is_being_set_up(self) -> bool:
@@ -315,6 +323,15 @@ class TrainingSession:
     def pair_label(self, first: ControlName, second: ControlName) -> str:
         """Return the first inputs of two controls that belong together."""
         return pair_label(self.label(first), self.label(second))
+
+    def stick_label(self, controls: Sequence[ControlName]) -> str:
+        """Return what moves the tool one way or another: "Left stick", or the keys, "W A S D"."""
+        labels = [self.label(control) for control in controls]
+        words = [label.split() for label in labels]
+        shared = 0
+        while all(len(word) > shared and word[shared] == words[0][shared] for word in words):
+            shared += 1
+        return " ".join(words[0][:shared] or labels)
 
     def input_labels(self, device: InputDevice, control: ControlName) -> str:
         """Return all inputs of a control."""

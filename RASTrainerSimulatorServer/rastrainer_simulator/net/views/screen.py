@@ -88,7 +88,8 @@ class Menu:
         facts: a table under that.
         items: the lines that can be chosen, in order.
         focus: name of the item that has the focus; "" when there is none.
-        picture: which drawing a view puts beside the text: "" or "controls".
+        picture: which drawing of the controls a view puts beside the text: "", "gamepad",
+            "keyboard" or "controllers"; what the table names is colored in it.
         trend: plot that a view puts there instead; None for none.
     """
 

@@ -8,7 +8,7 @@ import { COLORS } from "./pen";
 export const PICTURE_WIDTH = 1000;
 export const PICTURE_HEIGHT = 520;
 
-type Kind = "gamepad" | "keyboard" | "controllers";
+export type Kind = "gamepad" | "keyboard" | "controllers";
 
 const BODY = "#33415a";
 const RIM = "#8da0bd";
@@ -16,21 +16,16 @@ const FACES = { A: "#3ccb7f", B: "#ff5252", X: "#5aa2ff", Y: "#ffb92e" } as cons
 const KEY = 64;
 const GAP = 8;
 
-/** Return the drawing for who holds the control; `inputs` are those that do something, as named to people. */
-export function controlsPicture(holder: string, inputs: readonly string[]): string {
+/** Return the drawing of a device; `inputs` are those that do something, as named to people. */
+export function controlsPicture(kind: Kind, inputs: readonly string[]): string {
   const sketch = new Sketch(inputs);
-  DRAW[kindOf(holder)](sketch);
+  DRAW[kind](sketch);
   return `data:image/svg+xml,${encodeURIComponent(sketch.svg())}`;
 }
 
 /** Return the inputs that a menu's table names, such as "W" of "W / A". */
 export function inputsOf(menu: Menu): readonly string[] {
   return menu.facts.flatMap((fact) => fact.value.split(" / "));
-}
-
-function kindOf(holder: string): Kind {
-  if (holder === "keyboard" || holder === "mouse") return "keyboard";
-  return holder === "headset's controllers" ? "controllers" : "gamepad";
 }
 
 const DRAW: Readonly<Record<Kind, (sketch: Sketch) => void>> = {

@@ -153,9 +153,9 @@ export class Boards {
 
   private paintPicture(menu: Menu | null): void {
     const { drawing, picture } = this;
-    const isWanted = menu?.picture === "controls";
-    if (isWanted) {
-      const source = controlsPicture(this.control?.holder ?? "", inputsOf(menu));
+    const isWanted = Boolean(menu?.picture);
+    if (menu?.picture) {
+      const source = controlsPicture(menu.picture, inputsOf(menu));
       if (drawing.src !== source) drawing.src = source;
     }
     picture.mesh.visible = isWanted && drawing.complete;
