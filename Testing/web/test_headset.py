@@ -186,6 +186,20 @@ def test_the_tip_follows_the_hand_that_grabs_until_it_lets_go(place, worn, train
     assert np.linalg.norm(trainee.tip - held) < 0.002
 
 
+def test_the_sticks_follow_the_eyes(worn, trainee):
+    let_arm_rest(worn, trainee)
+    start = trainee.tip
+    # A quarter turn to the right: the eyes look along World's x.
+    worn.evaluate("device.quaternion.set(0, -Math.SQRT1_2, 0, Math.SQRT1_2); frames_(3)")
+    trainee.hands.push(0.0, 1.0, 0.3)
+    trainee.until(lambda: np.linalg.norm((trainee.tip - start)[:2]) > 0.02, "a step forward")
+    trainee.hands.push(0.0, 0.0, 0.0)
+    worn.evaluate("device.quaternion.set(0, 0, 0, 1); frames_(3)")
+    ahead, aside = (trainee.tip - start)[:2]
+    assert ahead > 0.02
+    assert abs(aside) < 0.2 * ahead
+
+
 def test_grabbing_can_be_switched_off(place, worn, trainee):
     trainee.press("menu", lambda: trainee.menu is not None, "the menu")
     trainee.hands.point_at("local grab")

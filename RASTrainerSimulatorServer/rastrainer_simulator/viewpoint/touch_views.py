@@ -42,6 +42,7 @@ class TouchViews:
         )
         self._kinematics = make_kinematics(setup.robot)
         self._planner = TouchPlanner(setup.robot, self._collision)
+        self._known: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
 
     def of(self, task: Task, head_to_world: np.ndarray) -> Iterator[tuple[str, BestView | None]]:
         """Yield each fiducial's label and best view, None where there is none.
@@ -51,8 +52,8 @@ class TouchViews:
         pose = np.array(head_to_world, dtype=float)
         pose[:3, 3] /= MM_PER_M
         self._collision.set_head_pose(pose)
-        normals = outward_normals(self._head, task.fiducials) @ pose[:3, :3].T
-        numbers = np.array(place_marks(Skin(self._head), task.fiducials, task.labels).places)
+        in_head, numbers = self._on_skin(task)
+        normals = in_head @ pose[:3, :3].T
         places, beside = (
             transforms.apply(pose, points / MM_PER_M) for points in (task.fiducials, numbers)
         )
@@ -66,6 +67,15 @@ class TouchViews:
             sight = self._collision.line_of_sight(self._kinematics.links(planned.q))
             touch = ViewedTouch(*map(_vector, (place, normal, number, planned.direction)))
             yield label, best_view(touch, sight, front)
+
+    def _on_skin(self, task: Task) -> tuple[np.ndarray, np.ndarray]:
+        """Return the skin's normals at a task's fiducials, and where their numbers are, (n, 3)."""
+        key = task.fiducials.tobytes()
+        if key not in self._known:
+            normals = outward_normals(self._head, task.fiducials)
+            marks = place_marks(Skin(self._head), task.fiducials, task.labels)
+            self._known[key] = normals, np.array(marks.places)
+        return self._known[key]
 
 
 def _vector(array: np.ndarray) -> Vector:

@@ -36,7 +36,7 @@ class TrialView:
     def __init__(self) -> None:
         self.control = ViewControl()
         self.stick_turn_deg = 0.0
-        self._best: BestViews | None = None
+        self._best = BestViews()
         self._trial_id = ""
         self._went_for: str | None = None
         self._is_wanted = False
@@ -46,14 +46,13 @@ class TrialView:
         self.close()
         training = state.training
         self._trial_id = training.trial_id
-        self._best = BestViews(setup, training.task, truth.head_to_world)
+        self._best.look(setup, training.task, truth.head_to_world)
         self.control.reset()
 
     def close(self) -> None:
         """Forget the trial."""
-        if self._best is not None:
-            self._best.end()
-        self._best, self._went_for, self._is_wanted = None, None, False
+        self._best.forget()
+        self._went_for, self._is_wanted = None, False
 
     def want_best(self) -> None:
         """Go to the best view of the next point as soon as it is known."""
@@ -99,9 +98,9 @@ class TrialView:
 
     def _view_of(self, state: SimulationState) -> BestView | None:
         training = state.training
-        if self._best is None or training.phase not in OPEN_PHASES:
+        if training.phase not in OPEN_PHASES or training.trial_id != self._trial_id:
             return None
-        return self._best.of(training.next_point) if training.trial_id == self._trial_id else None
+        return self._best.of(training.next_point)
 
     def _go(self, camera: Camera, view: BestView, label: str | None, is_automatic: bool) -> None:
         self._went_for, self._is_wanted = label, False
